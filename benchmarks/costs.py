@@ -20,7 +20,7 @@ import numpy as np
 import rtamt
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense
 

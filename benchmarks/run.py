@@ -25,7 +25,7 @@ from cases import LIMIT, LONGEST, Case, cases  # first: it says where the module
 from asking import Talk, tree  # isort: skip
 from peers import HERE, PEERS  # isort: skip
 
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 
 ROUNDS = 5
 PATIENCE = 10.0  # seconds for an answer

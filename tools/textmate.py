@@ -12,8 +12,8 @@ import re
 from pathlib import Path
 
 from rtamt.highlight import DECLARING, QUANTIFYING, functions, logical, symbols, temporal
-from rtamt.language.declarations import TYPES
-from rtamt.language.units import UNITS
+from rtamt.language.parsing.declarations import TYPES
+from rtamt.language.units.durations import UNITS
 
 FILE = Path(__file__).parents[1] / "editors" / "stl.tmLanguage.json"
 

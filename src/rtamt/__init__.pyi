@@ -2,6 +2,76 @@
 
 from rtamt.batch import evaluate_all as evaluate_all
 from rtamt.batch import evaluate_batch as evaluate_batch
+from rtamt.compat.dense import STLCTSpecification as STLCTSpecification
+from rtamt.compat.dense import StlDenseTimeOfflineSpecification as StlDenseTimeOfflineSpecification
+from rtamt.compat.dense import StlDenseTimeOnlineSpecification as StlDenseTimeOnlineSpecification
+from rtamt.compat.dense import STLDenseTimeSpecification as STLDenseTimeSpecification
+from rtamt.compat.dense import StlDenseTimeSpecification as StlDenseTimeSpecification
+from rtamt.compat.discrete import (
+    StlDiscreteTimeOfflineSpecification as StlDiscreteTimeOfflineSpecification,
+)
+from rtamt.compat.discrete_online import (
+    StlDiscreteTimeOnlineSpecification as StlDiscreteTimeOnlineSpecification,
+)
+from rtamt.compat.discrete_online import (
+    StlDiscreteTimeOnlineSpecificationCpp as StlDiscreteTimeOnlineSpecificationCpp,
+)
+from rtamt.compat.discrete_online import STLDiscreteTimeSpecification as STLDiscreteTimeSpecification
+from rtamt.compat.discrete_online import StlDiscreteTimeSpecification as StlDiscreteTimeSpecification
+from rtamt.compat.discrete_online import StlDiscreteTimeSpecificationCpp as StlDiscreteTimeSpecificationCpp
+from rtamt.compat.discrete_online import STLSpecification as STLSpecification
+from rtamt.compat.interface_aware import (
+    IAStlInputRobustnessDenseTimeOfflineSpecification as IAStlInputRobustnessDenseTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputRobustnessDenseTimeOnlineSpecification as IAStlInputRobustnessDenseTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputRobustnessDiscreteTimeOfflineSpecification as IAStlInputRobustnessDiscreteTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputRobustnessDiscreteTimeOnlineSpecification as IAStlInputRobustnessDiscreteTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputVacuityDenseTimeOfflineSpecification as IAStlInputVacuityDenseTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputVacuityDenseTimeOnlineSpecification as IAStlInputVacuityDenseTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputVacuityDiscreteTimeOfflineSpecification as IAStlInputVacuityDiscreteTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlInputVacuityDiscreteTimeOnlineSpecification as IAStlInputVacuityDiscreteTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputRobustnessDenseTimeOfflineSpecification as IAStlOutputRobustnessDenseTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputRobustnessDenseTimeOnlineSpecification as IAStlOutputRobustnessDenseTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputRobustnessDiscreteTimeOfflineSpecification as IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputRobustnessDiscreteTimeOnlineSpecification as IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputVacuityDenseTimeOfflineSpecification as IAStlOutputVacuityDenseTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputVacuityDenseTimeOnlineSpecification as IAStlOutputVacuityDenseTimeOnlineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputVacuityDiscreteTimeOfflineSpecification as IAStlOutputVacuityDiscreteTimeOfflineSpecification,
+)
+from rtamt.compat.interface_aware import (
+    IAStlOutputVacuityDiscreteTimeOnlineSpecification as IAStlOutputVacuityDiscreteTimeOnlineSpecification,
+)
+from rtamt.compat.options import Language as Language
+from rtamt.compat.options import Semantics as Semantics
+from rtamt.compat.options import StlIOType as StlIOType
+from rtamt.compat.options import TimeInterpretation as TimeInterpretation
 from rtamt.engine.dense.monitor import DenseMonitor as DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor as Monitor
 from rtamt.errors import BoundError as BoundError
@@ -19,76 +89,6 @@ from rtamt.readers.read import read as read
 from rtamt.readers.read import scan as scan
 from rtamt.results import Result as Result
 from rtamt.results import first_violation as first_violation
-from rtamt.rtamt_api.dense import STLCTSpecification as STLCTSpecification
-from rtamt.rtamt_api.dense import StlDenseTimeOfflineSpecification as StlDenseTimeOfflineSpecification
-from rtamt.rtamt_api.dense import StlDenseTimeOnlineSpecification as StlDenseTimeOnlineSpecification
-from rtamt.rtamt_api.dense import STLDenseTimeSpecification as STLDenseTimeSpecification
-from rtamt.rtamt_api.dense import StlDenseTimeSpecification as StlDenseTimeSpecification
-from rtamt.rtamt_api.discrete import (
-    StlDiscreteTimeOfflineSpecification as StlDiscreteTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.discrete_online import (
-    StlDiscreteTimeOnlineSpecification as StlDiscreteTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.discrete_online import (
-    StlDiscreteTimeOnlineSpecificationCpp as StlDiscreteTimeOnlineSpecificationCpp,
-)
-from rtamt.rtamt_api.discrete_online import STLDiscreteTimeSpecification as STLDiscreteTimeSpecification
-from rtamt.rtamt_api.discrete_online import StlDiscreteTimeSpecification as StlDiscreteTimeSpecification
-from rtamt.rtamt_api.discrete_online import StlDiscreteTimeSpecificationCpp as StlDiscreteTimeSpecificationCpp
-from rtamt.rtamt_api.discrete_online import STLSpecification as STLSpecification
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputRobustnessDenseTimeOfflineSpecification as IAStlInputRobustnessDenseTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputRobustnessDenseTimeOnlineSpecification as IAStlInputRobustnessDenseTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputRobustnessDiscreteTimeOfflineSpecification as IAStlInputRobustnessDiscreteTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputRobustnessDiscreteTimeOnlineSpecification as IAStlInputRobustnessDiscreteTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputVacuityDenseTimeOfflineSpecification as IAStlInputVacuityDenseTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputVacuityDenseTimeOnlineSpecification as IAStlInputVacuityDenseTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputVacuityDiscreteTimeOfflineSpecification as IAStlInputVacuityDiscreteTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlInputVacuityDiscreteTimeOnlineSpecification as IAStlInputVacuityDiscreteTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputRobustnessDenseTimeOfflineSpecification as IAStlOutputRobustnessDenseTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputRobustnessDenseTimeOnlineSpecification as IAStlOutputRobustnessDenseTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputRobustnessDiscreteTimeOfflineSpecification as IAStlOutputRobustnessDiscreteTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputRobustnessDiscreteTimeOnlineSpecification as IAStlOutputRobustnessDiscreteTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputVacuityDenseTimeOfflineSpecification as IAStlOutputVacuityDenseTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputVacuityDenseTimeOnlineSpecification as IAStlOutputVacuityDenseTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputVacuityDiscreteTimeOfflineSpecification as IAStlOutputVacuityDiscreteTimeOfflineSpecification,
-)
-from rtamt.rtamt_api.interface_aware import (
-    IAStlOutputVacuityDiscreteTimeOnlineSpecification as IAStlOutputVacuityDiscreteTimeOnlineSpecification,
-)
-from rtamt.rtamt_api.options import Language as Language
-from rtamt.rtamt_api.options import Semantics as Semantics
-from rtamt.rtamt_api.options import StlIOType as StlIOType
-from rtamt.rtamt_api.options import TimeInterpretation as TimeInterpretation
 from rtamt.signals.dense import Dense as Dense
 from rtamt.signals.discrete import Discrete as Discrete
 from rtamt.signals.episodes import Episode as Episode

@@ -18,7 +18,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rtamt.engine.native import core
-from rtamt.language.dense_definitions import QUARTERS, Steps
+from rtamt.language.definitions.dense import QUARTERS, Steps
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Blocks, Bounds, Compiled, Fixity, Language, Operator, Sort, Tense

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 
-from rtamt.language.declarations import TYPES
-from rtamt.language.grammar import ELSE, THEN
-from rtamt.language.groups import QUANTIFIERS
-from rtamt.language.lexer import is_word
 from rtamt.language.operators import STL, Fixity, Tense
-from rtamt.language.units import UNITS
+from rtamt.language.parsing.declarations import TYPES
+from rtamt.language.parsing.grammar import ELSE, THEN
+from rtamt.language.parsing.lexer import is_word
+from rtamt.language.quantifiers import QUANTIFIERS
+from rtamt.language.units.durations import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -12,9 +12,9 @@ import numpy as np
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import Apply, variables
-from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL
-from rtamt.language.printer import excerpt
+from rtamt.language.parsing.grammar import is_number
+from rtamt.language.printing.printer import excerpt
 from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from rtamt.language.document import Document
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.language.value_types import ValueType
     from rtamt.signals.domain_interface import TimeDomain
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.imports import library_of
-from rtamt.language.printer import to_text
-from rtamt.language.specfile import parse_document
-from rtamt.language.units import check_unit
+from rtamt.language.parsing.imports import library_of
+from rtamt.language.parsing.specfile import parse_document
+from rtamt.language.printing.printer import to_text
+from rtamt.language.units.durations import check_unit
 from rtamt.results import Result, requirements_of
 from rtamt.signals import members
 from rtamt.signals.inexact import Uncertainty, fill_gaps
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
-    from rtamt.language.imports import Library
-    from rtamt.language.units import Duration
-    from rtamt.rewrite.members import Members
+    from rtamt.language.parsing.imports import Library
+    from rtamt.language.units.durations import Duration
+    from rtamt.rewrite.quantifiers import Members
     from rtamt.settings import Semantics
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal

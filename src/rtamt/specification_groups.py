@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.document import Declaration
-from rtamt.language.groups import Field, Group, fields_of, quantifiers
-from rtamt.rewrite.members import Members, resolved_document
+from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
 from rtamt.rewrite.presence import channel_of
+from rtamt.rewrite.quantifiers import Members, resolved_document
 from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.formula import Formula
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
 
 
 @dataclass(frozen=True, eq=False, repr=False)

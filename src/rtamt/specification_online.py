@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 from rtamt.engine.engine import engine_of
 from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import UsageError
-from rtamt.language.groups import quantifiers
+from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
-from rtamt.rewrite.member_streams import Splitting
 from rtamt.rewrite.presence import channel_of
+from rtamt.rewrite.quantifier_streams import Splitting
 from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import watched_of
 from rtamt.specification_groups import QuantifiedText
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.language.formula import Formula
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete

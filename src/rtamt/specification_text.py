@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, types_of, variables
-from rtamt.language.grammar import is_number
-from rtamt.language.imports import library_of
 from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
-from rtamt.language.parser import parse_formula
-from rtamt.language.printer import excerpt, to_text
-from rtamt.language.specfile import parse_document
-from rtamt.language.type_rules import as_formula
-from rtamt.language.units import positive_period
+from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.imports import library_of
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.parsing.specfile import parse_document
+from rtamt.language.parsing.type_rules import as_formula
+from rtamt.language.printing.printer import excerpt, to_text
+from rtamt.language.units.durations import positive_period
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.members import resolve
 from rtamt.rewrite.pastify import pastify
+from rtamt.rewrite.quantifiers import resolve
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
@@ -37,10 +37,10 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.document import Document
-    from rtamt.language.sampling import Sampling
-    from rtamt.language.units import Duration
+    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.units.durations import Duration
     from rtamt.language.value_types import ValueType
-    from rtamt.rewrite.members import Members
+    from rtamt.rewrite.quantifiers import Members
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
     from rtamt.signals.domain_interface import TimeDomain

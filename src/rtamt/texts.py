@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices, shown
-from rtamt.language.imports import PACKAGED, Library
 from rtamt.language.operators import STL, Language
-from rtamt.language.specfile import parse_document
-from rtamt.language.units import positive_period
+from rtamt.language.parsing.imports import PACKAGED, Library
+from rtamt.language.parsing.specfile import parse_document
+from rtamt.language.units.durations import positive_period
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import (
     check_backend,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics, Settings
     from rtamt.signals.domain_interface import TimeDomain
 

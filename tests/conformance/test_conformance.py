@@ -15,9 +15,9 @@ from conformance.generate import ALONE, data_of, ticks_of
 from conformance.trees import table_of
 
 import rtamt
-from rtamt.language import parser
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity
+from rtamt.language.parsing import parser
 from rtamt.language.shares import Share, ShareKind
 from rtamt.language.tables import Table, table_operator
 from rtamt.language.unwritten import UNWRITTEN

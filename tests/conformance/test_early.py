@@ -11,7 +11,7 @@ from conformance import early
 
 import rtamt
 from rtamt import Dense, Discrete
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.check import unbounded_future
 from tests.oracle import meaning
 

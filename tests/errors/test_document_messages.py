@@ -3,7 +3,7 @@
 import pytest
 
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, SpecificationError
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.specfile import parse_document
 from tests.errors.carets import shown
 
 # Text, what stands under the line in which the error is, class, sentence.

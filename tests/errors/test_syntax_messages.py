@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, SpecificationError, UsageError
-from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.parsing.specfile import parse_document
 from tests.errors.carets import shown
 
 # Text, what stands under the line in which the error is, class, sentence.

@@ -23,8 +23,8 @@ import rtamt
 from rtamt import fmi
 from rtamt.cli.stdin_reader import Samples
 from rtamt.errors import StlError
-from rtamt.language.latex import to_latex
-from rtamt.language.printer import to_text
+from rtamt.language.printing.latex import to_latex
+from rtamt.language.printing.printer import to_text
 from rtamt.readers.formats import FORMATS
 from rtamt.readers.source import raised_by_us
 from rtamt.search.config import load_search

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from rtamt.compiler.plan import compile_program
 from rtamt.engine import _core
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS

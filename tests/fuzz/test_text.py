@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import StlError
-from rtamt.language.latex import to_latex
 from rtamt.language.operators import STL
-from rtamt.language.parser import parse_formula
-from rtamt.language.printer import to_text
-from rtamt.language.units import UNITS
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.printing.latex import to_latex
+from rtamt.language.printing.printer import to_text
+from rtamt.language.units.durations import UNITS
 from tests.strategies import formulas
 
 CORPUS = Path(__file__).parent / "corpus" / "text"

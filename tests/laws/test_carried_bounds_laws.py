@@ -13,7 +13,7 @@ import rtamt
 from rtamt.compiler.program import Program
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Var, fold, variables
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.verdicts.at_start import StartMonitor
 from tests import c_api
 from tests.strategies import formulas, traces

@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
-from rtamt.language.dense_definitions import QUARTERS, Steps, critical, lifted
+from rtamt.language.definitions.dense import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.language.shares import Share, ShareKind, is_share, rank_arguments, rank_of

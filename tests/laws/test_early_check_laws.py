@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.verdicts.dense_early_check import DenseEarlyCheck
 from rtamt.verdicts.early_check import DiscreteEarlyCheck, holds_at_end
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rtamt.language.enclosures import Enclosure, extended
+from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.operators import STL
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.truth import truth
 
 # The truths of predicates are operators too, though the language does not have them.

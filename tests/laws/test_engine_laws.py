@@ -17,8 +17,8 @@ from rtamt.engine.discrete.evaluate import Evaluator
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Var, fold, variables
-from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import rank_arguments
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar

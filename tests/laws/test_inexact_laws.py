@@ -13,7 +13,7 @@ from rtamt.engine.dense.backends import BACKENDS as DENSE_BACKENDS
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder, variables
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.reference import discrete as reference
 from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace

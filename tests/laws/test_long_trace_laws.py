@@ -16,7 +16,7 @@ from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, Interval, fold
 from rtamt.language.operators import STL, Bounds
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.language.shares import Share, ShareKind
 from tests.laws.test_engine_laws import by_definition, by_engine, online
 from tests.strategies import formulas

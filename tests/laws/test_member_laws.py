@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
-from rtamt.language.groups import Binder, Field, FieldOf, Group, quantified
 from rtamt.language.operators import STL
+from rtamt.language.quantifiers import Binder, Field, FieldOf, Group, quantified
 from rtamt.rewrite.truth import rebuilt
 from rtamt.testing.strategies import formulas, traces
 

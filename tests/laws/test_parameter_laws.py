@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
-from rtamt.language.printer import number, to_text
+from rtamt.language.printing.printer import number, to_text
 from tests.strategies import dense_traces, formulas, traces
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import STL, Sort
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.check import has_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify

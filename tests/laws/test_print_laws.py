@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rtamt.language.formula import Apply, Const, Interval, Var, variables
-from rtamt.language.grammar import is_number
-from rtamt.language.latex import to_latex
 from rtamt.language.operators import STL, Bounds, Fixity, Sort
-from rtamt.language.parser import parse_formula as parse
-from rtamt.language.printer import canonical, to_text
+from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.parser import parse_formula as parse
+from rtamt.language.printing.latex import to_latex
+from rtamt.language.printing.printer import canonical, to_text
 from rtamt.language.shares import Share, ShareKind
-from rtamt.language.units import UNITS
+from rtamt.language.units.durations import UNITS
 from tests.strategies import formulas
 
 # A language in which powers collide, symbols begin other symbols, and a prefix binds tightest.

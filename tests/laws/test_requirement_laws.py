@@ -22,9 +22,9 @@ from rtamt.cli import main
 from rtamt.errors import EvaluationError
 from rtamt.fmi.variables import variables_of
 from rtamt.language.formula import Apply, Formula, Var, fold
-from rtamt.language.grammar import is_number
-from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.parsing.specfile import parse_document
 from rtamt.results import first_violation
 from tests import c_api
 from tests.strategies import chunkings, dense_traces, formulas, traces

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.search import Problem, Range
 from rtamt.verdicts.early_check import holds_at_end
 from tests.strategies import formulas, traces

@@ -15,7 +15,7 @@ import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, children, postorder, variables
 from rtamt.language.operators import Sort
-from rtamt.language.printer import canonical
+from rtamt.language.printing.printer import canonical
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.rewrite.truth import is_part_of_a_condition, truth

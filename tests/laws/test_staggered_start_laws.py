@@ -21,7 +21,7 @@ import rtamt
 from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
 from rtamt.errors import EvaluationError, UsageError
-from rtamt.language.grammar import is_number
+from rtamt.language.parsing.grammar import is_number
 from rtamt.results import first_violation
 from tests import strategies
 

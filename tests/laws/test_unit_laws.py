@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.language.lint import warnings_of
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.specfile import parse_document
 
 #: A variable of each unit; further expressions of it are made of others.
 UNITS = {

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import rtamt
-from rtamt.rtamt_api import interface_aware
+from rtamt.compat import interface_aware
 
 FOLDER = "examples/request_grant"
 

@@ -14,9 +14,9 @@ import rtamt
 from rtamt.cli import main
 from rtamt.errors import BoundError, EvaluationError, SpecificationError
 from rtamt.language.formula import COUNTLESS, size
-from rtamt.language.parser import parse_formula
-from rtamt.language.printer import canonical, excerpt, to_text
-from rtamt.language.writing import LONGEST
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.printing.printer import canonical, excerpt, to_text
+from rtamt.language.printing.writing import LONGEST
 from rtamt.reference.discrete import evaluate_all
 from rtamt.rewrite import pastify
 

@@ -14,10 +14,13 @@ import messages
 
 import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
-from rtamt.language import dimensions, enumerations, groups, parser, specfile, tables, templates
-from rtamt.language.groups import QUANTIFIERS
+from rtamt.language import enumerations, tables
+from rtamt.language import quantifiers as groups
 from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
+from rtamt.language.parsing import parser, specfile, templates
+from rtamt.language.quantifiers import QUANTIFIERS
+from rtamt.language.units import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
@@ -257,9 +260,7 @@ def _former() -> dict[str, str]:
     """Return the classes of RTAMT's own API; a second name of a class leads to its first."""
     found = {name: getattr(rtamt, name) for name in rtamt.__all__ if name not in {"STL"}}
     return {
-        name: thing.__name__
-        for name, thing in found.items()
-        if thing.__module__.startswith("rtamt.rtamt_api")
+        name: thing.__name__ for name, thing in found.items() if thing.__module__.startswith("rtamt.compat")
     }
 
 

@@ -12,7 +12,7 @@ from rtamt.cli.outcome import Requirement
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
-from rtamt.language.units import positive_period
+from rtamt.language.units.durations import positive_period
 from rtamt.readers.sql import shown
 from rtamt.texts import packs
 

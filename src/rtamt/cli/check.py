@@ -30,7 +30,7 @@ from rtamt.cli.reports.messages import episodes_members, robustness_members
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

@@ -18,9 +18,9 @@ from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, readable
 from rtamt.files import nearest_file, write_bytes, write_text
-from rtamt.language.lexer import NAME
 from rtamt.language.lint import CODES
-from rtamt.language.units import UNITS, decimal
+from rtamt.language.parsing.lexer import NAME
+from rtamt.language.units.durations import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import CommandError
 from rtamt.compiler.program import MAGIC, Program
 from rtamt.errors import UsageError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.verdicts.standalone import check_code
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.compiler.plan import compile_program
 from rtamt.errors import BoundError, SpecificationError, UsageError, choices
-from rtamt.language.lexer import quoted
-from rtamt.language.printer import excerpt
-from rtamt.language.units import format_duration
+from rtamt.language.parsing.lexer import quoted
+from rtamt.language.printing.printer import excerpt
+from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar

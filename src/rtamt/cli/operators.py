@@ -11,9 +11,9 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say, table, use_color, width_of
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.groups import QUANTIFIERS
 from rtamt.language.operators import Bounds, Fixity
-from rtamt.language.units import UNITS
+from rtamt.language.quantifiers import QUANTIFIERS
+from rtamt.language.units.durations import UNITS
 
 if TYPE_CHECKING:
     import argparse

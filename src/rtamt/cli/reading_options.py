@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.cli.command import READING, CommandError, add_stamp_options, options
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.units import duration, positive_period
+from rtamt.language.units.durations import duration, positive_period
 from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag

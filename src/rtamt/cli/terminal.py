@@ -65,8 +65,8 @@ def printed(formula: Formula) -> str:
 
     Named sub-formulas that use each other may be small in a file and astronomical when written out.
     """
-    from rtamt.language.printer import to_text
-    from rtamt.language.writing import PAGE
+    from rtamt.language.printing.printer import to_text
+    from rtamt.language.printing.writing import PAGE
 
     return to_text(formula, limit=PAGE)
 

@@ -84,7 +84,7 @@ def compile_program(
     changes no value and saves memory.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.rewrite.desugar import desugar
     >>> program = compile_program([desugar(parse_formula("always[0:2](x >= 3)"))], Fraction(1))
     >>> program.inputs, program.lags

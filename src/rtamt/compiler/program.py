@@ -238,7 +238,7 @@ class Program:
 
         >>> from fractions import Fraction
         >>> from rtamt.compiler.plan import compile_program
-        >>> from rtamt.language.parser import parse_formula
+        >>> from rtamt.language.parsing.parser import parse_formula
         >>> print(compile_program([parse_formula("always[0:2](x - 3)")], Fraction(1)).disassemble())
         %0   lag 0    input x
         %1   lag 0    const 3.0

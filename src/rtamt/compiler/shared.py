@@ -44,7 +44,7 @@ class Shape:
         """Return the shape of formulas.
 
         >>> from fractions import Fraction
-        >>> from rtamt.language.parser import parse_formula
+        >>> from rtamt.language.parsing.parser import parse_formula
         >>> formula = parse_formula("x <= limit", constants={"limit": 4}, parameters=["limit"])
         >>> shapes = [Shape.of(with_values([formula], {"limit": value})) for value in (4.0, 3.0)]
         >>> four, three = (shape.program(Fraction(1), ("x",)) for shape in shapes)

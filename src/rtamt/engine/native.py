@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:

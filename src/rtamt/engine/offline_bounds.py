@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from rtamt.language.enclosures import Enclosure
+from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.reference import dense_bounds, discrete_bounds
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import Knowledge

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, types_of, variables
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding

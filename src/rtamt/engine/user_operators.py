@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rtamt.errors import EvaluationError, StlError, UsageError
-from rtamt.language.dense_definitions import QUARTERS, Steps
+from rtamt.language.definitions.dense import QUARTERS, Steps
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Bounds, Compiled
 from rtamt.reference.definition_adapter import (

@@ -19,8 +19,8 @@ from rtamt.explain.propagate import Demands
 from rtamt.explain.report import CriticalPoint, Explanation, Listed
 from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
-from rtamt.language.printer import to_text
-from rtamt.language.writing import PAGE
+from rtamt.language.printing.printer import to_text
+from rtamt.language.printing.writing import PAGE
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals.instants import Cells, StepFunction, two_valued

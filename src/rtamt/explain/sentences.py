@@ -6,8 +6,8 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Var, postorder
-from rtamt.language.printer import to_text
-from rtamt.language.writing import PAGE
+from rtamt.language.printing.printer import to_text
+from rtamt.language.printing.writing import PAGE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

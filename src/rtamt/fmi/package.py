@@ -18,7 +18,7 @@ from rtamt.verdicts.modes import DELAYED
 if TYPE_CHECKING:
     import os
 
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics
     from rtamt.specification import Specification
 

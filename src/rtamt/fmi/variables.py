@@ -12,7 +12,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula, Span
-    from rtamt.language.groups import Group
+    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.templates import Template
+    from rtamt.language.quantifiers import Group
     from rtamt.language.records import Operator
-    from rtamt.language.sampling import Sampling
-    from rtamt.language.templates import Template
     from rtamt.language.value_types import Enumeration, ValueType
 
 #: The severity of a violation, in the terms of SARIF.

@@ -16,7 +16,7 @@ from rtamt.language.value_types import Enumeration
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from rtamt.language.names import NameParser
+    from rtamt.language.parsing.names import NameParser
 
 #: Codes that a double holds exactly.
 _LARGEST_CODE = 2**53

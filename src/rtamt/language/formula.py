@@ -86,8 +86,8 @@ class Formula:
     span: Span | None
 
     def __repr__(self) -> str:
-        from rtamt.language.printer import to_text
-        from rtamt.language.writing import PAGE
+        from rtamt.language.printing.printer import to_text
+        from rtamt.language.printing.writing import PAGE
 
         return f"<formula {to_text(self, limit=PAGE)}>"
 
@@ -104,13 +104,13 @@ class Formula:
         return _restored, (tuple([_flat(node, places) for node in nodes]),)
 
     def __str__(self) -> str:
-        from rtamt.language.printer import to_text
+        from rtamt.language.printing.printer import to_text
 
         return to_text(self)
 
     def latex(self) -> str:
         """Return the formula as LaTeX mathematics, without dollar signs."""
-        from rtamt.language.latex import to_latex
+        from rtamt.language.printing.latex import to_latex
 
         return to_latex(self)
 

@@ -7,11 +7,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import caret
-from rtamt.language.dimensions import DIMENSION, SCALE, UNCHECKED
 from rtamt.language.formula import Apply, Const, Var, postorder
-from rtamt.language.grammar import is_number, is_predicate
+from rtamt.language.parsing.grammar import is_number, is_predicate
 from rtamt.language.records import Fixity, Sort
-from rtamt.language.unit_check import unit_findings
+from rtamt.language.units.check import unit_findings
+from rtamt.language.units.dimensions import DIMENSION, SCALE, UNCHECKED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -57,7 +57,7 @@ class LintWarning:
 def warnings_of(document: Document) -> tuple[LintWarning, ...]:
     """Return the warnings about the text of a document, in the order of the text; a selection has no effect.
 
-    >>> from rtamt.language.specfile import parse_document
+    >>> from rtamt.language.parsing.specfile import parse_document
     >>> print(*warnings_of(parse_document("x and y >= 3")))
     RT101: 'x' is a number where a formula is expected; compare it, such as x > 0
       line 1, column 1:

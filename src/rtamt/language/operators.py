@@ -5,9 +5,9 @@ pastification, compiler, command-line help, the generated reference and the test
 this table; there is no second list. ``STL.extend(...)`` returns a new language.
 
 The meaning of an operator is its ``definition``, a pure function on arrays: of a pointwise operator the same in
-every time domain (``pointwise_definitions.py``), of a temporal operator that in discrete time (``definitions.py``).
+every time domain (``definitions/pointwise.py``), of a temporal operator that in discrete time (``definitions/discrete.py``).
 In dense time, a temporal operator has a function ``dense`` that gives its value at one instant
-(``dense_definitions.py``), or the meaning of its ``expansion``.
+(``definitions/dense.py``), or the meaning of its ``expansion``.
 The implementation is either an ``expansion`` into simpler operators (``expansions.py``) or a ``kernel``: one of the
 shapes that the compiler supports, or a user-supplied class (``Blocks``, ``Compiled``). Names of opcodes are
 those of the core.
@@ -17,13 +17,12 @@ from __future__ import annotations
 
 from math import inf
 
-from rtamt.language import definitions as d
-from rtamt.language import dense_definitions as dense
-from rtamt.language import enclosures as e
 from rtamt.language import expansions as expand
-from rtamt.language import functions as f
-from rtamt.language import pointwise_definitions as p
-from rtamt.language import unit_rules as r
+from rtamt.language.definitions import dense
+from rtamt.language.definitions import discrete as d
+from rtamt.language.definitions import enclosures as e
+from rtamt.language.definitions import functions as f
+from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const
 from rtamt.language.records import (
     Ahead,
@@ -46,6 +45,7 @@ from rtamt.language.records import (
     Window,
 )
 from rtamt.language.rows import C, F, N, function, infix, math, prefix
+from rtamt.language.units import rules as r
 from rtamt.language.unwritten import EQ, GE, GT, LE, LT, NE, UNWRITTEN
 
 __all__ = [

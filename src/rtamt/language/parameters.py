@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.language.document import Document
-    from rtamt.language.templates import Template
+    from rtamt.language.parsing.templates import Template
 
 
 def with_values(formulas: Sequence[Formula], values: Mapping[str, float]) -> tuple[Formula, ...]:
     """Return formulas in which the parameters of these names have these values; what has none is shared.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> formula = parse_formula("always(x <= limit)", constants={"limit": 4}, parameters=["limit"])
     >>> print(*with_values([formula], {"limit": 3}))
     always(x <= 3)

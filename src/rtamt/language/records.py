@@ -17,8 +17,8 @@ from rtamt.language.formula import Apply, Formula, Interval
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from rtamt.language.groups import Binder
-    from rtamt.language.unit_rules import UnitRule
+    from rtamt.language.quantifiers import Binder
+    from rtamt.language.units.rules import UnitRule
 
     Expansion = Callable[..., Formula]
     #: From operands that are not known everywhere, the interval, and where they are known.
@@ -231,7 +231,7 @@ class Operator:
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
     binder: Binder | None = None  # of a quantifier in a formula
-    # The unit of the result from those of the operands (unit_rules.py); None: unknown.
+    # The unit of the result from those of the operands (``units/rules.py``); None: unknown.
     units: UnitRule | None = None
     # Of an operator that a text declares: what makes it again, a function and its arguments.
     maker: tuple[Callable[..., Operator], tuple[Any, ...]] | None = None

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from rtamt.language import enclosures as e
-from rtamt.language import function_enclosures as fe
-from rtamt.language import functions as f
+from rtamt.language.definitions import enclosures as e
+from rtamt.language.definitions import function_enclosures as fe
+from rtamt.language.definitions import functions as f
 from rtamt.language.records import (
     Fixity,
     Operator,

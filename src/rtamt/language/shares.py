@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Interval, Span
-from rtamt.language.units import UNITS, decimal, exact
+from rtamt.language.units.durations import UNITS, decimal, exact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
-    from rtamt.language.parser import FormulaParser
+    from rtamt.language.parsing.parser import FormulaParser
 
 
 class ShareKind(Enum):

@@ -21,8 +21,8 @@ import numpy as np
 
 from rtamt.language.expansions import choice
 from rtamt.language.formula import Const, Formula, Span
-from rtamt.language.lexer import NAME, quoted
 from rtamt.language.operators import STL
+from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.unwritten import reaches
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.language.formula import Interval
-    from rtamt.language.names import NameParser
+    from rtamt.language.parsing.names import NameParser
 
     Array: TypeAlias = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Compiled
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -18,7 +18,7 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
 
     ``formula``: the formula without a value, as the user wrote it. ``where``: :func:`at_sample`, or ``"time 0.5 s"``.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> str(undefined(parse_formula("x / y"), at_sample(3, 0.3)))[:48]
     "'x / y' has no value at sample 3, time 0.3 s: it"
     """

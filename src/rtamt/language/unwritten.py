@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from rtamt.language import definitions as d
-from rtamt.language import dense_definitions as dense
-from rtamt.language import enclosures as e
-from rtamt.language import function_enclosures as fe
-from rtamt.language import functions as f
-from rtamt.language import pointwise_definitions as p
+from rtamt.language.definitions import dense
+from rtamt.language.definitions import discrete as d
+from rtamt.language.definitions import enclosures as e
+from rtamt.language.definitions import function_enclosures as fe
+from rtamt.language.definitions import functions as f
+from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const, Formula
 from rtamt.language.records import (
     Fixity,

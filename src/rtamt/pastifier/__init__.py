@@ -3,8 +3,8 @@
 These are computed in ``rewrite/pastify.py`` and ``rewrite/horizon.py``.
 """
 
-from rtamt.rtamt_api.paths import provide
-from rtamt.rtamt_api.trees import LtlHorizon, LtlPastifier, StlHorizon, StlPastifier
+from rtamt.compat.paths import provide
+from rtamt.compat.trees import LtlHorizon, LtlPastifier, StlHorizon, StlPastifier
 
 provide(
     __name__,

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Var, variables
-from rtamt.language.grammar import is_predicate as is_comparison
+from rtamt.language.parsing.grammar import is_predicate as is_comparison
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -28,7 +28,7 @@ def groups(
 ) -> tuple[Group, ...]:
     """Return the panels, in the order of the names. ``units``: those that are known.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> groups(["a", "b", "c"], [parse_formula("a <= c"), parse_formula("b >= 3")])
     (Group(names=('a', 'c'), thresholds=()), Group(names=('b',), thresholds=(3.0,)))
     >>> close = parse_formula("gap <= 2 * speed")

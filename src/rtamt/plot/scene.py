@@ -278,7 +278,7 @@ def _sub_formulas(formula: Formula) -> tuple[Formula, ...]:
 def _operands(formula: Formula) -> tuple[Formula, ...]:
     """Return the formulas that a formula is made of; a chain such as ``a and b and c`` is made of three.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> [str(part) for part in _operands(parse_formula("(x >= 3) and (y >= 3) and once(z >= 3)"))]
     ['x >= 3', 'y >= 3', 'once(z >= 3)']
     """
@@ -295,7 +295,7 @@ def _operands(formula: Formula) -> tuple[Formula, ...]:
 def _label(formula: Formula) -> str:
     """Return a formula's operator, with letters for its operands.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> _label(parse_formula("(x >= 3) until[0:5] (y >= 3)"))
     'φ until[0:5] ψ'
     >>> _label(parse_formula("(x >= 3) or (x >= 4) or (y >= 3)"))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.signals.listing import show_time
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.language.units import check_unit, positive_period
+from rtamt.language.units.durations import check_unit, positive_period
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
@@ -18,7 +18,7 @@ from rtamt.signals.coding import NO_TYPES
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.readers.source import Source
     from rtamt.signals.coding import Types
     from rtamt.signals.trace import Trace

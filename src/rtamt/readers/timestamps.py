@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units import UNITS, in_seconds
+from rtamt.language.units.durations import UNITS, in_seconds
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
 from rtamt.signals.counting import refuse_implausible

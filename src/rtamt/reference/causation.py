@@ -42,8 +42,8 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> l
 
     >>> from fractions import Fraction
     >>> import numpy as np
-    >>> from rtamt.language.enclosures import Enclosure
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.definitions.enclosures import Enclosure
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.reference.discrete_bounds import Knowledge
     >>> x = np.array([4.0, 1.0, 2.0])
     >>> causation(parse_formula("always(x >= 3)"), Knowledge({"x": Enclosure(x, x)}, 3), Fraction(1), 1)

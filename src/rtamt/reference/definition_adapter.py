@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import EvaluationError, StlError, UsageError
-from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged
+from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged
 from rtamt.language.operators import Bounds, Tense
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_arguments
 
 if TYPE_CHECKING:

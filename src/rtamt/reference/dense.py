@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from rtamt.errors import UsageError
-from rtamt.language.dense_definitions import QUARTERS, Steps, merged
+from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.undefined_value import undefined
@@ -75,7 +75,7 @@ def evaluate(formula: Formula, signals: Mapping[str, Events], tick: Fraction) ->
 
     >>> from fractions import Fraction
     >>> from rtamt.reference.dense import evaluate
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> lately = parse_formula("once[1:2] x")
     >>> evaluate(lately, {"x": ([0, 20, 30, 60], [0.0, 6.0, 0.0, 0.0])}, Fraction(1, 10))
     StepFunction(times=array([ 0, 10, 30, 50]), values=array([-inf,   0.,   6.,   0.]))
@@ -94,7 +94,7 @@ class DenseReferenceMonitor:
 
     >>> from fractions import Fraction
     >>> from rtamt.reference.dense import DenseReferenceMonitor
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> monitor = DenseReferenceMonitor([parse_formula("eventually[0:2] x")], ("x",), Fraction(1))
     >>> monitor.push({"x": ([0, 5], [1.0, 3.0])})
     [Known(times=array([0, 3]), values=array([1., 3.]), until=3)]

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rtamt.language.dense_definitions import QUARTERS, Steps, merged
-from rtamt.language.enclosures import Enclosure
+from rtamt.language.definitions.dense import QUARTERS, Steps, merged
+from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import signal_of
@@ -93,7 +93,7 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     what :func:`rtamt.reference.discrete_bounds.bounds` raises.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> soon = parse_formula("eventually[0:2](x >= 3)")
     >>> bounds(soon, DenseKnowledge({"x": ([0, 5], [1, 4], [1, 4])}, {"x": (0, 5)}), Fraction(1))
     StepBounds(times=(0, 3, 4, 6), lower=(-2.0, 1.0, 1.0, -3.0), upper=(-2.0, 1.0, 2.0, 2.0))

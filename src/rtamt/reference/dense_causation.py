@@ -13,8 +13,8 @@ from bisect import bisect_right
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.language import dense_definitions
-from rtamt.language.dense_definitions import QUARTERS, Steps, lifted, merged, pieces
+from rtamt.language.definitions import dense as dense_definitions
+from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged, pieces
 from rtamt.language.formula import Apply, Formula, postorder, variables
 from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
 from rtamt.reference.dense_bounds import DenseKnowledge, bounds
@@ -64,7 +64,7 @@ def causation(
     ``before``: what was known before the event; None for the event with which the trace starts.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.reference.dense_bounds import DenseKnowledge
     >>> first, both = (DenseKnowledge({"x": s}) for s in [([0], [4], [4]), ([0, 3], [4, 1], [4, 1])])
     >>> found = causation(parse_formula("x >= 3"), first, both, Fraction(1))

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from rtamt.errors import SpecificationError
-from rtamt.language.enclosures import Enclosure, extended
+from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
@@ -70,7 +70,7 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
 
     >>> from fractions import Fraction
     >>> import numpy as np
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> soon = parse_formula("eventually[0:2](x >= 3)")
     >>> x = np.array([4.0, 1.0])
     >>> bounds(soon, Knowledge({"x": Enclosure(x, x)}, 2, {"x": (0.0, 5.0)}), Fraction(1))

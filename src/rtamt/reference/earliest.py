@@ -37,8 +37,8 @@ def verdicts(formula: Formula, known: Knowledge, period: Fraction) -> list[list[
 
     >>> from fractions import Fraction
     >>> import numpy as np
-    >>> from rtamt.language.enclosures import Enclosure
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.definitions.enclosures import Enclosure
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.reference.discrete_bounds import Knowledge
     >>> x = np.array([1.0, 4.0, 2.0])
     >>> known = Knowledge({"x": Enclosure(x, x)}, 3)

@@ -9,9 +9,9 @@ from fractions import Fraction
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
-from rtamt.language.printer import interval_text
+from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
 
@@ -57,7 +57,7 @@ def check_bounds(
     A half-open interval must contain at least one of these.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
     for node in postorder(spelled_out(formula)):

@@ -17,7 +17,7 @@ def desugar(formula: Formula) -> Formula:
     An operator with neither expansion nor kernel (added with its definition alone) is kept, and evaluated
     by its definition. New nodes have the span of the operator that they expand.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> str(desugar(parse_formula("x >= 3 -> y <= 2")))
     '-(x - 3) or 2 - y'
     """
@@ -29,7 +29,7 @@ def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
 
     If no part expands to the core formula, it is returned itself.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> formula = parse_formula("always(x < 3)")
     >>> print(written(parse_formula("3 - x"), [formula]), "|", written(parse_formula("y"), [formula]))
     x < 3 | y

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rtamt.language.enclosures import Enclosure, extended
+from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import is_share
@@ -55,7 +55,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     four units in the last place wider.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> formulas = ["always(x >= 3 -> eventually[0:5] y >= 3)", "x > 0 or x < 5", "x > 0 or prev(x < 5)"]
     >>> [loose(parse_formula(text), Fraction(1)) for text in formulas]
     [None, 'x', None]
@@ -174,7 +174,7 @@ def ends_differently(formula: Formula, ranges: Mapping[str, tuple[float, float]]
     a constant, or a variable with a declared range. For verdicts, pass the formula in its Boolean
     semantics (``boolean``).
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> formulas = ["always[0:5](x >= 3)", "eventually[1:2] once[0:5](x >= 3)"]
     >>> [ends_differently(parse_formula(text), {}) for text in formulas]
     [None, <formula eventually[1:2](once[0:5](x - 3))>]
@@ -228,7 +228,7 @@ def at_one_instant(node: Formula) -> bool:
 def causeless(formula: Formula) -> Formula | None:
     """Return a part of a formula that has no causation, which is a share of a window.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> causeless(parse_formula("always(atleast[0:9](80%, x > 0))"))
     <formula atleast[0:9](80%, x > 0)>
     """

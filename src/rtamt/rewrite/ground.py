@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
 from rtamt.language.records import Bounds
-from rtamt.language.units import UNITS
+from rtamt.language.units.durations import UNITS
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def ground(formula: Formula, step: Fraction, *, continuous: bool = False) -> For
     the same object; a grounded formula is left as it is. The bounds must have been checked (``check_bounds``).
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> grounded = ground(parse_formula("eventually(0, 5](x > 3)"), Fraction(1, 10))
     >>> print(grounded, grounded.interval.begin)
     eventually(0:5](x > 3) 1/10

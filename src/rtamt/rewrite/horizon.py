@@ -17,7 +17,7 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     A monitor reports ρ(φ, w, t) when its input has reached t + H(φ). ``next`` counts one ``period``
     (seconds); past operators add nothing.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> horizon(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)"))
     Fraction(15, 1)
     """

@@ -16,8 +16,8 @@ from math import inf
 
 from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
-from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Sort, Tense
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.rewrite.check import has_future, unbounded_future
@@ -36,7 +36,7 @@ def pastify(
     of φ and in the text of Π(φ). Raises :class:`BoundError` at an operator whose
     future is unbounded, and :class:`SpecificationError` where the result has more than :data:`MOST` nodes.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> str(pastify(parse_formula("always[0:10](x >= 3 -> eventually[0:5] y >= 3)")))
     'historically[0:10](once[5:5](x >= 3) -> once[0:5](y >= 3))'
     """

@@ -25,7 +25,7 @@ def channel_of(name: str) -> str:
 def presences(*formulas: Formula) -> tuple[str, ...]:
     """Return the variables whose presence formulas read.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> presences(parse_formula("x > 3 and valid(y) or valid(y)"))
     ('y',)
     """
@@ -39,7 +39,7 @@ def tracked(formula: Formula) -> Formula:
     """Return a formula that reads the presence of variables from their channels; the same object if it asks for none.
 
     >>> from rtamt.language.formula import variables
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> variables(tracked(parse_formula("x > 3 and valid(y)")))
     ('x', 'valid(y)')
     """

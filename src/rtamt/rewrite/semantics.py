@@ -22,7 +22,7 @@ from typing import TypeAlias
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
 from rtamt.language.formula import Apply, Const, Formula, variables
 from rtamt.language.operators import STL
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.truth import replaced, truth
@@ -112,7 +112,7 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
     Raises :class:`UsageError` if the function returns anything but a formula over the
     predicate's variables.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> formula = parse_formula("always(req >= 3 -> gnt >= 3)")
     >>> apply_semantics(formula, "output_robustness", {"req": "input"})
     <formula always(req >= 3 -> gnt >= 3)>
@@ -134,7 +134,7 @@ def apply_semantics(formula: Formula, semantics: str | PredicateSemantics, roles
 def boolean(formula: Formula) -> Formula:
     """Return the formula whose robustness is +inf where ``formula`` holds and -inf where it does not.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> str(boolean(parse_formula("always(x >= 3)")))
     'always(x >= 3)'
     """

@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold, postorder
-from rtamt.language.grammar import is_number
 from rtamt.language.operators import Sort
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.unwritten import holds, is_truth
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def truth(predicate: Formula) -> Formula:
 
     ``>`` and ``>=`` differ at equality; a number holds where it is positive.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> truth(parse_formula("x >= 3")), truth(parse_formula("x + 1"))
     (<formula x >= 3>, <formula x + 1 > 0>)
     """
@@ -52,7 +52,7 @@ def with_truths(formula: Formula) -> Formula:
 
     If there is none, the result is the same object.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> chosen = with_truths(parse_formula("(if x >= 3 then x else y) > 0"))
     >>> chosen, chosen.args[0].args[0].op
     (<formula (if x >= 3 then x else y) > 0>, <operator holds_ge>)

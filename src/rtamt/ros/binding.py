@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, shown, with_article
 from rtamt.extras import message_class
 from rtamt.language.formula import types_of, variables
-from rtamt.language.grammar import is_number
+from rtamt.language.parsing.grammar import is_number
 from rtamt.rewrite.check import unbounded_future
 from rtamt.ros.fields import Path, check_path, path_of
 

@@ -7,7 +7,7 @@ from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
-from rtamt.language.units import duration, positive_period
+from rtamt.language.units.durations import duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice, begins_anew, seconds_text
 from rtamt.ros.early_group import Bounds
 from rtamt.ros.fields import reader, stamp_of
@@ -18,7 +18,7 @@ from rtamt.signals.ticks import NANOSECOND
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence
 
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.ros.binding import Binding, Output
     from rtamt.ros.early_group import EarlyStanding
     from rtamt.ros.group import Group, Record

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.errors import UsageError
-from rtamt.language.units import UNITS
+from rtamt.language.units.durations import UNITS
 from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments

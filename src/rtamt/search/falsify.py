@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.search.executor import Enough, Runs
 from rtamt.search.log import Evaluation, Record
 from rtamt.search.optimizers import optimizer as named_optimizer

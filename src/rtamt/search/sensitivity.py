@@ -11,7 +11,7 @@ import numpy as np
 
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.search.executor import Enough, Runs, count
 from rtamt.search.log import Evaluation, Record
 

@@ -3,9 +3,9 @@
 The semantics of predicates are in ``rewrite/semantics.py``.
 """
 
-from rtamt.rtamt_api.options import Language, Semantics, StlComparisonOperator, StlIOType, TimeInterpretation
-from rtamt.rtamt_api.paths import provide
-from rtamt.rtamt_api.trees import (
+from rtamt.compat.options import Language, Semantics, StlComparisonOperator, StlIOType, TimeInterpretation
+from rtamt.compat.paths import provide
+from rtamt.compat.trees import (
     StlDenseTimeOfflineInterpreter,
     StlDenseTimeOnlineInterpreter,
     StlDiscreteTimeOfflineInterpreter,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, shown, with_article
-from rtamt.language.units import UNITS, check_unit, in_seconds
+from rtamt.language.units.durations import UNITS, check_unit, in_seconds
 from rtamt.signals import counting
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.language.units import UNITS
+from rtamt.language.units.durations import UNITS
 from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rtamt.errors import StlError, TraceError, UsageError, shown
-from rtamt.language.units import positive_period
+from rtamt.language.units.durations import positive_period
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.language.formula import Formula
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain_interface import Bounds, Mask

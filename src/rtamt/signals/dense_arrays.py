@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
-from rtamt.language.units import UNITS, decimal, positive_period
+from rtamt.language.units.durations import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import Stamps, check_numbers, columns_of, is_number, plain, stamps, units_of
 from rtamt.signals.coding import NO_TYPES
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.language.formula import Formula
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
     from rtamt.signals.domain_interface import Bounds, Mask
@@ -60,7 +60,7 @@ class Discrete(TimeDomain):
         "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
         "ros_groups": "rtamt.ros.groups:sampled",
-        "members": "rtamt.engine.discrete.members:MemberMonitor",
+        "members": "rtamt.engine.discrete.quantifiers:MemberMonitor",
     }
 
     period: Fraction | None

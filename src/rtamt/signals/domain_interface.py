@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.formula import Formula
-    from rtamt.language.sampling import Sampling
-    from rtamt.language.units import Duration
+    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.units.durations import Duration
     from rtamt.rewrite.check import BoundUnit
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from fractions import Fraction
 
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
 
 _LISTED: dict[str, type[TimeDomain]] = {domain.name: domain for domain in (Discrete, Dense)}
 

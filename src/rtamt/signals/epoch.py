@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
-from rtamt.language.units import decimal
+from rtamt.language.units.durations import decimal
 
 if TYPE_CHECKING:
     from fractions import Fraction

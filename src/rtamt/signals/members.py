@@ -14,8 +14,8 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
-from rtamt.rewrite.members import Members
 from rtamt.rewrite.presence import channel_of
+from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, Clocked, field_of, is_frame, is_mapping, not_a_mapping
 from rtamt.signals.inexact import gaps_of, items_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.language.groups import Group
+    from rtamt.language.quantifiers import Group
     from rtamt.signals.inexact import Mask
 
     #: The fields of the members of a group that formulas read.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices
-from rtamt.language.units import duration, format_duration
+from rtamt.language.units.durations import duration, format_duration
 from rtamt.signals.listing import show_time
 from rtamt.signals.regular import merged
 

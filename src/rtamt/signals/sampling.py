@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.language.sampling import Sampling
+    from rtamt.language.parsing.sampling import Sampling
 
 
 def sampled(

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units import UNITS, check_unit, decimal, format_duration
+from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
 from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
-from rtamt.language.units import UNITS
+from rtamt.language.units.durations import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.language.units import positive_period
+from rtamt.language.units.durations import positive_period
 from rtamt.signals.arrays import TIME, Clocked, stamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing

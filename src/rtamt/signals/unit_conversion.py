@@ -16,7 +16,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.language.unit_library import parsed, registry, same_text
+from rtamt.language.units.library import parsed, registry, same_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray

@@ -1,10 +1,10 @@
 """Provide RTAMT's module paths of its syntax trees.
 
-Formulas are defined in ``language/formula.py``, their syntax in ``language/operators.py`` and ``language/parser.py``.
+Formulas are defined in ``language/formula.py``, their syntax in ``language/operators.py`` and ``language/parsing``.
 """
 
-from rtamt.rtamt_api.paths import provide
-from rtamt.rtamt_api.trees import LtlAst, StlAst
+from rtamt.compat.paths import provide
+from rtamt.compat.trees import LtlAst, StlAst
 
 provide(
     __name__,

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold
 from rtamt.language.operators import Bounds, Fixity, Language, Operator, Tense
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.testing.strategies import formulas
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense
-from rtamt.language.parser import parse_formula
-from rtamt.language.printer import to_text
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.printing.printer import to_text
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon

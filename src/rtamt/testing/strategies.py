@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var
-from rtamt.language.grammar import is_number
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind, rank_arguments
 from rtamt.reference import discrete as reference
 

@@ -9,7 +9,7 @@ from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
-from rtamt.language.printer import excerpt
+from rtamt.language.printing.printer import excerpt
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.early import causeless
 from rtamt.signals.outcomes import Causation

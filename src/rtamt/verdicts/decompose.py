@@ -52,7 +52,7 @@ class Anchored:
 def conjuncts(formula: Formula) -> Iterator[Formula]:
     """Yield the parts of a formula that must all hold, each once.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> list(conjuncts(parse_formula("x and (y or z)")))
     [<formula x>, <formula y or z>]
     """
@@ -71,7 +71,7 @@ def conjuncts(formula: Formula) -> Iterator[Formula]:
 def anchor(formula: Formula) -> Anchored:
     """Take a formula apart at the first instant.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> anchored = anchor(parse_formula("always(x >= 3) and (y >= 1 -> eventually[2:5] z)"))
     >>> print(anchored.skeleton)
     "#0" and ("#1" -> "#2")

@@ -13,7 +13,7 @@ from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
-from rtamt.language.units import check_unit
+from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.desugar import written
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays

@@ -8,7 +8,7 @@ from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.runs import compared, merged

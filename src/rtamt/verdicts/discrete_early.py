@@ -11,7 +11,7 @@ from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import in_use
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.language.units import check_unit
+from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.desugar import written
 from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import missing_variable, unknown_variable

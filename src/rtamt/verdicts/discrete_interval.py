@@ -10,7 +10,7 @@ from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.units import format_duration
+from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular

@@ -139,7 +139,7 @@ def span_of(formula: Formula, step: Fraction) -> int | None:
     None if they may be arbitrarily far apart.
 
     >>> from fractions import Fraction
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> [span_of(parse_formula(t), Fraction(1)) for t in ("once[0:3] always[1:2](x > 0)", "historically(x > 0)")]
     [10, None]
     """

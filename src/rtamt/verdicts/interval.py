@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
-from rtamt.language.units import duration
+from rtamt.language.units.durations import duration
 from rtamt.rewrite.check import unbounded_future
 from rtamt.verdicts.early import EarlyMonitor
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.language.formula import Formula
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Interval
 

@@ -34,7 +34,7 @@ class Outputs(NamedTuple):
 def outputs_of(formula: Formula, applied: Formula | None = None) -> Outputs:
     """Return the outputs of a requirement; ``applied``: the formula with its semantics, if it is not standard.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> print(*outputs_of(parse_formula("x >= 3")), sep=", ")
     x >= 3, x >= 3
     """

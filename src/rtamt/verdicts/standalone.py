@@ -16,9 +16,9 @@ from rtamt.engine.native import core
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
 from rtamt.language.parameters import bounds_of
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
+from rtamt.language.printing.writing import EXCERPT, PAGE
 from rtamt.language.value_types import Enumeration
-from rtamt.language.writing import EXCERPT, PAGE
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
@@ -49,7 +49,7 @@ def carried_program(
     outputs of each of several requirements. ``text``: what errors point at. A
     constant that is also the bound of an interval decides how long windows are, and is no parameter.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.signals.discrete import Discrete
     >>> formula = parse_formula("always[0:2](x >= limit)", constants={"limit": 3})
     >>> program = carried_program(formula, Discrete(period=1))
@@ -100,7 +100,7 @@ def bounds_program(
 
     Arguments as for :func:`carried_program`. The future may be unbounded.
 
-    >>> from rtamt.language.parser import parse_formula
+    >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.signals.discrete import Discrete
     >>> program = bounds_program(parse_formula("always(x >= 3)"), Discrete(period=1))
     >>> program.metadata.outputs, len(program.metadata.early)

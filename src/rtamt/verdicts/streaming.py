@@ -14,7 +14,7 @@ from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import own_variables
-from rtamt.language.units import check_unit
+from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.discrete import Discrete
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
-    from rtamt.language.units import Duration
+    from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics
     from rtamt.signals.arrays import Stamps
     from rtamt.signals.dense import Dense

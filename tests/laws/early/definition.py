@@ -10,7 +10,7 @@ import numpy as np
 
 from rtamt import Interval, Verdict, VerdictRun
 from rtamt.compiler.graph import FOREVER
-from rtamt.language.enclosures import Enclosure
+from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
 from rtamt.reference.dense_bounds import DenseKnowledge

@@ -17,7 +17,7 @@ import numpy as np
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Formula, fold
-from rtamt.language.grammar import is_number
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import SEMANTICS

@@ -9,7 +9,7 @@ from rtamt.compiler.plan import compile_plan, compile_program
 from rtamt.compiler.program import OPCODES, Program
 from rtamt.engine.native import core
 from rtamt.errors import UsageError
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 
 ONE = Fraction(1)

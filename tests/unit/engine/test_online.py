@@ -14,7 +14,7 @@ import pytest
 import rtamt
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, TraceError, UsageError
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 
 TEXT = "asked = req >= 3; granted = eventually[0:2](gnt >= 3); always[0:2](asked -> granted)"
 TIMES = pytest.mark.parametrize("time", ["discrete", "dense"])

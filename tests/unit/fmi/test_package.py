@@ -9,7 +9,7 @@ import pytest
 
 import rtamt
 from rtamt import fmi
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 
 
 @pytest.mark.parametrize(

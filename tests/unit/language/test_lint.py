@@ -7,7 +7,7 @@ from conformance.cases import FILES, read
 
 import rtamt
 from rtamt.language.lint import CODES, RULES, warnings_of
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.specfile import parse_document
 
 
 def found(text):

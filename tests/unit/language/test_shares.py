@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.shares import Share, ShareKind
 
 X = [5, 1, 4, 2, 3]

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.language.printer import number
+from rtamt.language.printing.printer import number
 from rtamt.language.tables import Table, table_operator
 from rtamt.testing import check_operator
 

@@ -8,8 +8,8 @@ import pytest
 
 from rtamt.language.formula import Apply, Const, fold, types_of
 from rtamt.language.operators import STL
-from rtamt.language.parser import parse_formula
-from rtamt.language.specfile import parse_document
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.value_types import BOOLEAN, Enumeration
 
 MODES = "enum Mode { MANUAL, AUTO = 4, RTL, } input Mode mode enum Phase { AUTO, STOP } Phase phase bool p float x "

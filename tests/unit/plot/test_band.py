@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 import rtamt
 from rtamt.errors import EvaluationError, TraceError
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from rtamt.plot.band import band
 from rtamt.rewrite.early import ends_differently
 from rtamt.verdicts.early_check import holds_at_end

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from rtamt.language.enclosures import Enclosure
+from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.reference.discrete_bounds import Knowledge
 
 ONE = Fraction(1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from rtamt import Causation
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.reference.causation import causation
 from tests.unit.reference.knowledge import ONE, known
 

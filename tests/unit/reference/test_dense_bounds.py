@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.reference import dense_bounds
 from rtamt.reference.dense_bounds import DenseKnowledge
 from tests.unit.reference.knowledge import ONE

@@ -9,7 +9,7 @@ import pytest
 
 from rtamt.errors import EvaluationError, SpecificationError
 from rtamt.language.operators import STL
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.reference import discrete_bounds
 from tests.unit.reference.knowledge import ONE, known
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.reference import earliest
 from tests.unit.reference.knowledge import ONE, known
 

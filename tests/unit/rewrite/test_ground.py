@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.ground import ground, grounds
 
 HALF = Fraction(1, 2)

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from rtamt.language.parser import parse_formula
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.pastify import pastify
 
 

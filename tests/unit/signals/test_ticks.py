@@ -172,7 +172,7 @@ def test_dates_beyond_the_reach_of_nanoseconds_with_a_coarser_resolution() -> No
 
 @pytest.mark.parametrize("resolution", ["1us", "1ms", "1/3s", "0.3s", "10s"])
 def test_at_a_chosen_resolution_bounds_that_are_multiples_of_it_are_met_exactly(resolution: str) -> None:
-    tick = TimeScale(Fraction(1), "seconds").tick * rtamt.language.units.duration(resolution)
+    tick = TimeScale(Fraction(1), "seconds").tick * rtamt.language.units.durations.duration(resolution)
     spec = rtamt.parse(f"once[{resolution}:{resolution}] x", resolution=tick, time="dense")
     times = [float(7 * tick), float(8 * tick), float(10 * tick)]
     signal = spec.evaluate({"x": (times, [1.0, 2.0, 3.0])}).signal

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt import Cause
 from rtamt.errors import EvaluationError
-from rtamt.language.printer import to_text
+from rtamt.language.printing.printer import to_text
 from tests.laws.early.cases import case, dense_case
 from tests.laws.early.laws import given as values_of
 

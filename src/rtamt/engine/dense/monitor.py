@@ -15,7 +15,7 @@ from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
-from rtamt.language.units import check_unit
+from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

@@ -12,7 +12,7 @@ from rtamt.engine.time_axis import TimeAxis
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.shares import rank_of
-from rtamt.language.units import decimal
+from rtamt.language.units.durations import decimal
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.structure import NEVER

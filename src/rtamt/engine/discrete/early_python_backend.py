@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.backend import RefusedError
-from rtamt.language.enclosures import Enclosure
+from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.reference.causation import causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 from rtamt.signals.outcomes import Causation

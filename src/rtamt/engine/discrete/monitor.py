@@ -14,7 +14,7 @@ from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.language.units import check_unit
+from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Stamps

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.language.definitions import sum_
+from rtamt.language.definitions.discrete import sum_
 
 #: Numbers whose sums depend on the order of additions.
 X = np.random.default_rng(3).normal(size=700) * 10.0 ** np.random.default_rng(4).integers(-3, 9, size=700)

@@ -1,26 +1,26 @@
 """RTAMT's module path for the dense-time classes of interface-aware STL."""
 
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlInputRobustnessDenseTimeOfflineSpecification as IAStlInputRobustnessDenseTimeOfflineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlInputRobustnessDenseTimeOnlineSpecification as IAStlInputRobustnessDenseTimeOnlineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlInputVacuityDenseTimeOfflineSpecification as IAStlInputVacuityDenseTimeOfflineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlInputVacuityDenseTimeOnlineSpecification as IAStlInputVacuityDenseTimeOnlineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlOutputRobustnessDenseTimeOfflineSpecification as IAStlOutputRobustnessDenseTimeOfflineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlOutputRobustnessDenseTimeOnlineSpecification as IAStlOutputRobustnessDenseTimeOnlineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlOutputVacuityDenseTimeOfflineSpecification as IAStlOutputVacuityDenseTimeOfflineSpecification,
 )
-from rtamt.rtamt_api.interface_aware import (
+from rtamt.compat.interface_aware import (
     IAStlOutputVacuityDenseTimeOnlineSpecification as IAStlOutputVacuityDenseTimeOnlineSpecification,
 )

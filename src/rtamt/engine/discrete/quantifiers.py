@@ -1,0 +1,518 @@
+"""The discrete-time monitor of formulas with quantifiers: one executor for each member that is present.
+
+A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
+state; one that is gone runs on, as absent, until what it had can no longer matter. The outer formula is monitored as
+any other: what the members give together is a column of it.
+"""
+
+from __future__ import annotations
+
+import operator
+from copy import copy
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine.usage_guard import UsageGuard, exclusive
+from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import types_of
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.rewrite.presence import channel_of
+from rtamt.rewrite.quantifier_streams import RUNNING
+from rtamt.signals import arrays, members
+from rtamt.signals.binding import Binding
+from rtamt.signals.data_errors import unknown_variable
+from rtamt.signals.samples import read_values
+from rtamt.signals.signal import Signal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from fractions import Fraction
+
+    from rtamt.engine.online import Watched
+    from rtamt.language.formula import Formula
+    from rtamt.rewrite.quantifier_streams import Quantified
+    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.members import Fields
+
+#: After how many samples the state is remembered, from which a failed update goes back.
+_REMEMBER = 64
+
+#: How quantifiers combine what their members give.
+_COMBINED: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
+    {"forall": min, "exists": max, "count": operator.add}
+)
+
+#: A member's fields at a sample, by name.
+_Sample = dict[str, float]
+
+
+class _Executor(Monitor):
+    """The monitor of a quantifier's formula over one member."""
+
+    #: The index and the time of its first sample, and the member in words.
+    origin: tuple[int, float, str] = (0, 0.0, "")
+
+    def _no_value(self, error: Any) -> Exception:
+        begin, time, who = self.origin
+        index = error.args[1]
+        found = undefined(
+            self._session.culprit(error), at_sample(begin + index, time + index * float(self._period))
+        )
+        return type(found)(f"{who}: {found}")
+
+
+class _Quantifier:
+    """A quantifier: its compiled formula, and the executors of the members at present.
+
+    ``bound``: the members that the variables of the quantifiers around it stand for.
+    """
+
+    def __init__(self, plan: _Plan, bound: Mapping[str, str]) -> None:
+        self.plan = plan
+        self.bound = bound
+        self.running: dict[str, _Running] = {}
+
+    def step(
+        self, present: Mapping[str, Mapping[str, _Sample]], values: _Sample, at: tuple[int, float]
+    ) -> float:
+        """Take a sample; return what the members gave together at the instant one lag ago.
+
+        ``present``: the members of each group that are present, with their fields. ``values``: of all other variables.
+        ``at``: the index and the time of the sample.
+        """
+        plan = self.plan
+        here = present[plan.group]
+        for member in here:
+            if member not in self.running and plan.differs(self.bound, member):
+                self.running[member] = _Running(plan, {**self.bound, plan.variable: member}, at)
+        total = plan.none
+        gone = []
+        for member, running in self.running.items():
+            sample = here.get(member)
+            running.absent = 0 if sample is not None else running.absent + 1
+            if plan.keep is not None and running.absent > plan.keep:
+                gone.append(member)
+                continue
+            given = running.step(present, values, sample, at)
+            if given is not None:
+                total = plan.combined(total, given)
+        for member in gone:
+            del self.running[member]
+        return total
+
+    def state(self) -> Any:
+        """Return the state of all executors."""
+        return {member: running.state() for member, running in self.running.items()}
+
+    def restore(self, state: Any) -> None:
+        """Go back to a state."""
+        self.running = {}
+        for member, each in state.items():
+            self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, (0, 0.0))
+            self.running[member].restore(each)
+
+    def executors(self) -> Iterator[_Executor]:
+        """Yield the executors of all members, also inside."""
+        for running in self.running.values():
+            yield running.executor
+            for inner in running.inside:
+                yield from inner.executors()
+
+
+class _Running:
+    """The executor of one member, and the quantifiers inside."""
+
+    def __init__(self, plan: _Plan, bound: Mapping[str, str], at: tuple[int, float]) -> None:
+        self.plan = plan
+        self.executor = copy(plan.template)
+        who = ", ".join(f"{variable} is {member}" for variable, member in bound.items())
+        self.executor.origin = (*at, who)
+        self.inside = [_Quantifier(inner, bound) for inner in plan.inside]
+        self.absent = 0
+
+    def step(
+        self,
+        present: Mapping[str, Mapping[str, _Sample]],
+        values: _Sample,
+        sample: _Sample | None,
+        at: tuple[int, float],
+    ) -> float | None:
+        plan = self.plan
+        mine = dict(values)
+        mine[plan.channel] = 0.0 if sample is None else 1.0
+        for field, name in plan.fields.items():
+            mine[name] = plan.fillers[field] if sample is None else sample[field]
+        for inner in self.inside:
+            mine[inner.plan.column] = inner.step(present, mine, at)
+        return self.executor.step(*[mine[name] for name in self.executor.input_names])
+
+    def state(self) -> Any:
+        return (
+            self.executor._state(),
+            self.executor.origin,
+            self.absent,
+            [each.state() for each in self.inside],
+        )
+
+    def restore(self, state: Any) -> None:
+        own, self.executor.origin, self.absent, inside = state
+        self.executor._resume(own)
+        for inner, each in zip(self.inside, inside, strict=True):
+            inner.restore(each)
+
+
+class _Plan:
+    """What is fixed of a quantifier."""
+
+    def __init__(
+        self, of: Quantified, domain: Discrete, text: str | None, backend: str, fields: Fields
+    ) -> None:
+        assert domain.period is not None
+        self.variable, self.group = of.binder.variable, of.binder.group.name
+        self.apart = of.binder.apart
+        self.column, self.none = of.column, of.none
+        self.lag = int(of.lag / domain.period)
+        self.keep = None if of.keep is None else int(of.keep / domain.period) + self.lag + 1
+        self.combined: Callable[[float, float], float] = _COMBINED[of.kind]
+        group, names = fields[self.group]
+        self.fields = {name: f"{self.variable}.{name}" for name in names}
+        self.fillers = {name: members.filler(group.values(name)) for name in names}
+        self.channel = channel_of(self.variable)
+        self.template = _Executor(of.formula, domain, text=text, backend=backend)
+        self.inside = [_Plan(each, domain, text, backend, fields) for each in of.inside]
+
+    def differs(self, bound: Mapping[str, str], member: str) -> bool:
+        """Return whether a member is another one than those that the quantifier keeps apart from it."""
+        names = {**bound, self.variable: member}
+        return all(names[one] != names[other] for one, other in self.apart)
+
+
+class _News:
+    """What several samples make known of each formula: of the result (None), and of those that are watched."""
+
+    def __init__(self, names: Sequence[Any]) -> None:
+        self._points: dict[Any, list[tuple[Any, float]]] = {name: [] for name in (None, *names)}
+
+    def note(self, robustness: float | None, outer: Monitor) -> None:
+        """Note what a sample made known."""
+        for (name, points), lag in zip(self._points.items(), outer._lags, strict=True):
+            value = robustness if name is None else outer[name]
+            if value is not None:
+                assert not isinstance(value, Signal)
+                points.append((outer._recent(lag + 1)[0], value))
+
+    def end(self, rest: Signal, outer: Monitor) -> None:
+        """Note what the end of the trace made known."""
+        for name, points in self._points.items():
+            signal = rest if name is None else outer[name]
+            assert isinstance(signal, Signal)
+            points.extend(signal.points())
+
+    def signals(self, last: Any = None) -> dict[Any, Signal]:
+        """Return a signal of each formula, as far as the ``last`` sample."""
+        found = {}
+        for name, points in self._points.items():
+            kept = points if last is None else [point for point in points if point[0] <= last]
+            found[name] = Signal(np.array([time for time, _ in kept]), np.array([value for _, value in kept]))
+        return found
+
+
+class MemberMonitor:
+    """Monitors a formula with quantifiers on a stream of samples in discrete time.
+
+    Built by ``Specification.monitor``. :meth:`update` takes the fields of each member by name,
+    ``**{"car_3.x": 5.0}``, or as an object with those fields, ``car_3=car``. A member that an update leaves out, or
+    whose value is None, is absent there; any other variable must be given.
+
+    >>> import rtamt
+    >>> monitor = rtamt.parse('group cars = "car_*"; forall v in cars: v.x > 3').monitor()
+    >>> [monitor.update(0.0, **{"car_1.x": 5.0}), monitor.update(1.0), monitor.update(2.0, **{"car_2.x": 1.0})]
+    [2.0, inf, -2.0]
+    """
+
+    def __init__(
+        self,
+        formula: Formula,
+        domain: Discrete,
+        quantified: Sequence[Quantified],
+        fields: Fields,
+        *,
+        names: Sequence[str],
+        text: str | None = None,
+        backend: str = "cpp",
+        declared: Collection[str] = (),
+        watch: Sequence[Watched] = (),
+        factory: Callable[..., MemberMonitor] | None = None,
+        types: Any = None,
+    ) -> None:
+        domain = domain.online
+        self._outer = Monitor(formula, domain, text=text, backend=backend, watch=watch)
+        self._plans = [_Plan(each, domain, text, backend, fields) for each in quantified]
+        self._fields = fields
+        self._declared = frozenset(declared)
+        self._factory = factory
+        self._binding = Binding(tuple(names))
+        self._watched = tuple(each.name for each in watch)
+        self._types = {**types_of(formula), **(types or {})}
+        self._late = max((plan.lag for plan in self._plans), default=0)
+        #: The variables beside the fields of members.
+        self.input_names: tuple[str, ...] = tuple(names)
+        self._usage = UsageGuard()
+        self._begin()
+
+    def _begin(self) -> None:
+        self._quantifiers = [_Quantifier(plan, {}) for plan in self._plans]
+        self._finished = False
+        #: What the last chunk made known of each formula; of a sample, the outer monitor has it.
+        self._news: dict[Any, Signal] = {}
+        self._remember()
+
+    # ---- facts -----------------------------------------------------------------------------------
+
+    @property
+    def horizon(self) -> float:
+        """Seconds after t at which ρ at t is known."""
+        return self._outer.horizon
+
+    @property
+    def period(self) -> Fraction:
+        """The sampling period in seconds."""
+        return self._outer.period
+
+    @property
+    def samples(self) -> int:
+        """The number of samples since the start or the last reset."""
+        return self._outer.samples
+
+    @property
+    def memory(self) -> int:
+        """The size of the state in bytes: the contents of the windows, of all members."""
+        return self._outer.memory + sum(
+            executor.memory for each in self._quantifiers for executor in each.executors()
+        )
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The monitored members, including absent ones that can still affect the result."""
+        return tuple(dict.fromkeys(member for each in self._quantifiers for member in each.running))
+
+    def bind(self, binding: Binding) -> None:
+        """Find variables in chunks of recordings as a specification does."""
+        self._binding = binding
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    @exclusive
+    def update(self, time: float, /, **values: Any) -> float | None:
+        """Take one sample: ``time`` in seconds, a number for every variable, and the members that are present.
+
+        Returns ρ at ``time - horizon``; None until the horizon has passed. Raises :class:`TraceError` for wrong
+        data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
+        """
+        numbers, present = self._read(values, time)
+        robustness = self._take(time, numbers, present)
+        self._news = {}
+        return robustness
+
+    @exclusive
+    def update_many(self, data: Any) -> Signal:
+        """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"`` if it has timestamps.
+
+        Returns the new values as a Signal. Raises the errors of :meth:`update`.
+        """
+        data = self._binding.applied(data)
+        made = members.chunk(data, self._fields)
+        names = [*self.input_names, *made.columns]
+        stamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
+        if n == 0:
+            return Signal(np.empty(0), np.empty(0))
+        times = np.array(self._next_time() + float(self.period) * np.arange(n), np.float64)
+        times = times if stamps is None else stamps.seconds
+        for name, column in columns.items():
+            arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
+        before = self._state()
+        known = _News(self._watched)
+        try:
+            for i in range(n):
+                numbers = {name: float(columns[name][i]) for name in self.input_names}
+                known.note(self._take(float(times[i]), numbers, made.present(columns, i)), self._outer)
+        except Exception:
+            self._restore(before)
+            raise
+        self._news = known.signals()
+        return self._news[None]
+
+    @exclusive
+    def finish(self) -> Signal:
+        """End the trace and return the values that were still unknown."""
+        if self._finished:
+            return Signal(np.empty(0), np.empty(0))
+        samples = self.samples
+        numbers = dict.fromkeys(self.input_names, 1.0)
+        known = _News(self._watched)
+        nobody: dict[str, dict[str, _Sample]] = {name: {} for name in self._fields}
+        for _ in range(self._late if samples else 0):
+            known.note(self._advance(self._next_time(), numbers, nobody, running=0.0), self._outer)
+        last = self._outer._recent(self._late + 1)[0] if samples else None
+        known.end(self._outer.finish(), self._outer)
+        self._finished = True
+        self._news = known.signals(last)
+        return self._news[None]
+
+    def _read(self, values: Mapping[str, Any], time: Any) -> tuple[_Sample, dict[str, dict[str, _Sample]]]:
+        """Return the numbers of an update, and the members that are present."""
+        own: dict[str, Any] = {}
+        given: dict[str, dict[str, Any]] = {}
+        heads = {name.split(".")[0] for name in self.input_names}
+        for name, value in values.items():
+            if name in self.input_names or name in heads:
+                own[name] = value
+            elif not self._note_member(name, value, given) and name not in self._declared:
+                patterns = [group.pattern for group, _ in self._fields.values()]
+                raise unknown_variable(name, [*self.input_names, *patterns])
+        for name in self.input_names:
+            head, *path = name.split(".")
+            if path and name not in own and head in own:
+                own[name] = arrays.field_of(own[head], head, path, self.samples)
+        own = {name: value for name, value in own.items() if name in self.input_names}
+        seconds = arrays.number_of(time)
+        stamp = self._next_time() if seconds is None else seconds
+        numbers = read_values(own, self.input_names, self.samples, stamp, self._types)
+        present = {}
+        for name, (group, fields) in self._fields.items():
+            present[name] = {
+                member: self._sample(member, sample, group, fields, stamp)
+                for member, sample in given.items()
+                if group.matches(member) and all(sample.get(field, 0.0) is not None for field in fields)
+            }
+        return numbers, present
+
+    def _note_member(self, name: str, value: Any, given: dict[str, dict[str, Any]]) -> bool:
+        """Note a value of a member; return whether the name is that of one."""
+        found = False
+        for group, fields in self._fields.values():
+            if group.matches(name):
+                found = True
+                if value is not None:
+                    sample = given.setdefault(name, {})
+                    sample |= {f: arrays.field_of(value, name, f.split("."), self.samples) for f in fields}
+            elif (parts := group.member(name)) is not None:
+                found = True
+                given.setdefault(parts[0], {})[parts[1]] = value
+        return found
+
+    def _sample(
+        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
+    ) -> _Sample:
+        """Return the fields of a member as numbers."""
+        for field in fields:
+            if field not in sample:
+                raise TraceError(
+                    f"'{member}' has no '{field}' at sample {self.samples}; give '{member}.{field}', or leave "
+                    f"out all fields of a member that is absent",
+                    variable=f"{member}.{field}",
+                    index=self.samples,
+                )
+        names = {field: f"{member}.{field}" for field in fields}
+        types = {names[field]: group.values(field) for field in fields if group.values(field) is not None}
+        numbers = read_values(
+            {name: sample[field] for field, name in names.items()},
+            tuple(names.values()),
+            self.samples,
+            stamp,
+            types,
+        )
+        return {field: numbers[name] for field, name in names.items()}
+
+    def _take(self, time: Any, numbers: _Sample, present: dict[str, dict[str, _Sample]]) -> float | None:
+        """Take a sample that was read; if it fails, nothing has changed."""
+        if self._finished:
+            raise UsageError("the monitor has finished its trace; call reset() before the next sample")
+        try:
+            robustness = self._advance(time, numbers, present)
+        except Exception:
+            self._go_back()
+            raise
+        self._since.append((time, numbers, present))
+        if len(self._since) >= _REMEMBER:
+            self._remember()
+        return robustness
+
+    def _advance(
+        self, time: Any, numbers: _Sample, present: dict[str, dict[str, _Sample]], running: float = 1.0
+    ) -> float | None:
+        values = {**numbers, RUNNING: running}
+        seconds = arrays.number_of(time)
+        at = self.samples, self._next_time() if seconds is None else seconds
+        for each in self._quantifiers:
+            values[each.plan.column] = each.step(present, numbers, at)
+        outer = self._outer
+        return outer.update(time, **{name: values[name] for name in outer.input_names})
+
+    def _next_time(self) -> float:
+        return self._outer._next_time()
+
+    def __getitem__(self, name: str | Formula) -> float | Signal | None:
+        """Return what the last update made known of a formula that is watched; see ``Monitor``."""
+        return self._news[name] if name in self._news else self._outer[name]
+
+    @exclusive
+    def reset(self, /, **parameters: float) -> None:
+        """Forget the trace; the next sample is the first. ``parameters``: their values from now on."""
+        if parameters:
+            if self._factory is None:
+                raise UsageError("only a monitor that Specification.monitor() has made has parameters")
+            fresh = self._factory(parameters)
+            self._outer, self._plans = fresh._outer, fresh._plans
+        self._outer.reset()
+        self._begin()
+
+    # ---- states ----------------------------------------------------------------------------------
+
+    def _state(self) -> Any:
+        return self._outer._state(), [each.state() for each in self._quantifiers], self._finished
+
+    def _restore(self, state: Any) -> None:
+        outer, quantifiers, self._finished = state
+        self._outer._resume(outer)
+        for each, own in zip(self._quantifiers, quantifiers, strict=True):
+            each.restore(own)
+        self._remember()
+
+    def _remember(self) -> None:
+        self._before = self._state()
+        self._since: list[tuple[Any, _Sample, dict[str, dict[str, _Sample]]]] = []
+
+    def _go_back(self) -> None:
+        """Return to the state before a sample that failed."""
+        since = self._since
+        self._restore(self._before)
+        for time, numbers, present in since:
+            self._advance(time, numbers, present)
+        self._since = since
+
+    def __copy__(self) -> MemberMonitor:
+        twin = type(self).__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        twin._usage = UsageGuard()
+        twin._outer = copy(self._outer)
+        twin._quantifiers = [_Quantifier(plan, {}) for plan in self._plans]
+        twin._restore(self._state())
+        return twin
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> MemberMonitor:
+        return self.__copy__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._factory is None:
+            raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
+        return _resumed, (self._factory, self._state())
+
+
+def _resumed(factory: Callable[[], MemberMonitor], state: Any) -> MemberMonitor:
+    monitor = factory()
+    monitor._restore(state)
+    return monitor

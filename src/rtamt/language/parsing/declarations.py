@@ -1,0 +1,399 @@
+"""Parse the part of a specification file before its formulas: header, declarations, annotations."""
+
+from __future__ import annotations
+
+from math import inf
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from rtamt.errors import NameInFormulaError, choices, did_you_mean
+from rtamt.language.document import Declaration
+from rtamt.language.enumerations import begins_enumeration, parse_enumeration
+from rtamt.language.formula import Span
+from rtamt.language.operators import Fixity
+from rtamt.language.parsing.grammar import INFINITY
+from rtamt.language.parsing.import_parser import ImportParser
+from rtamt.language.parsing.lexer import Token, quoted
+from rtamt.language.parsing.scope import Scope
+from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier
+from rtamt.language.tables import begins_table, parse_table
+from rtamt.language.value_types import BOOLEAN, Enumeration
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rtamt.language.value_types import ValueType
+
+#: The types that need no import.
+TYPES = ("float", "int", "long", "complex", "bool")
+
+#: The types of parameters, besides enumerations.
+_SET_LATER = ("float", "int", "long", "bool")
+
+_Kind = Literal["var", "const", "parameter"]
+
+#: The words of declarations that give a value, and what errors call the kinds of declarations.
+_KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
+_CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
+
+_ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
+
+
+class DeclarationParser(ImportParser):
+    """The grammar productions of declarations, in addition to those of imports."""
+
+    def _header(self) -> str | None:
+        """``header = "specification" , word``."""
+        if not (self._word("specification") and self._plain_name(1)):
+            return None
+        self.next()
+        name = self.next().text
+        self.accept(";")
+        return name
+
+    def _enumeration(self) -> bool:
+        """Take the declaration of an enumeration, if there is one here."""
+        if not begins_enumeration(self):
+            return False
+        known = parse_enumeration(self, (*TYPES, *self._imports, *self._enumerations))
+        self._enumerations[known.name] = known
+        return True
+
+    def _table(self) -> bool:
+        """Take the declaration of a table, if there is one here."""
+        if not begins_table(self):
+            return False
+        token = self._at(1)
+        table = parse_table(self)
+        if table.name in (*self._declarations, *self._given, *self._taken_names()):
+            raise self.error(f"'{table.name}' is declared twice{self._from(table.name)}", token.span)
+        self._tables[table.name] = table
+        return True
+
+    def _group(self) -> bool:
+        """Take the declaration of a group of signals, if there is one here; see ``groups.py``."""
+        if not begins_group(self) or "group" in self._imports:
+            return False
+        role = _ROLES.get(self.token.text)
+        if role:
+            self.next()
+        self.next()
+        name = self.next()
+        if "." in name.text:
+            raise self.error(f"the name of a group is one word, and '{name.text}' has a dot", name.span)
+        if name.text in (*self._declarations, *self._given, *self._taken_names()):
+            raise self.error(f"'{name.text}' is declared twice{self._from(name.text)}", name.span)
+        self.next()
+        pattern = self.next()
+        if pattern.name.count("*") != 1 or not pattern.name.isprintable():
+            raise self.error(
+                f"the pattern of a group has one star, which stands for what tells its members apart, such as "
+                f'"{name.text}_*"; got {pattern}',
+                pattern.span,
+            )
+        fields = self._fields(name.text) if self.token.text == "{" else ()
+        self.accept(";")
+        span = Span(name.start, pattern.end)
+        self._groups[name.text] = Group(name.text, pattern.name, fields, role, span)
+        return True
+
+    def _fields(self, group: str) -> tuple[Field, ...]:
+        """``"{" , { type , field , [ "[" , unit , "]" ] , [ ";" ] } , "}"``."""
+        opening = self.next()
+        found: dict[str, Field] = {}
+        while not self.accept("}"):
+            type_name = self.next()
+            if type_name.kind == "end":
+                raise self.error("this '{' is never closed", opening.span)
+            if type_name.text not in TYPES and type_name.text not in self._enumerations:
+                types = (*TYPES, *self._enumerations)
+                raise self.error(
+                    f"expected the type of a field of '{group}', got {type_name}"
+                    f"{choices(type_name.text, types, 'types')}",
+                    type_name.span,
+                )
+            token = self._taken(f"the name of a field of '{group}'", quotes=True)
+            if token.name in found:
+                raise self.error(f"'{group}' has two fields called '{token.name}'", token.span)
+            unit = self._unit(token)
+            found[token.name] = Field(token.name, type_name.text, self._type(type_name.text), unit)
+            self.accept(";")
+        if not found:
+            raise self.error(
+                f"the braces of '{group}' are empty; declare its fields, such as {{ float x [m] }}, or leave "
+                f"them out: its fields are then those that formulas read",
+                opening.span,
+            )
+        return tuple(found.values())
+
+    def _taken_names(self) -> set[str]:
+        """Return the names of what a text declares or defines, apart from variables."""
+        return {*self._constants, *self._tables, *self._definitions, *self._templates, *self._groups}
+
+    def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
+        """Return what names mean by now."""
+        return Scope(
+            self._constants,
+            self._definitions,
+            variables,
+            pending or {},
+            self._templates,
+            parameters=self._parameters,
+            types=self._types,
+            enumerations=self._enumerations,
+            tables=self._tables,
+            groups=self._groups,
+        )
+
+    def _declaration(self) -> bool:
+        """``declaration = ( [ "optional" ] , [ role ] , type , name | kind , type , name , "=" , value ) , ...``."""
+        if not self._declares():
+            return False
+        optional = self._is_optional()
+        if optional:
+            self.next()
+            if self.token.text in _KINDS:
+                raise self.error(
+                    f"only variables are optional: a {_CALLED[_KINDS[self.token.text]]} is not recorded",
+                    self.tokens[self.index - 1].span,
+                )
+        kind: _Kind = "var"
+        role = None
+        if self._plain_type(1) and self.token.text not in self._imports:
+            kind = _KINDS.get(self.token.text, "var")
+            role = _ROLES.get(self.token.text)
+        if kind != "var" or role:
+            self.next()
+        type_name = self.next()
+        if not self._is_type(type_name):
+            types = (*TYPES, *self._enumerations, *self._imports)
+            hint = did_you_mean(type_name.text, types)
+            raise self.error(
+                f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(types[:20])}"
+                f"{'' if hint else ', and classes that are imported'}",
+                type_name.span,
+            )
+        if kind == "parameter" and type_name.text not in (*_SET_LATER, *self._enumerations):
+            raise self.error(
+                f"a parameter is a number, a Boolean or a member of an enumeration, not '{type_name.text}'; "
+                f"choose from {', '.join((*_SET_LATER, *self._enumerations))}",
+                type_name.span,
+            )
+        name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)
+        name = self._with_slashes(name)
+        self._declare(name, type_name.text, role, kind, optional)
+        self.accept(";")
+        return True
+
+    def _declare(
+        self,
+        token: Token,
+        type_name: str,
+        role: Literal["input", "output"] | None,
+        kind: _Kind,
+        optional: bool,
+    ) -> None:
+        name, constant = token.name, kind != "var"
+        self._check_nameable(token)
+        head = name.split(".", 1)[0]
+        type_ = self._type(type_name)
+        message = head in self._declarations and self._declarations[head].type in self._imports
+        if head != name and head in self._declarations and not (message and type_ is not None):
+            raise self.error(f"'{name}' is a field of '{head}', which is declared", token.span)
+        taken = any(name in e for e in (self._declarations, self._constants, self._tables, self._groups))
+        if taken or (constant and name in self._given):
+            raise self.error(f"'{name}' is declared twice{self._from(name)}", token.span)
+        value: float | None = None
+        columns: tuple[str, ...] = ()
+        unit = "" if constant else self._unit(token)
+        if not constant and self.accept("="):
+            columns = self._columns(name, type_name)
+        elif self.accept("="):
+            value = self._value(type_)
+            self._constants[name] = value
+            if kind == "parameter":
+                self._constants[name] = self._values.get(name, value)
+                self._parameters.add(name)
+        elif constant:
+            raise self.error(
+                f"the {_CALLED[kind]} '{name}' has no value; write {kind} {type_name} {name} = ...",
+                token.span,
+            )
+        if type_ is not None:
+            self._types[name] = type_
+        unit = unit or self._unit(token)
+        self._declarations[name] = Declaration(
+            name, type_name, kind, role, value, unit, columns, optional, token.span
+        )
+
+    def _columns(self, name: str, type_name: str) -> tuple[str, ...]:
+        """``column , { "or" , column }``: the recorded names of a variable, of a message its topic."""
+        found = [self._column(name)]
+        while self.token.text == "or" and self._at(1).kind == "quoted":
+            token = self.next()
+            if type_name in self._imports:
+                raise self.error(f"'{name}' is a message, which has one topic", token.span)
+            span = self.token.span
+            column = self._column(name)
+            if column in found:
+                raise self.error(f"the recorded name '{column}' is given twice", span)
+            found.append(column)
+        if type_name not in self._imports:
+            return tuple(found)
+        (self._topics[name],) = found
+        return ()
+
+    def _column(self, name: str) -> str:
+        """``'"' , characters , '"'``: a recorded name."""
+        token = self.token
+        if token.kind != "quoted":
+            raise self.error(
+                f"a variable has no value of its own; define it after the declarations: {name} = ..., "
+                f'or give its recorded name in quotes: {name} = "..."',
+                self.tokens[self.index - 1].span,
+            )
+        self.next()
+        if not token.name.strip() or not token.name.isprintable():
+            raise self.error("a recorded name is one line of visible characters", token.span)
+        if self.token.text == "[":
+            raise self.error(
+                f"the unit stands before the recorded name: {name} [...] = {token.text}", self.token.span
+            )
+        return token.name
+
+    def _unit(self, name: Token) -> str:
+        """``[ "[" , unit , "]" ]``: the unit of what is called ``name``, "" where none is written."""
+        opening = self.token
+        if opening.text != "[":
+            return ""
+        start = self.next().end
+        while self.token.text not in ("]", "", '"', "/*"):
+            self.next()
+        unit = self.text[start : self.token.start].strip()
+        if unit.isdigit() and opening.start == name.end:
+            whole = f"{name.name}[{unit}]"
+            raise self.error(
+                f"'{unit}' is not a unit; a name with brackets is written in quotes: {quoted(whole)}",
+                Span(name.start, self.token.end),
+            )
+        if not unit or not self.accept("]"):
+            raise self.error(f"expected a unit and ']' after '{name.name} [', such as [m/s]", opening.span)
+        return unit
+
+    def _type(self, name: str) -> ValueType | None:
+        """Return the type that is called so; None for numbers."""
+        if name == BOOLEAN.name and self._truths:
+            return BOOLEAN
+        return self._enumerations.get(name)
+
+    def _value(self, type_: ValueType | None) -> float:
+        """``value = [ "-" ] , number | "-inf" | "inf" | member | "true" | "false"``."""
+        token = self.token
+        if isinstance(type_, Enumeration):
+            code = type_.code(token.name.removeprefix(f"{type_.name}."))
+            if code is None:
+                raise self.error(type_.lacks(token.name), token.span, NameInFormulaError)
+            self.next()
+            return float(code)
+        if type_ is not None and token.text in ("true", "false"):
+            return float(self.next().text == "true")
+        number = self._number()
+        if type_ is not None and number not in (0.0, 1.0):
+            raise self.error(f"a bool is true or false (1 or 0), got {token}", token.span)
+        return number
+
+    def _number(self) -> float:
+        minus = self.accept("-")
+        if self.token.kind == "number":
+            value = self.number().value
+        elif self.accept(INFINITY):
+            value = inf
+        else:
+            raise self._expected("a number")
+        return -value if minus else value
+
+    def _annotation(self) -> bool:
+        """``annotation = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]``."""
+        if not self.accept("@"):
+            return False
+        kind = self.next()
+        if kind.text != "topic":
+            raise self.error(f"expected 'topic' after '@', got {kind}", kind.span)
+        if not self.accept("("):
+            raise self._expected("'(' after '@ topic'")
+        token = self._taken("the name of a variable", quotes=True)
+        name = token.name
+        declared = self._declarations.get(name)
+        if name not in self._given and (declared is None or declared.kind != "var"):
+            known = [*self._given, *(d.name for d in self._declarations.values() if d.kind == "var")]
+            hint = did_you_mean(name, known) or "; declare it before its topic"
+            raise self.error(f"'{name}' is not a declared variable{hint}", token.span, NameInFormulaError)
+        if name in self._topics:
+            raise self.error(f"'{name}' has two topics", token.span)
+        if not self.accept(","):
+            raise self._expected(f"',' after '{name}'")
+        self._topics[name] = self._topic()
+        if not self.accept(")"):
+            raise self._expected("')' after the topic")
+        self.accept(";")
+        return True
+
+    def _topic(self) -> str:
+        """``topic``: characters without spaces, up to the parenthesis."""
+        first = self.token
+        end = first.start
+        while self.token.text not in (")", "") and self.token.start == end:
+            end = self.next().end
+        if end == first.start:
+            raise self._expected("the name of a topic")
+        return self.text[first.start : end]
+
+    # ---- looking ahead ---------------------------------------------------------------------------
+
+    def _is_type(self, token: Token) -> bool:
+        return token.text in TYPES or token.text in self._imports or token.text in self._enumerations
+
+    def _plain_type(self, ahead: int) -> bool:
+        """Return whether a type and a name follow at this offset; the name may be ``S``, the type may not."""
+        typed = self._is_type(self._at(ahead)) or self._plain_name(ahead)
+        return typed and self._at(ahead).kind == "name" and self._at(ahead + 1).kind in ("name", "quoted")
+
+    def _declares(self) -> bool:
+        """Return whether a declaration begins here, of a known or unknown type."""
+        first = self.token
+        if first.kind != "name" or self._requires() or self._imports_file() or begins_quantifier(self):
+            return False
+        if self._is_optional() or ((first.text in _ROLES or first.text in _KINDS) and self._plain_type(1)):
+            return True
+        if self._is_type(first):
+            return self._at(1).kind in ("name", "quoted")
+        # Two names in a row are a declaration of unknown type if no formula could continue after them.
+        if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):
+            return False
+        third = self._at(2)
+        return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
+
+    def _is_optional(self) -> bool:
+        """Return whether the declaration of a variable that recordings may lack begins here."""
+        if not self._word("optional") or "optional" in self._imports or "optional" in self._enumerations:
+            return False
+        role = self._at(1).text in (*_ROLES, *_KINDS) and self._plain_type(2)
+        return role or (self._is_type(self._at(1)) and self._plain_type(1))
+
+    def _with_slashes(self, token: Token) -> Token:
+        """Consume a slash and a name that directly follow a name: ``robot/speed`` is one name."""
+        while token.kind == "name" and self.token.text == "/" and self._at(1).kind == "name":
+            slash, tail = self.token, self._at(1)
+            if slash.start != token.end or tail.start != slash.end:
+                break
+            self.next()
+            self.next()
+            token = Token("name", f"{token.text}/{tail.text}", token.start, tail.end)
+        return token
+
+    # ---- names -----------------------------------------------------------------------------------
+
+    def _check_nameable(self, token: Token) -> None:
+        op = self.language.opening(token.text)
+        if op is not None and op.fixity is Fixity.ATOM:
+            raise self.error(f"'{token.text}' is a word of the language and cannot be a name", token.span)

@@ -1,0 +1,140 @@
+"""Parse the imports of a specification file: classes of messages, and the declarations of other files."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+from rtamt.errors import SpecificationError, placed
+from rtamt.language.document import Declaration, Import
+from rtamt.language.formula import Span
+from rtamt.language.parsing.imports import ImportedFileError, Library, called, moved
+from rtamt.language.parsing.requirements import RequirementParser
+from rtamt.language.parsing.scope import Scope
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.document import Document
+    from rtamt.language.operators import Language
+    from rtamt.language.parsing.lexer import Token
+    from rtamt.language.parsing.templates import Template
+    from rtamt.language.quantifiers import Group
+    from rtamt.language.records import Operator
+    from rtamt.language.value_types import Enumeration, ValueType
+
+
+class ImportParser(RequirementParser):
+    """The grammar productions of imports, in addition to those of a requirement, and the declarations so far."""
+
+    def __init__(
+        self,
+        text: str,
+        language: Language,
+        unit: str,
+        scope: Scope,
+        values: Mapping[str, float],
+        library: Library,
+        truths: bool,
+    ) -> None:
+        super().__init__(text, language, unit, scope)
+        self._truths = truths
+        self._enumerations: dict[str, Enumeration] = dict(scope.enumerations)
+        self._types: dict[str, ValueType] = dict(scope.types)
+        self.library = library
+        #: From each name that is imported to the file that defines it.
+        self.origins: dict[str, str] = {}
+        #: The values of parameters that are given.
+        self._values = values
+        #: The names of the declared parameters.
+        self._parameters: set[str] = set()
+        self._constants = dict(scope.constants)
+        self._given = tuple(scope.variables or ())
+        self._declarations: dict[str, Declaration] = {}
+        self._topics: dict[str, str] = {}
+        self._templates: dict[str, Template] = {}
+        self._tables: dict[str, Operator] = {}
+        self._groups: dict[str, Group] = dict(scope.groups)
+
+    @abstractmethod
+    def document(self, *, imported: bool = False) -> Document:
+        """Parse the whole text; one that is imported needs no formula."""
+
+    def _import(self) -> bool:
+        """``import = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]``."""
+        if self._imports_file():
+            start = self.next().start
+            token = self.next()
+            self._import_file(token, Span(start, token.end))
+            self.accept(";")
+            return True
+        if not (self._word("from") and self._plain_name(1)):
+            return False
+        self.next()
+        module = self.next()
+        if not self.accept("import"):
+            raise self._expected(f"'import' after 'from {module.text}'")
+        name = self._taken("the name of a class")
+        if name.text in self._imports:
+            raise self.error(f"'{name.text}' is imported twice", name.span)
+        self._imports[name.text] = Import(module.text, name.text)
+        self.accept(";")
+        return True
+
+    def _imports_file(self) -> bool:
+        return self._word("import") and self._at(1).kind == "quoted" and "import" not in self._imports
+
+    def _import_file(self, token: Token, span: Span) -> None:
+        """Take over what a file declares and defines, but for its requirements."""
+        library = self.library
+        try:
+            file, text = library.read(token.name)
+        except ImportedFileError as error:
+            raise self.error(str(error), token.span) from None
+        if file not in library.documents:
+            library.open.append(file)
+            other = type(self)(text, self.language, self.unit, Scope(), self._values, library, self._truths)
+            try:
+                document = other.document(imported=True)
+            except SpecificationError as error:
+                raise error if error.text is not text else placed(error, called(file)) from None
+            library.open.pop()
+            names = (
+                *document.constants,
+                *document.definitions,
+                *document.templates,
+                *document.variables,
+                *document.enumerations,
+                *document.tables,
+                *document.groups,
+            )
+            library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
+        document, origins = library.documents[file]
+        for name, origin in origins.items():
+            known = self.origins.setdefault(name, origin)
+            if known != origin:
+                raise self.error(
+                    f"'{name}' is in '{called(known)}' and in '{called(origin)}'; rename one of them", span
+                )
+        definitions, templates = moved(document, span)
+        self._constants.update(document.constants)
+        self._parameters.update(document.parameters)
+        self._declarations.update({each.name: each for each in document.declarations})
+        self._definitions.update(definitions)
+        self._templates.update(templates)
+        self._enumerations.update(document.enumerations)
+        self._tables.update(document.tables)
+        self._groups.update(document.groups)
+        self._types.update(document.types)
+        self._topics.update(document.topics)
+        self._imports.update({each.name: each for each in document.imports})
+
+    def _from(self, name: str) -> str:
+        """Return where a name comes from, for messages: "" if it is of this text."""
+        return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
+
+    def _taken(self, what: str, *, quotes: bool = False) -> Token:
+        """Consume a name, or raise an error."""
+        if self.token.kind != "name" and not (quotes and self.token.kind == "quoted"):
+            raise self._expected(what)
+        return self.next()

@@ -1,0 +1,412 @@
+"""Tokens to a formula: recursive descent, with binding powers from the operator table.
+
+::
+
+    expression = operand , { infix operator , [ interval ] , expression | "in" , set }
+    set        = "{" , expression , { "," , expression } , "}"
+    operand    = number | name | atom | group | call | prefix | choice | use of a template | quantifier, see groups.py
+    group      = "(" , expression , ")"
+    call       = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"
+    share      = number , [ "/" , number ] , [ "%" | unit ]
+    prefix     = prefix operator , [ interval ] , expression
+    choice     = "if" , expression , "then" , expression , "else" , expression
+    interval   = ( "[" | "(" ) , bound , [ ( ":" | "," ) , bound ] , ( "]" | ")" )
+    bound      = ( number , [ "/" , number ] | constant ) , [ unit ] | "inf"
+    name       = word , { "." , word } | topic | '"' , characters , '"'
+
+Words such as ``always``, ``G`` or ``min`` are operators only where an operator can stand: a prefix
+operator needs something after it that begins an operand or an interval, a function needs ``(``,
+and an infix operator stands after an operand. ``if`` is one where a variable could not stand, unless it is
+declared; what follows ``else`` extends as far as arithmetic does. Comparisons in one direction chain: ``1 <= x < 3``
+is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` is a name where no ``{`` follows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from math import inf, isinf
+from typing import TYPE_CHECKING
+
+from rtamt.errors import NameInFormulaError, did_you_mean
+from rtamt.language.formula import Apply, Const, Formula, Span
+from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort, Tense
+from rtamt.language.parsing import diagnostics
+from rtamt.language.parsing.grammar import (
+    ELSE,
+    INFINITY,
+    MAX_DEPTH,
+    THEN,
+    chains,
+    is_number,
+    is_predicate,
+    passes_on,
+)
+from rtamt.language.parsing.intervals import parse_interval
+from rtamt.language.parsing.scope import Scope
+from rtamt.language.parsing.templates import Template, parse_use
+from rtamt.language.parsing.typed_parser import TypedParser
+from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
+from rtamt.language.shares import parse_share
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rtamt.errors import SpecificationError
+    from rtamt.language.parsing.lexer import Token
+    from rtamt.language.quantifiers import Group
+    from rtamt.language.value_types import Enumeration, ValueType
+
+
+class FormulaParser(TypedParser):
+    """One method for each production of the grammar, in addition to those of names."""
+
+    # ---- productions ---------------------------------------------------------------------------
+
+    #: The word of a choice that ends the operand here, which is no operand itself.
+    _awaited: str | None = None
+
+    def formula(self) -> Formula:
+        """Parse a top-level expression, whatever the depth of the caller's stack."""
+        self._depth, self._awaited = 0, None
+        try:
+            return self.expression()
+        except RecursionError:
+            raise self._too_deep() from None
+
+    def expression(self, power: int = 0, under: Operator | None = None) -> Formula:
+        """``expression = operand , { infix operator , [ interval ] , expression }``.
+
+        Operators that bind more weakly than ``power`` are left to the caller; ``under`` is the
+        operator whose operand this is.
+        """
+        if self._depth >= MAX_DEPTH:
+            raise self._too_deep()
+        self._depth += 1
+        start = self.tokens[self.index].start
+        left = self.operand(power, under)
+        last: tuple[Operator, Formula, Span] | None = None
+        while True:
+            token = self.tokens[self.index]
+            op = self.language.infix(token.text)
+            if op is None and token.text == "in" and self._begins_set(power):
+                left = self.membership(left, Span(start, self.tokens[self.index - 1].end))
+                last = None
+                continue
+            if op is None or op.power < power:
+                break
+            left_place = Span(start, self.tokens[self.index - 1].end)
+            self.index += 1
+            timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
+            interval = parse_interval(self, op, token) if timed else None
+            right_start = self.tokens[self.index].start
+            right = self.compared(op, left) if self.scope.enumerations else self._right(op)
+            end = self.tokens[self.index - 1].end
+            place = Span(right_start, end)
+            if last is not None and is_predicate(op) and is_predicate(last[0]):
+                _, middle, span = last
+                both = self.language.get("and")
+                if both is None or not chains(last[0], op):
+                    whole, link = Span(start, end), Span(token.start, token.end)
+                    raise self.error(diagnostics.no_chain(self.text, whole, span, link), whole)
+                comparison = self.apply(op, (middle, right), (span, place))
+                left = Apply(both, (left, comparison), None, Span(start, end))
+            else:
+                left = self.apply(op, (left, right), (left_place, place), interval)
+            last = (op, right, place)
+        self._depth -= 1
+        return left
+
+    def _right(self, op: Operator) -> Formula:
+        """Parse the right operand of an infix operator."""
+        return self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
+
+    def operand(self, power: int, under: Operator | None) -> Formula:
+        """``operand = number | name | atom | group | call | prefix | choice``."""
+        token = self.tokens[self.index]
+        if token.kind == "number":
+            return self.number()
+        if token.text in QUANTIFIERS and begins_quantifier(self):
+            return parse_quantifier(self)
+        op = self.language.opening(token.text)
+        if op is not None:
+            if op.fixity is Fixity.PREFIX and (token.kind != "name" or self._applies(self.index)):
+                return self.prefix(op, power, under)
+            if op.fixity is Fixity.FUNCTION and self.tokens[self.index + 1].text in ("(", "["):
+                return self.call(op)
+            if op.fixity is Fixity.ATOM:
+                self.index += 1
+                return Apply(op, (), None, token.span)
+            if op.fixity is Fixity.CONDITIONAL and self._begins_choice(self.index):
+                return self.choice(op, power, under)
+        table = self.scope.tables.get(token.name) if token.kind in ("name", "quoted") else None
+        if table is not None and self.tokens[self.index + 1].text in ("(", "["):
+            return self.call(table)
+        if token.kind == "name" and self.tokens[self.index + 1].text == "(":
+            template = self.scope.templates.get(token.text)
+            if template is not None:
+                return parse_use(self, template)
+            hint = did_you_mean(token.text, (*self.scope.templates, *self.scope.tables))
+            if hint or token.text in self.scope.pending:
+                message = self.scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
+                raise self.error(message, token.span, NameInFormulaError)
+        if token.kind in ("name", "quoted"):
+            return self.name()
+        if token.text == "(":
+            return self.group()
+        if self._begins_topic(self.index):
+            return self.name()
+        raise self.error(*diagnostics.no_operand(self.tokens, self.index))
+
+    def number(self) -> Const:
+        """``number = decimal literal``."""
+        token = self.next()
+        value = float(token.text)
+        if isinf(value):
+            raise self.error(
+                f"{token.text} is larger than every double; for infinity write {INFINITY}", token.span
+            )
+        return Const(value, token.span)
+
+    def group(self) -> Formula:
+        """``group = "(" , expression , ")"``."""
+        opening = self.next()
+        inner = self.expression()
+        if not self.accept(")"):
+            raise self.error(*diagnostics.no_close(self.language, self.tokens, self.index, opening))
+        return inner
+
+    def call(self, op: Operator) -> Formula:
+        """``call = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"``."""
+        name = self.next()
+        interval = parse_interval(self, op, name)
+        opening = self.token
+        if not self.accept("("):
+            raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
+        if op.share:
+            assert interval is not None
+            interval = replace(interval, share=parse_share(self, name.text))
+        starts, operands = [self.token.start], [self.argument(op, 0)]
+        ends = [self.tokens[self.index - 1].end]
+        while self.accept(","):
+            starts.append(self.token.start)
+            operands.append(self.argument(op, len(operands)))
+            ends.append(self.tokens[self.index - 1].end)
+        if not self.accept(")"):
+            raise self.error(
+                *diagnostics.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
+            )
+        span = Span(name.start, self.tokens[self.index - 1].end)
+        count = len(op.operands)
+        least = count - op.optional
+        if not (least <= len(operands) <= count or (op.folds and len(operands) > count)):
+            number = f"{least} or {count}" if op.optional else f"{count} or more" if op.folds else str(count)
+            noun = "operand" if number == "1" else "operands"
+            raise self.error(f"'{name.text}' takes {number} {noun}, got {len(operands)}", span)
+        places = list(map(Span, starts, ends))
+        result = self.apply(op, tuple(operands[:count]), places[:count], interval, span)
+        for operand, place in zip(operands[count:], places[count:], strict=True):
+            result = self.apply(op, (result, operand), (span, place), interval, span)
+        return result
+
+    def argument(self, op: Operator, position: int, power: int = 0) -> Formula:
+        """Parse an operand of an operator; strict ones take no formula for a number."""
+        start = self.token.start
+        operand = self.expression(power)
+        sort = op.operands[min(position, len(op.operands) - 1)]
+        if op.strict and sort is Sort.NUMBER and not is_number(operand):
+            end = self.tokens[self.index - 1].end
+            written = self.text[start:end]
+            how_long = "" if op.tense is Tense.NONE else f", or duration({written}) for how long it holds"
+            raise self.error(
+                f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
+                f"write a signal or arithmetic, such as (if {written} then 1 else 0){how_long}",
+                Span(start, end),
+            )
+        return operand
+
+    def choice(self, op: Operator, power: int, under: Operator | None) -> Formula:
+        """``choice = "if" , expression , "then" , expression , "else" , expression``."""
+        first = self.next()
+        if power > op.power:  # it could end before the next operator, or after it
+            by = "" if under is None else under.spellings[0]
+            raise self.error(
+                f"'{first.text}' binds more weakly than the '{by}' before it; "
+                f"put parentheses around it: {by} ({first.text} ...)",
+                first.span,
+            )
+        operands, places, outer = [], [], self._awaited
+        for position, word in enumerate((THEN, ELSE, None)):
+            self._awaited = word or outer
+            start = self.token.start
+            operands.append(self.argument(op, position, 0 if word else op.power))
+            places.append(Span(start, self.tokens[self.index - 1].end))
+            if word and not self.accept(word):
+                raise self.error(*diagnostics.no_word(self.tokens, self.index, word))
+        span = Span(first.start, self.tokens[self.index - 1].end)
+        return self.apply(op, tuple(operands), places, None, span)
+
+    def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
+        """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""
+        token = self.next()
+        if op is self._sign:
+            value = self._signed(op)
+            if value is not None:
+                return Const(-value, Span(token.start, self.tokens[self.index - 1].end))
+        interval = parse_interval(self, op, token)
+        # Under `not`, which binds tighter, `always` extends no further than `not` itself would.
+        start = self.token.start
+        operand = self.expression(max(power, op.power), op)
+        end = self.tokens[self.index - 1].end
+        if op.power < power and not (under is not None and passes_on(under)):
+            self._one_reading(op, token, under)
+        return self.apply(op, (operand,), (Span(start, end),), interval, Span(token.start, end))
+
+    def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:
+        """Reject an operand whose extent is ambiguous: a weaker prefix operator after a stronger operator.
+
+        ``x >= once y`` has one reading; ``x - prev x >= 1`` could mean ``(x - prev x) >= 1`` or, as RTAMT
+        reads it, ``x - prev(x >= 1)``.
+        """
+        follows = self.language.infix(self.tokens[self.index].text)
+        if follows is not None and follows.power >= op.power:
+            by = "" if under is None else under.spellings[0]
+            raise self.error(
+                f"'{token.text}' binds more weakly than the '{by}' before it; "
+                f"put parentheses around it: {by} ({token.text} ...)",
+                token.span,
+            )
+
+    # ---- looking ahead -------------------------------------------------------------------------
+
+    def _applies(self, at: int) -> bool:
+        """Return whether the word at this token, spelled like a prefix operator, is an operator."""
+        after = self.tokens[at + 1]
+        if after.text in ("[", "("):
+            return True
+        if after.kind == "symbol" and self.tokens[at].text in self.scope:
+            # `G - 3` with a variable G is a difference; without one, always(-3).
+            return self.language.infix(after.text) is None and self.opens(at + 1)
+        return self.opens(at + 1)
+
+    def opens(self, at: int) -> bool:
+        """Return whether an operand can begin at this token.
+
+        In a run of words spelled like infix operators, a word is an operator if the next token begins an operand,
+        and a name otherwise: ``G U x`` is until, ``G U >= 3`` is always.
+        """
+        end = at
+        while self._is_infix_word(end):
+            end += 1
+        token = self.tokens[end]
+        op = self.language.opening(token.text)
+        opens = token.text != self._awaited and (
+            token.kind in ("name", "number", "quoted")
+            or token.text == "("
+            or (token.text == "[" and end > at)
+            or (op is not None and op.fixity is Fixity.PREFIX)
+            or self._begins_topic(end)
+        )
+        return opens == ((end - at) % 2 == 0)
+
+    def _begins_choice(self, at: int) -> bool:
+        """Return whether the ``if`` at this token begins a choice, for a variable of that name cannot stand there."""
+        if self.tokens[at].text in self.scope:
+            return False
+        after = self.tokens[at + 1]
+        if after.text == self._awaited:
+            return False
+        if self.language.infix(after.text) is None:
+            return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
+        # `if - x then` has no other reading, for two operands are adjacent.
+        depth = 0
+        for before, token in pairwise(self.tokens[at + 1 :]):
+            depth += (before.text in ("(", "[")) - (before.text in (")", "]"))
+            if depth < 0 or before.text in (";", "="):
+                return False
+            if depth == 0 and token.text == THEN and self._ends_operand(before):
+                return True
+        return False
+
+    def _ends_operand(self, token: Token) -> bool:
+        if token.kind == "name":
+            return self.language.infix(token.text) is None and self.language.opening(token.text) is None
+        return token.kind in ("number", "quoted") or token.text == ")"
+
+    def _is_infix_word(self, at: int) -> bool:
+        token = self.tokens[at]
+        return token.kind == "name" and self.language.infix(token.text) is not None
+
+    def _signed(self, op: Operator) -> float | None:
+        """Consume and return the number whose sign is the minus just read, if there is one."""
+        token = self.tokens[self.index]
+        if token.kind != "number" and (token.text != INFINITY or INFINITY in self.scope):
+            return None
+        after = self.language.infix(self.tokens[self.index + 1].text)
+        if after is not None and after.power > op.power:
+            return None
+        if token.kind == "number":
+            return self.number().value
+        self.index += 1
+        return inf
+
+    # ---- errors --------------------------------------------------------------------------------
+
+    def _too_deep(self) -> SpecificationError:
+        return self.error(
+            f"nested too deeply: at most {MAX_DEPTH} formulas may stand inside one another; "
+            f"give an inner one a name and use the name",
+            self.token.span,
+        )
+
+
+def parse_formula(
+    text: str,
+    *,
+    language: Language = STL,
+    constants: Mapping[str, float] | None = None,
+    definitions: Mapping[str, Formula] | None = None,
+    variables: Collection[str] | None = None,
+    types: Mapping[str, ValueType] | None = None,
+    enumerations: Mapping[str, Enumeration] | None = None,
+    tables: Mapping[str, Operator] | None = None,
+    unit: str = "s",
+    parameters: Collection[str] = (),
+    templates: Mapping[str, Template] | None = None,
+    groups: Mapping[str, Group] | None = None,
+) -> Formula:
+    """Parse the text of a formula.
+
+    ``language``: the operators. ``constants``: numbers by name, for operands and bounds.
+    ``definitions``: formulas by name; their nodes are shared, not copied. ``variables``: the declared
+    names; with None, every other name is a variable. ``types``: of those that are Booleans or of one of the
+    ``enumerations``. ``unit``: the unit of bounds without one; a lower bound without a unit has that of the
+    upper bound, as in RTAMT. ``parameters``: which of the constants are parameters. ``templates``: those of a
+    document (:attr:`Document.templates`), by name. ``groups``: those of a document, by name.
+
+    Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
+    under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
+    section 2, and RTAMT's grammar.
+
+    >>> print(parse_formula("G(req>=3 -> F[0:500ms] gnt>=3)"))
+    always(req >= 3 -> eventually[0:500ms](gnt >= 3))
+    >>> parse_formula("G >= 3 and s >= 1") == parse_formula("((G) >= 3) & (s >= 1.0)")
+    True
+    """
+    scope = Scope(
+        constants or {},
+        definitions or {},
+        variables,
+        templates=templates or {},
+        parameters=parameters,
+        types=types or {},
+        enumerations=enumerations or {},
+        tables=tables or {},
+        groups=groups or {},
+    )
+    parser = FormulaParser(text, language, unit, scope)
+    formula = parser.formula()
+    formula = parser.standing_alone(formula, Span(0, parser.tokens[parser.index - 1].end), named=True)
+    if parser.token.kind != "end":
+        raise parser.error(*diagnostics.no_operator(language, parser.tokens, parser.index))
+    return formula

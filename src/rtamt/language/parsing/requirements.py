@@ -1,0 +1,142 @@
+"""Requirements in a specification text: ``require ID ["text"] [severity WORD]: formula``, or named formulas."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rtamt.errors import ParseError
+from rtamt.language.document import SEVERITIES, Requirement
+from rtamt.language.formula import Span, variables
+from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.lexer import unquoted
+from rtamt.language.parsing.parser import FormulaParser
+
+if TYPE_CHECKING:
+    from rtamt.errors import SpecificationError
+    from rtamt.language.document import Assertion, Import, Severity
+    from rtamt.language.operators import Language
+    from rtamt.language.parsing.lexer import Token
+    from rtamt.language.parsing.scope import Scope
+
+#: A requirement name that needs no quotes.
+_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+
+
+class RequirementParser(FormulaParser):
+    """The grammar productions of a requirement, in addition to those of a formula."""
+
+    def __init__(self, text: str, language: Language, unit: str, scope: Scope) -> None:
+        super().__init__(text, language, unit, scope)
+        self._imports: dict[str, Import] = {}
+        self._definitions = dict(scope.definitions)
+        self._explicit: list[Requirement] = []
+        self._names: dict[str, Span] = {}  # the position of each name
+
+    def _requirement(self) -> None:
+        """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
+        start = self.next().start
+        span, name = self._id_span(), self._id()
+        if not name.strip() or not name.isprintable():
+            raise self.error(
+                "the name of a requirement is one line of visible characters, such as REQ-12", span
+            )
+        if any(
+            name in known
+            for known in (self._definitions, self._names, self.scope.templates, self.scope.tables)
+        ):
+            raise self.error(f"'{name}' is the name of another requirement or definition", span)
+        if name in self.scope.constants:
+            raise self.error(f"'{name}' is the name of a constant; give the requirement another one", span)
+        description = unquoted(self.next().text) if self.token.kind == "quoted" else ""
+        severity: Severity = "error"
+        if self._word("severity"):
+            self.next()
+            chosen = next((known for known in SEVERITIES if known == self.token.text), None)
+            if chosen is None:
+                raise self._expected(f"a severity ({', '.join(SEVERITIES)})")
+            severity = chosen
+            self.next()
+        if not self.accept(":"):
+            raise self._expected(f"':' after 'require {name}'")
+        begin = self.token.start
+        formula = self.formula()
+        formula = self.standing_alone(formula, Span(begin, self.tokens[self.index - 1].end))
+        whole = Span(start, self.tokens[self.index - 1].end)
+        self._explicit.append(Requirement(name, formula, description, severity, True, whole))
+        self._names[name] = span
+
+    def _id_span(self) -> Span:
+        """Return the position of the name of a requirement."""
+        if self.token.kind == "quoted":
+            return self.token.span
+        match = _ID.match(self.text, self.token.start)
+        if match is None:
+            raise self._expected("the name of a requirement, such as REQ-12")
+        return Span(match.start(), match.end())
+
+    def _id(self) -> str:
+        """``id``: a word that may contain dashes and dots, or any text in double quotes."""
+        if self.token.kind == "quoted":
+            return unquoted(self.next().text)
+        span = self._id_span()
+        while self.token.kind != "end" and self.token.end <= span.end:
+            self.next()
+        return self.text[span.start : span.end]
+
+    def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
+        """Return the requirements in the order of the text."""
+        read = set(variables(*(assertion.formula for assertion in assertions)))
+        for name, span in self._names.items():
+            if name in read:
+                raise self.error(
+                    f"'{name}' is the name of a variable; give the requirement another one", span
+                )
+        for known in self._explicit:
+            if is_number(known.formula):
+                message = f"'{known.name}' requires a number, which neither holds nor fails; compare it, such as x >= 0"
+                raise self.error(message, known.formula.span or self._names[known.name])
+        if self._explicit:
+            return tuple(self._explicit)
+        unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]
+        taken = read | {assertion.name for assertion in assertions if assertion.name is not None}
+        found = []
+        for number, assertion in enumerate(unused or assertions[-1:], 1):
+            name = assertion.name or f"requirement_{number}"
+            while assertion.name is None and name in taken:
+                name += "_"
+            found.append(Requirement(name, assertion.formula, span=assertion.span))
+        return tuple(found)
+
+    # ---- looking ahead ---------------------------------------------------------------------------
+
+    def _requires(self) -> bool:
+        """Return whether a requirement begins here: ``require`` where it cannot be a variable."""
+        if not self._word("require") or "require" in self._imports:
+            return False
+        if self._plain_name(1) or self._at(1).kind == "number":
+            return self._at(2).text != "="  # otherwise a declaration without a type
+        # An infix operator such as S may be the name, unless an operand follows.
+        name = _ID.match(self.text, self._at(1).start)
+        if name is None or self._at(1).kind != "name":
+            return False
+        ahead = next(k for k in range(2, len(self.tokens)) if self._at(k).start >= name.end())
+        ahead += self._at(ahead).kind == "quoted"
+        ahead += 2 * (self._at(ahead).text == "severity")
+        return self._at(ahead).text == ":"
+
+    def _word(self, word: str) -> bool:
+        return self.token.kind == "name" and self.token.text == word
+
+    def _at(self, ahead: int) -> Token:
+        return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
+
+    def _plain_name(self, ahead: int) -> bool:
+        """Return whether the token that far ahead is a name that cannot be an infix operator."""
+        token = self._at(ahead)
+        return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
+
+    # ---- errors ----------------------------------------------------------------------------------
+
+    def _expected(self, what: str) -> SpecificationError:
+        return self.error(f"expected {what}, got {self.token}", self.token.span, ParseError)

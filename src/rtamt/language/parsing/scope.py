@@ -1,0 +1,63 @@
+"""The names in a formula: constants, named formulas, declared variables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.parsing.templates import Argument, Template
+    from rtamt.language.quantifiers import Group
+    from rtamt.language.records import Operator
+    from rtamt.language.value_types import Enumeration, ValueType
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The meaning of names; with ``variables=None``, every other name is a variable.
+
+    ``pending`` holds names that cannot be used here, each with an explanation; ``arguments`` what the parameters
+    of a template stand for, in its formula. ``types``: of variables and constants that are Booleans or of an
+    enumeration. ``enumerations``, ``tables`` and ``groups``: by name; ``members``: the groups of the variables of
+    quantifiers.
+    """
+
+    constants: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    definitions: Mapping[str, Formula] = field(default_factory=lambda: MappingProxyType({}))
+    variables: Collection[str] | None = None
+    pending: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    templates: Mapping[str, Template] = field(default_factory=lambda: MappingProxyType({}))
+    arguments: Mapping[str, Argument] = field(default_factory=lambda: MappingProxyType({}))
+    #: The constants that are parameters.
+    parameters: Collection[str] = ()
+    types: Mapping[str, ValueType] = field(default_factory=lambda: MappingProxyType({}))
+    enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
+    tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
+    groups: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
+    members: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A read-only view can be neither pickled nor copied; the mapping behind it can.
+        values = (getattr(self, each.name) for each in fields(self))
+        return Scope, tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in values)
+
+    def __contains__(self, name: str) -> bool:
+        """Return whether a name is declared; a field (``req.value``) is declared if its signal is."""
+        if any(name in known for known in (self.definitions, self.constants, self.arguments, self.tables)):
+            return True
+        declared = self.variables or ()
+        return name in declared or name.split(".", 1)[0] in declared
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every declared name."""
+        return (*(self.variables or ()), *self.constants, *self.definitions, *self.arguments, *self.tables)
+
+    @property
+    def slashes(self) -> int:
+        """The largest number of slashes in a declared name."""
+        return max((name.count("/") for name in self.names), default=0)

@@ -1,0 +1,272 @@
+"""Parse specification files (``.stl``) and texts of one or more formulas to a document.
+
+::
+
+    document    = [ "specification" , word ] , { import } ,
+                  { declaration | annotation | enumeration, see enumerations.py | table, see tables.py |
+                  group, see groups.py | sampling, see sampling.py } ,
+                  statement , { separator , statement } , [ ";" ]
+    separator   = ";" | after a named assertion, a requirement or a template, as in RTAMT's files: the end of the line
+    statement   = assertion | requirement | template, see templates.py
+    import      = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]
+    declaration = ( [ "optional" ] , [ "input" | "output" ] , type , name , [ "[" , unit , "]" ] ,
+                  [ "=" , recorded , { "or" , recorded } ] |
+                  ( "const" | "parameter" ) , type , name , "=" , value , [ "[" , unit , "]" ] ) , [ ";" ]
+    recorded    = '"' , characters , '"'
+    annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
+    assertion   = [ name , "=" ] , expression
+    requirement = "require" , id , [ '"' , characters , '"' ] ,
+                  [ "severity" , ( "error" | "warning" | "note" ) ] , ":" , expression
+    id          = letters, digits, "_", "-" and ".", such as REQ-12.a | '"' , characters , '"'
+    name        = word , { "." , word } | topic | '"' , characters , '"'
+    unit        = characters, such as m/s
+    type        = "float" | "int" | "long" | "complex" | "bool" | declared enumeration | imported class
+    value       = [ "-" ] , number | "-inf" | "inf" | member | "true" | "false"
+
+None of these words is reserved: ``input >= 3`` is a formula over a variable called input.
+
+The requirements are the formulas after ``require``. In a text without any, they are the formulas (not numbers)
+that no other assertion uses; if there are none of these either, the last assertion.
+"""
+
+from __future__ import annotations
+
+from itertools import accumulate, pairwise
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from rtamt.errors import NameInFormulaError
+from rtamt.language.document import Assertion, Document
+from rtamt.language.enumerations import begins_enumeration
+from rtamt.language.formula import Formula, Span, Var, postorder
+from rtamt.language.operators import STL, Language
+from rtamt.language.parsing import diagnostics
+from rtamt.language.parsing.declarations import DeclarationParser
+from rtamt.language.parsing.imports import Library
+from rtamt.language.parsing.sampling import begins_sampling, parse_sampling
+from rtamt.language.parsing.scope import Scope
+from rtamt.language.parsing.template_order import templates_to_come
+from rtamt.language.parsing.templates import begins_template, parse_template
+from rtamt.language.quantifiers import begins_group
+from rtamt.language.tables import begins_table
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from rtamt.errors import SpecificationError
+    from rtamt.language.parsing.lexer import Token
+    from rtamt.language.parsing.sampling import Sampling
+
+
+def parse_document(
+    text: str,
+    *,
+    language: Language = STL,
+    unit: str = "s",
+    constants: Mapping[str, float] | None = None,
+    variables: Collection[str] | None = None,
+    definitions: Mapping[str, Formula] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    library: Library | None = None,
+    truths: bool = True,
+) -> Document:
+    """Parse a specification text; a single formula is a specification text, too.
+
+    ``language``, ``unit``, ``constants`` and ``definitions`` as in
+    :func:`~rtamt.language.parsing.parser.parse_formula`; ``variables`` are names declared elsewhere. If any
+    variable is declared, there or in the text, undeclared names are errors. ``parameters``: values of declared
+    parameters, instead of those in the text. ``library``: where the files are that it imports. ``truths``: whether
+    declared Booleans are true or false in formulas, and not numbers as in RTAMT.
+
+    Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`. Source: listing 8
+    of the paper, and RTAMT's grammar.
+
+    >>> document = parse_document("input float x  const float c = 2  low = x <= c; always(low)")
+    >>> print(document.formula, document.declarations[0].role)
+    always(x <= 2) input
+    """
+    scope = Scope(constants or {}, definitions or {}, variables or None)
+    library = Library() if library is None else library
+    return _DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
+
+
+class _DocumentParser(DeclarationParser):
+    """The grammar productions of a document, in addition to those of declarations."""
+
+    def document(self, *, imported: bool = False) -> Document:
+        """``document = [ header ] , { import } , { declaration | annotation } , assertion , ...``."""
+        name = self._header()
+        while self._import():
+            pass
+        sampling: Sampling | None = None
+        while True:
+            if begins_sampling(self):
+                word = self.token
+                if sampling is not None:
+                    raise self.error("the sampling rule is given twice", word.span)
+                sampling = parse_sampling(self)
+            elif not (
+                self._enumeration()
+                or self._table()
+                or self._group()
+                or self._declaration()
+                or self._annotation()
+            ):
+                break
+        declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
+        variables = tuple(dict.fromkeys((*self._given, *declared)))
+        assertions = self._assertions(variables)
+        if not assertions and not imported:
+            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
+            raise self.error(empty, self.token.span)
+        self._check_imported(assertions, variables)
+        return Document(
+            self.text,
+            assertions,
+            self._requirements(assertions),
+            name,
+            tuple(self._imports.values()),
+            tuple(self._declarations.values()),
+            MappingProxyType(self._topics),
+            MappingProxyType(self._constants),
+            MappingProxyType(self._definitions),
+            MappingProxyType(self._templates),
+            variables,
+            MappingProxyType(self._enumerations),
+            MappingProxyType(self._types),
+            frozenset(self.used),
+            imported=MappingProxyType(self.library.found),
+            tables=MappingProxyType(self._tables),
+            groups=MappingProxyType(self._groups),
+            sampling=sampling,
+        )
+
+    # ---- the formulas ----------------------------------------------------------------------------
+
+    def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
+        """``assertion , { separator , assertion } , [ ";" ]``."""
+        pending = self._names_to_come() | templates_to_come(self)
+        names = dict.fromkeys(variables) or None  # a dict for fast lookup
+        self._slashes = self._scope(names).slashes if "/" in self.words else 0
+        found: list[Assertion] = []
+        while self.token.kind != "end":
+            required = self._requires()
+            if self._imports_file():
+                raise self.error("imports stand at the beginning, before declarations", self.token.span)
+            if (found or self._templates) and not required and self._begins_declaration():
+                raise self.error(
+                    "declarations and annotations stand before the first formula", self.token.span
+                )
+            self.scope = self._scope(names, pending)
+            name: str | None
+            if begins_template(self):
+                name = self._template(pending)
+            elif required:
+                self._requirement()
+                known = self._explicit[-1]
+                name = known.name
+                found.append(Assertion(name, known.formula, known.span))
+            else:
+                start, token, name = self.token.start, self.token, self._assertion_name()
+                if name is not None:
+                    self._check_new(name, token)
+                    pending[name] = f"'{name}' is used in its own definition"
+                formula = self.formula()
+                whole = Span(start, self.tokens[self.index - 1].end)
+                # A name stands for what it was given, a Boolean for a number too.
+                found.append(
+                    Assertion(name, self.standing_alone(formula, whole, named=name is not None), whole)
+                )
+                if name is not None:
+                    del pending[name]
+                    self._definitions[name] = formula
+                    self._slashes = max(self._slashes, name.count("/"))
+            # A formula without a name may continue on the next line, so it needs a semicolon.
+            if self.token.kind != "end" and not (
+                self.accept(";")
+                or (self._begins_a_line(self.index) and (name or self._requires() or begins_template(self)))
+            ):
+                raise self._not_finished()
+            while self.accept(";"):
+                pass
+        return tuple(found)
+
+    def _check_imported(self, assertions: tuple[Assertion, ...], names: tuple[str, ...]) -> None:
+        """Reject undeclared names in imported formulas, where names must be declared."""
+        scope = Scope(variables=names)
+        if not names or not self.origins:
+            return
+        for node in postorder(*(assertion.formula for assertion in assertions)):
+            if isinstance(node, Var) and node.name not in scope:
+                raise self.error(
+                    f"'{node.name}', which an imported formula reads, is not declared",
+                    node.span or Span(0, 0),
+                    NameInFormulaError,
+                )
+
+    def _template(self, pending: dict[str, str]) -> str:
+        """``template``: define it and return its name."""
+        token = self._at(1)
+        name = token.text
+        self._check_new(name, token)
+        pending[name] = f"'{name}' uses itself; templates cannot be recursive"
+        template = parse_template(self)
+        del pending[name]
+        self._templates[name] = template
+        return name
+
+    def _begins_declaration(self) -> bool:
+        """Return whether a declaration or annotation begins here."""
+        return (
+            self.token.text == "@"
+            or self._declares()
+            or begins_enumeration(self)
+            or begins_table(self)
+            or begins_sampling(self)
+            or begins_group(self)
+        )
+
+    def _begins_a_line(self, at: int) -> bool:
+        between = self.text[self.tokens[at - 1].end : self.tokens[at].start]
+        return "\n" in between or "\r" in between
+
+    def _assertion_name(self) -> str | None:
+        """``[ name , "=" ]``."""
+        token, last = self.token, self.index
+        if token.kind not in ("name", "quoted"):
+            return None
+        while (after := self._after_slash(last + 1)) > 0:
+            last = after
+        if self.tokens[last + 1].text != "=":
+            return None
+        self._check_nameable(token)
+        self.index = last + 2
+        return token.name if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
+
+    def _names_to_come(self) -> dict[str, str]:
+        """Return the names that later assertions define, each with the error message for an earlier use."""
+        if "=" not in self.words:
+            return {}
+        # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3), or names an argument.
+        depth = accumulate((token.text == "(") - (token.text == ")") for token in self.tokens)
+        names = [
+            token.name
+            for at, (inside, (token, after)) in enumerate(zip(depth, pairwise(self.tokens), strict=False))
+            if at >= self.index
+            and inside <= 0
+            and token.kind in ("name", "quoted")
+            and after.text == "="
+            and (at == self.index or self.tokens[at - 1].text == ";" or self._begins_a_line(at))
+        ]
+        return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
+
+    def _check_new(self, name: str, token: Token) -> None:
+        if name in self._taken_names() - self._constants.keys() or name in self._names:
+            raise self.error(f"'{name}' is defined twice{self._from(name)}", token.span)
+        if name in self._constants:
+            raise self.error(f"'{name}' is a constant already{self._from(name)}", token.span)
+
+    def _not_finished(self) -> SpecificationError:
+        if self.token.kind == "name" and self.tokens[self.index + 1].text == "=":
+            return self.error(f"expected ';' before the definition of {self.token}", self.token.span)
+        return self.error(*diagnostics.no_operator(self.language, self.tokens, self.index, "';'"))

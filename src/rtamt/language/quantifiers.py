@@ -1,0 +1,265 @@
+"""Groups of signals, such as the cars of a traffic scene, and quantifiers over their members.
+
+::
+
+    group      = [ "input" | "output" ] , "group" , word , "=" , '"' , pattern , '"' ,
+                 [ "{" , { type , field , [ "[" , unit , "]" ] , [ ";" ] } , "}" ] , [ ";" ]
+    quantifier = ( "forall" | "exists" | "count" ) , word , "in" , group , [ "where" , different ] , ":" , expression
+    different  = word , "!=" , word , { "and" , word , "!=" , word }
+
+The pattern has one star: ``group cars = "car_*"`` has a member for each recorded signal such as ``car_3.x``, whose
+field is x. What follows the colon extends as far to the right as it can. Which members there are is known with the
+data: ``rtamt.rewrite.quantifiers`` replaces quantifiers by conjunctions, disjunctions and sums over them.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from rtamt.errors import NameInFormulaError, choices, did_you_mean
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
+from rtamt.language.records import Fixity, Operator, Sort
+from rtamt.language.rows import C, F, N, operator
+from rtamt.language.units import rules as unit_rules
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.parsing.names import NameParser
+    from rtamt.language.parsing.parser import FormulaParser
+    from rtamt.language.records import Expansion
+    from rtamt.language.value_types import ValueType
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A declared field of the members of a group: its type as written, the type of its values, its unit."""
+
+    name: str
+    type: str = "float"
+    values: ValueType | None = None
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """A pattern of recorded names, whose members have common fields.
+
+    ``fields``: as declared; empty if formulas determine them. ``role``: of the fields of each member.
+    """
+
+    name: str
+    pattern: str
+    fields: tuple[Field, ...] = ()
+    role: Literal["input", "output"] | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    def member(self, column: str) -> tuple[str, str] | None:
+        """Return the member and the field of a recorded name; None for other names.
+
+        >>> Group("cars", "car_*").member("car_3.pose.x")
+        ('car_3', 'pose.x')
+        """
+        found = re.fullmatch(rf"({_expression(self.pattern)})\.(.+)", column)
+        return None if found is None else (found[1], found[2])
+
+    def matches(self, name: str) -> bool:
+        """Return whether a recorded name without a field is that of a member."""
+        return re.fullmatch(_expression(self.pattern), name) is not None
+
+    def values(self, name: str) -> ValueType | None:
+        """Return the type of the values of a field, None for numbers."""
+        return next((each.values for each in self.fields if each.name == name), None)
+
+
+@lru_cache(maxsize=256)
+def _expression(pattern: str) -> str:
+    before, _, after = map(re.escape, pattern.partition("*"))
+    return f"{before}[^.]+?{after}"
+
+
+@dataclass(frozen=True, slots=True)
+class Binder:
+    """The variable of a quantifier, its group, and the pairs of variables that stand for different members."""
+
+    variable: str
+    group: Group
+    apart: tuple[tuple[str, str], ...] = ()
+
+    def __str__(self) -> str:
+        where = " and ".join(f"{one} != {other}" for one, other in self.apart)
+        return f"{self.variable} in {self.group.name}{f' where {where}' if where else ''}"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class FieldOf(Var):
+    """A field of the member that a quantifier's variable stands for, such as ``v.x``."""
+
+    bound: ClassVar[bool] = True
+
+    variable: str = ""
+    field: str = ""
+    group: Group | None = None
+
+
+def _row(name: str, symbol: str, doc: str, sort: Sort, result: Sort, expansion: Expansion) -> Operator:
+    example = f"{name} v in cars: v.x >= 3"
+    row = Operator(name, (name,), Fixity.QUANTIFIER, 5, (sort,), result, doc, example, symbol)
+    return replace(row, expansion=expansion, units=unit_rules.plain if result is N else None)
+
+
+#: The quantifiers by their words. Those of a formula have a binder, see :func:`quantified`.
+QUANTIFIERS: Mapping[str, Operator] = MappingProxyType({
+    "forall": _row("forall", r"\forall", "Every member that is present: the smallest value; +inf if there is none.",
+                   F, F, lambda body, _i: body),
+    "exists": _row("exists", r"\exists", "Some member that is present: the largest value; -inf if there is none.",
+                   F, F, lambda body, _i: body),
+    "count": _row("count", r"\#", "How many of the members that are present satisfy the formula, a number.",
+                  C, N, lambda body, _i: operator("if")(body, Const(1.0), Const(0.0))),
+})  # fmt: skip
+
+_QUANTIFIED: dict[tuple[str, Binder], Operator] = {}
+
+
+def quantified(word: str, binder: Binder) -> Operator:
+    """Return the quantifier of this word and binder; equal ones are the same operator."""
+    key = word, binder
+    made = _QUANTIFIED.get(key)
+    if made is None:
+        made = replace(QUANTIFIERS[word], binder=binder, maker=(quantified, key))
+        made = _QUANTIFIED.setdefault(key, made)
+    return made
+
+
+# ---- the text ------------------------------------------------------------------------------------
+
+
+def begins_group(parser: FormulaParser) -> bool:
+    """Return whether a group is declared here: ``group``, a name, ``=`` and a text, which no formula begins with."""
+    ahead = parser.tokens[parser.index : parser.index + 5]
+    if ahead and ahead[0].text in ("input", "output"):
+        ahead = ahead[1:]
+    words = len(ahead) > 3 and ahead[0].text == "group" and ahead[1].kind == "name"
+    return words and ahead[2].text == "=" and ahead[3].kind == "quoted"
+
+
+def begins_quantifier(parser: FormulaParser) -> bool:
+    """Return whether a quantifier stands here: a word that is not declared, a name, ``in`` and a name."""
+    at = parser.index
+    first, variable, word, group, after = (*parser.tokens[at : at + 5], *[parser.tokens[-1]] * 4)[:5]
+    if first.text not in QUANTIFIERS or first.kind != "name" or first.text in parser.scope:
+        return False
+    if variable.kind != "name" or word.text != "in" or group.kind != "name":
+        return False
+    # `forall U in` is a formula, after which no name and no colon can follow.
+    return parser.language.infix(variable.text) is None or after.text in (":", "where")
+
+
+def parse_quantifier(parser: FormulaParser) -> Formula:
+    """``quantifier = word , word , "in" , group , [ "where" , different ] , ":" , expression``."""
+    first, variable, _, name = (parser.next() for _ in range(4))
+    scope = parser.scope
+    group = scope.groups.get(name.text)
+    if group is None:
+        hint = choices(name.text, scope.groups, "groups") if scope.groups else ""
+        declare = "" if hint else f'; declare it before the formulas: group {name.text} = "{name.text}_*"'
+        raise parser.error(f"there is no group '{name.text}'{hint}{declare}", name.span, NameInFormulaError)
+    taken = (
+        variable.text in scope.members or variable.text in scope or variable.text in _members_given(parser)
+    )
+    if taken or "." in variable.text:
+        why = "has a dot" if "." in variable.text else "has a meaning already"
+        raise parser.error(
+            f"'{variable.text}' {why}; choose another word for the member of '{group.name}'", variable.span
+        )
+    parser.scope = replace(scope, members={**scope.members, variable.text: group})
+    apart = _different(parser) if parser.accept("where") else ()
+    if not parser.accept(":"):
+        expected = "':'" if apart else "':' or 'where'"
+        raise parser.error(
+            f"expected {expected} after '{first.text} {variable.text} in {group.name}', got {parser.token}",
+            parser.token.span,
+        )
+    op = quantified(first.text, Binder(variable.text, group, apart))
+    start = parser.token.start
+    body = parser.expression()
+    end = parser.tokens[parser.index - 1].end
+    made = parser.apply(op, (body,), (Span(start, end),), None, Span(first.start, end))
+    parser.scope = scope
+    return made
+
+
+def _members_given(parser: FormulaParser) -> set[str]:
+    """Return the variables of quantifiers around the use of a template, which its arguments may read."""
+    formulas = [each.formula for each in parser.scope.arguments.values() if each.formula is not None]
+    return {each.variable for each in fields_of(*formulas)}
+
+
+def _different(parser: FormulaParser) -> tuple[tuple[str, str], ...]:
+    """``different = word , "!=" , word , { "and" , word , "!=" , word }``."""
+    found: list[tuple[str, str]] = []
+    while not found or parser.accept("and"):
+        one, sign, other = (parser.next() for _ in range(3))
+        span = Span(one.start, other.end)
+        newest = list(parser.scope.members)[-1]
+        if sign.text not in ("!=", "!=="):
+            raise parser.error(
+                f"'where' takes two variables of quantifiers that stand for different members, such as "
+                f"where {newest} != w; put any other condition into the formula: {newest} in ...: condition -> ...",
+                span,
+            )
+        for token in (one, other):
+            if token.text not in parser.scope.members:
+                raise parser.error(
+                    f"'{token.text}' is not the variable of a quantifier"
+                    f"{did_you_mean(token.text, parser.scope.members)}; 'where' takes two of them, such as "
+                    f"where {newest} != w",
+                    token.span,
+                )
+        if one.text == other.text or newest not in (one.text, other.text):
+            raise parser.error(
+                f"'where' compares '{newest}' with the variable of a quantifier around this one, such as "
+                f"where {newest} != w",
+                span,
+            )
+        found.append((one.text, other.text))
+    return tuple(found)
+
+
+def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
+    """Return what a name means that begins with the variable of a quantifier; None for any other name."""
+    variable, _, path = name.partition(".")
+    group = parser.scope.members.get(variable)
+    if group is None:
+        if name in parser.scope.groups and name not in parser.scope:
+            raise parser.error(f"'{name}' is a group; quantify over it: forall v in {name}: ...", span)
+        return None
+    known = [each.name for each in group.fields]
+    if not path:
+        such = known[0] if known else "x"
+        raise parser.error(
+            f"'{name}' is a member of '{group.name}'; name one of its fields, such as {name}.{such}", span
+        )
+    if known and path not in known:
+        raise parser.error(
+            f"'{path}' is not a field of '{group.name}'{choices(path, known, 'fields')}",
+            span,
+            NameInFormulaError,
+        )
+    return FieldOf(name, span, group.values(path), variable, path, group)
+
+
+def quantifiers(*formulas: Formula) -> tuple[Apply, ...]:
+    """Return the quantifiers of formulas, those inside others first."""
+    return tuple(
+        node for node in postorder(*formulas) if isinstance(node, Apply) and node.op.binder is not None
+    )
+
+
+def fields_of(*formulas: Formula) -> tuple[FieldOf, ...]:
+    """Return the fields of members that formulas read, in order of appearance."""
+    return tuple(node for node in postorder(*formulas) if isinstance(node, FieldOf))
