@@ -134,13 +134,13 @@ void Causes::compute(const Engine& engine, std::size_t index, int reg, const New
 // Where one part is as good as it is because of what is new, and all others are as good as their
 // bounds.
 Pieces Causes::together(const Engine& engine, const Cause& cause, Tick last) const {
-    using Kind = CausedUntil::Kind;
+    using Recursion = CausedUntil::Kind;
     const bool back = cause.kind == Cause::Kind::since;
     const std::uint32_t hold = causes_[cause.a / 2].ref ^ (cause.a & 1U);
     const std::uint32_t goal = causes_[cause.b / 2].ref ^ (cause.b & 1U);
-    const CausedUntil until{.kind = !dense_ ? Kind::discrete
-                                    : back  ? Kind::dense_since
-                                            : Kind::dense,
+    const CausedUntil until{.kind = !dense_ ? Recursion::discrete
+                                    : back  ? Recursion::dense_since
+                                            : Recursion::dense,
                             .hold = View(engine.runs(hold, 0), back),
                             .goal = View(engine.runs(goal, 0), back),
                             .core = View(engine.runs(cause.core, 0), back),
