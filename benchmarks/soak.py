@@ -129,7 +129,7 @@ def dense(hours: float) -> None:
     kept: dict[str, tuple[Any, Any]] = {}
     known, most, updates, now = 0, 0, 0, -1
     carried: tuple[Any, Any] = (np.empty(0, np.int64), np.empty(0))
-    for k, (stamps, columns) in enumerate(events(last)):
+    for k, (timestamps, columns) in enumerate(events(last)):
         told_times: list[float] = []
         told_values: list[float] = []
         begin = time.perf_counter()
@@ -140,8 +140,8 @@ def dense(hours: float) -> None:
                 told_values += signal.values.tolist()
         watch.in_updates += time.perf_counter() - begin
         updates += len(columns)
-        now = int(stamps["req"][0][-1])
-        for name, (times, values) in stamps.items():
+        now = int(timestamps["req"][0][-1])
+        for name, (times, values) in timestamps.items():
             old = kept.get(name, (np.empty(0, np.int64), np.empty(0)))
             kept[name] = (np.concatenate((old[0], times)), np.concatenate((old[1], values)))
         until = round(told_times[-1] * 1e9)
@@ -170,13 +170,13 @@ def events(last: int) -> Iterator[tuple[dict[str, tuple[Any, Array]], list[tuple
         pair = signals(k, DENSE_PIECE)
         turn = draw.integers(0, 2, DENSE_PIECE) == 0
         turn[0], turn[1], turn[-2], turn[-1] = True, False, False, True
-        stamps = {
+        timestamps = {
             name: (times[mine], values[mine])
             for name, mine, values in (("req", turn, pair[0]), ("gnt", ~turn, pair[1]))
         }
         names = np.where(turn, "req", "gnt").tolist()
         values = np.where(turn, pair[0], pair[1]).tolist()
-        yield stamps, list(zip((times / 1e9).tolist(), names, values, strict=True))
+        yield timestamps, list(zip((times / 1e9).tolist(), names, values, strict=True))
         begin, k = int(times[-1]), k + 1
 
 

@@ -154,8 +154,8 @@ void EarlyRunner::take(const double* row) {
     if (const auto failure = engine_.row(samples_, values)) {
         throw Undefined{steps_before_[failure->node] + failure->step, samples_};
     }
-    robustness_.look(engine_);
-    truth_.look(engine_);
+    robustness_.read(engine_);
+    truth_.read(engine_);
     ++samples_;
     bounds_ = robustness_.value();
     decide(truth_.value());

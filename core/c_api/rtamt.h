@@ -136,7 +136,7 @@ RTAMT_API rtamt_status rtamt_set_parameter_by_name(rtamt_monitor* monitor, const
  * `outputs` outputs, `results` receives the value that has become known, the one `lag` samples ago;
  * it is not known in the first `lag` samples. Allocates nothing, unless the program is one of bounds
  * (rtamt compile --verdict interval): its outputs are lower and upper, bounds of the robustness at
- * the start of the trace whatever is still to come, verdict (infinite, with its sign) and
+ * the start of the trace for every possible continuation, verdict (infinite, with its sign) and
  * decided_since, the seconds from the first sample to the one that decided; these two are not known
  * while the verdict is open. */
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,

@@ -1,9 +1,9 @@
 // Which times an online monitor takes, and how evenly they came.
 //
-// Cost: a few comparisons a sample. Memory: that of stamps.hpp.
+// Cost: a few comparisons a sample. Memory: that of timestamps.hpp.
 #pragma once
 
-#include "stamps.hpp"
+#include "timestamps.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -17,22 +17,23 @@ class Clock {
     // gap, and the same time again; one that is not counts them as violations. The last `history`
     // times are remembered.
     Clock(double period, double tolerance, bool strict, std::size_t history)
-        : stamps_(period, history), period_(period), slack_(tolerance * period), strict_(strict) {}
+        : timestamps_(period, history), period_(period), slack_(tolerance * period),
+          strict_(strict) {}
 
     // Whether the next sample may come at this time.
     [[nodiscard]] bool accepts(double time) const noexcept {
         if (!std::isfinite(time)) return false;
-        const auto last = stamps_.last();
+        const auto last = timestamps_.last();
         if (!last) return true;
         return strict_ ? time > *last && even(time - *last) : time >= *last;
     }
 
     // A sample came at a time that was accepted.
     void advance(double time) noexcept {
-        if (const auto last = stamps_.last(); last && !even(time - *last)) ++violations_;
+        if (const auto last = timestamps_.last(); last && !even(time - *last)) ++violations_;
         anchor_ = time;
         steps_ = 0.0;
-        stamps_.add(time);
+        timestamps_.add(time);
     }
 
     // Samples came one period apart, the first of a trace at time 0. Times are counted from one
@@ -41,33 +42,33 @@ class Clock {
         for (std::size_t i = 0; i < count; ++i) {
             const double time = upcoming(0);
             steps_ += 1.0;
-            stamps_.add(time);
+            timestamps_.add(time);
         }
     }
 
     // The time of the sample after so many more that come one period apart.
     [[nodiscard]] double upcoming(std::size_t more) const noexcept {
-        if (stamps_.regular()) return stamps_.regular_at(stamps_.count() + more);
+        if (timestamps_.regular()) return timestamps_.regular_at(timestamps_.count() + more);
         return anchor_ + (steps_ + static_cast<double>(more) + 1.0) * period_;
     }
 
     void reset() noexcept {
-        stamps_.reset();
+        timestamps_.reset();
         violations_ = 0;
     }
 
     void transfer(Snapshot& snapshot) {
-        stamps_.transfer(snapshot);
+        timestamps_.transfer(snapshot);
         snapshot.item(anchor_);
         snapshot.item(steps_);
         snapshot.item(violations_);
     }
 
     [[nodiscard]] std::uint64_t violations() const noexcept { return violations_; }
-    [[nodiscard]] const Stamps& stamps() const noexcept { return stamps_; }
+    [[nodiscard]] const Timestamps& timestamps() const noexcept { return timestamps_; }
 
   private:
-    Stamps stamps_;
+    Timestamps timestamps_;
     double period_;
     double slack_;
     double anchor_ = 0.0; // the last time that was given

@@ -60,19 +60,19 @@ void Causes::check(const Engine& engine, const Origin& origin) {
     }
 }
 
-void Causes::look(const Engine& engine, const Origin& origin, Tick newest) {
-    look(engine, origin, News{.newest = newest, .lessons = {}});
+void Causes::read(const Engine& engine, const Origin& origin, Tick newest) {
+    read(engine, origin, NewData{.newest = newest, .observations = {}});
 }
 
-void Causes::look(const Engine& engine, const Origin& origin,
-                  std::span<const Engine::Lesson> lessons) {
-    look(engine, origin, News{.newest = 0, .lessons = lessons});
+void Causes::read(const Engine& engine, const Origin& origin,
+                  std::span<const Engine::Observation> observations) {
+    read(engine, origin, NewData{.newest = 0, .observations = observations});
 }
 
-void Causes::look(const Engine& engine, const Origin& origin, const News& news) {
+void Causes::read(const Engine& engine, const Origin& origin, const NewData& new_data) {
     for (std::size_t i = 0; i < causes_.size(); ++i) {
         for (int reg = 0; reg < 2; ++reg)
-            compute(engine, i, reg, news);
+            compute(engine, i, reg, new_data);
     }
     for (std::size_t i = 0; i < outputs_.size(); ++i)
         known_[i] = {of(outputs_[i], 0), of(outputs_[i], 1)};
@@ -93,21 +93,23 @@ void Causes::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) c
     }
 }
 
-void Causes::compute(const Engine& engine, std::size_t index, int reg, const News& news) {
+void Causes::compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data) {
     const Cause& cause = causes_[index];
     Pieces& pieces = parts_[index][static_cast<std::size_t>(reg)];
     const Runs& own = engine.runs(cause.ref, reg);
-    const Tick last = dense_ ? forever : news.newest + 2 * reach_;
+    const Tick last = dense_ ? forever : new_data.newest + 2 * reach_;
     pieces.clear();
     switch (cause.kind) {
     case Cause::Kind::atom:
-        if (!dense_) append(pieces, news.newest, news.newest, own.at(news.newest).value);
-        for (const Engine::Lesson& lesson : news.lessons) {
-            if (engine.reads(cause.ref, lesson.input)) append(pieces, own, lesson.l, lesson.r);
+        if (!dense_)
+            append(pieces, new_data.newest, new_data.newest, own.at(new_data.newest).value);
+        for (const Engine::Observation& observation : new_data.observations) {
+            if (engine.reads(cause.ref, observation.input))
+                append(pieces, own, observation.l, observation.r);
         }
         break;
     case Cause::Kind::span:
-        for (const Piece& piece : engine.news(cause.ref, reg))
+        for (const Piece& piece : engine.new_data(cause.ref, reg))
             append(pieces, own, piece.l, piece.r);
         break;
     case Cause::Kind::both:
@@ -154,10 +156,10 @@ Pieces Causes::together(const Engine& engine, const Cause& cause, Tick last) con
     return shifted(until(of(cause.a, 0), of(cause.b, 0)), cause.shift);
 }
 
-// Where any part is asked for.
+// Where any part is required.
 Pieces Causes::apart(const Cause& cause) const {
     Pieces pieces;
-    const Tick rest = dense_ ? 0 : 1; // of a goal's tick: hold is asked for in a part of it
+    const Tick rest = dense_ ? 0 : 1; // of a goal's tick: hold is required in a part of it
     if (cause.kind == Cause::Kind::since) {
         // There is a goal from low on, and in discrete time hold comes after it.
         for (const Run& run : of(cause.a, 1)) {
@@ -224,7 +226,7 @@ double Causes::until_item(const Engine& engine, const Origin& origin,
         result = Real::join(result, Real::meet(run.value, held(std::max(run.begin, item.tick))));
     }
     for (const Run& run : of(start.a, 0)) {
-        // In dense time hold may be asked for in a part of the tick of the goal.
+        // In dense time hold may be required in a part of the tick of the goal.
         const Tick goal = std::max(dense_ ? run.begin : run.begin + 1, item.tick);
         const double rest = engine.runs(item.a, 0).at(goal).value;
         result = Real::join(result, std::min({run.value, held(dense_ ? goal + 1 : goal), rest}));
@@ -232,7 +234,7 @@ double Causes::until_item(const Engine& engine, const Origin& origin,
     return result;
 }
 
-// ---- answers ------------------------------------------------------------------------------------
+// ---- results ------------------------------------------------------------------------------------
 
 Bounds Causes::at(std::size_t output, Tick t) const noexcept {
     return {value_at(known_[output][0], t), -value_at(known_[output][1], t)};

@@ -60,8 +60,9 @@ class Causes {
 
     // Looks at the newest sample in discrete time, or at what has become known in dense time. The
     // engine and the origin know it.
-    void look(const Engine& engine, const Origin& origin, Tick newest);
-    void look(const Engine& engine, const Origin& origin, std::span<const Engine::Lesson> lessons);
+    void read(const Engine& engine, const Origin& origin, Tick newest);
+    void read(const Engine& engine, const Origin& origin,
+              std::span<const Engine::Observation> observations);
 
     // Asks for what is read of operands beside what the engine itself reads; `wanted`: by node.
     void settle(const Engine& engine, Tick closed, std::span<Tick> wanted) const noexcept;
@@ -78,10 +79,10 @@ class Causes {
   private:
     using Part = std::array<Pieces, 2>;
 
-    // What has become known: at the newest tick, or by lessons.
-    struct News {
+    // What has become known: at the newest tick, or by observations.
+    struct NewData {
         Tick newest = 0;
-        std::span<const Engine::Lesson> lessons;
+        std::span<const Engine::Observation> observations;
     };
 
     std::vector<Cause> causes_;
@@ -98,8 +99,8 @@ class Causes {
         return parts_[ref / 2][static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
     void check(const Engine& engine, const Origin& origin);
-    void look(const Engine& engine, const Origin& origin, const News& news);
-    void compute(const Engine& engine, std::size_t index, int reg, const News& news);
+    void read(const Engine& engine, const Origin& origin, const NewData& new_data);
+    void compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data);
     // Of until and since, register 0 and 1.
     [[nodiscard]] Pieces together(const Engine& engine, const Cause& cause, Tick last) const;
     [[nodiscard]] Pieces apart(const Cause& cause) const;

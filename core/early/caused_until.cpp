@@ -134,7 +134,7 @@ Pieces CausedUntil::by_goal(const Pieces& reached) const {
     envelope(window);
     const Tick from = plus(std::max(first, window.front().begin), low);
     Pieces rest = untimed(reached, from);
-    if (kind == Kind::dense_since && low == 0) { // at the goal itself nothing else is asked for
+    if (kind == Kind::dense_since && low == 0) { // at the goal itself nothing else is required
         rest.insert(rest.end(), reached.begin(), reached.end());
         envelope(rest);
     }
@@ -148,7 +148,7 @@ Pieces CausedUntil::by_goal(const Pieces& reached) const {
 
 // ---- hold ---------------------------------------------------------------------------------------
 
-// At ticks from which hold is asked for up to low, or inside the run: the first instant of hold
+// At ticks from which hold is required up to low, or inside the run: the first instant of hold
 // that counts depends on the tick.
 void CausedUntil::near(Pieces& pieces, const Run& run) const {
     if (low >= step()) {

@@ -2,8 +2,8 @@
 // make its operands good: a goal, or an instant of hold before one. What else must hold is as good
 // as its lower bound.
 //
-// In discrete time hold is asked for on [t, goal). In dense time ticks are intervals: hold may be
-// asked for until within the tick of the goal, and is from low > 0 on until within the first one;
+// In discrete time hold is required on [t, goal). In dense time ticks are intervals: hold may be
+// required until within the tick of the goal, and is from low > 0 on until within the first one;
 // of since, which is until in reversed time, all of the goal's tick except the present is left.
 //
 // Cost: proportional to the pieces of the operands, and to the runs of the registers and of the
@@ -51,7 +51,7 @@ struct CausedUntil {
     View own;  // of the operator as a whole
     Tick low = 0;
     Tick high = 0;
-    Tick first = 0; // the ticks that are asked for
+    Tick first = 0; // the ticks that are required
     Tick last = 0;
     Tick shift = 0; // `own` at t is that at t + shift
 

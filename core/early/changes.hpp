@@ -23,14 +23,14 @@ class Changes {
     void collect(const Engine& engine, std::uint32_t ref, Tick before, Tick newest) {
         changed_.clear();
         for (int reg = 0; reg < 2; ++reg) {
-            for (const Piece& piece : engine.news(ref, reg)) {
+            for (const Piece& piece : engine.new_data(ref, reg)) {
                 if (piece.l <= newest) changed_.emplace_back(piece.l, std::min(piece.r, newest));
             }
         }
         if (newest > before) changed_.emplace_back(before + 1, newest);
     }
 
-    // Ticks of which the bounds are asked for as if they had changed.
+    // Ticks of which the bounds are required as if they had changed.
     void add(Tick first, Tick last) { changed_.emplace_back(first, last); }
 
     // The first tick, `forever` where nothing changed.

@@ -45,7 +45,7 @@ class Decisions {
     void collect(const Engine& engine, std::uint32_t ref, Tick newest, Tick at,
                  std::vector<Decision>& out) {
         for (const bool satisfied : {true, false}) {
-            for (const Piece& piece : engine.news(ref, satisfied ? 0 : 1)) {
+            for (const Piece& piece : engine.new_data(ref, satisfied ? 0 : 1)) {
                 if (piece.old > 0 || !(piece.now > 0)) continue;
                 const Decision decision{piece.l, piece.r, at, satisfied};
                 if (piece.r <= newest) {

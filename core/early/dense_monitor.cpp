@@ -72,13 +72,13 @@ std::optional<DenseMonitor::Failure> DenseMonitor::finish() {
 
 // What has come is reported with the time `at`; `before`: the newest sample before it.
 std::optional<DenseMonitor::Failure> DenseMonitor::learn(Tick at, std::optional<Tick> before) {
-    samples_.collect(lessons_);
+    samples_.collect(observations_);
     const bool begins = samples_.start() && !begun_;
     std::optional<Failure> failure;
     if (begins) failure = engine_.wrong_constant();
     if (!failure) {
         engine_.settle_inputs(samples_.settled());
-        failure = engine_.learn(lessons_);
+        failure = engine_.learn(observations_);
     }
     if (failure) {
         failure->tick += start();
@@ -90,15 +90,15 @@ std::optional<DenseMonitor::Failure> DenseMonitor::learn(Tick at, std::optional<
     if (!begun_) return std::nullopt;
     for (std::size_t i = 0; i < outputs_.size(); ++i)
         collect(i, at, begins ? -1 : *before - start(), begins);
-    if (origin_) origin_->look(engine_);
-    if (causes_) causes_->look(engine_, *origin_, lessons_);
-    if (samples_.ended()) return std::nullopt; // what was kept can still be asked for
+    if (origin_) origin_->read(engine_);
+    if (causes_) causes_->read(engine_, *origin_, observations_);
+    if (samples_.ended()) return std::nullopt; // what was kept can still be read
     closed_ = std::ranges::min(samples_.settled());
     if (++calls_ % pause == 0) settle();
     return std::nullopt;
 }
 
-// ---- answers ------------------------------------------------------------------------------------
+// ---- results ------------------------------------------------------------------------------------
 
 void DenseMonitor::collect(std::size_t output, Tick at, Tick before, bool begins) {
     const std::uint32_t ref = outputs_[output];
@@ -172,7 +172,7 @@ std::vector<Change> DenseMonitor::caused(std::size_t output) const {
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
                                                                   Tick time,
                                                                   std::span<const Supposed> later) {
-    std::vector<Engine::Lesson> lessons;
+    std::vector<Engine::Observation> observations;
     for (std::size_t k = 0; k < later.size(); ++k) {
         const Supposed& each = later[k];
         const bool last = k + 1 == later.size() || later[k + 1].input != each.input;
@@ -180,9 +180,9 @@ std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<
         const Tick behind = std::max(newest, samples_.settled()[each.input]);
         const Tick l = std::max(plus(each.from, -start()), plus(behind, 1));
         const Tick r = last ? forever : plus(later[k + 1].from, -start() - 1);
-        if (l <= r && l < forever) lessons.push_back({each.input, l, r, each.bounds});
+        if (l <= r && l < forever) observations.push_back({each.input, l, r, each.bounds});
     }
-    if (auto failure = engine_.suppose(lessons)) {
+    if (auto failure = engine_.suppose(observations)) {
         failure->tick += start();
         return *failure;
     }
@@ -191,7 +191,7 @@ std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<
         value = engine_.at(outputs_[*output], std::min(time - start(), forever));
     } else {
         Origin origin = origin_.value();
-        origin.look(engine_);
+        origin.read(engine_);
         value = origin.value();
     }
     engine_.revert();

@@ -24,7 +24,7 @@ namespace rtamt::early {
 
 struct DenseSettings {
     std::vector<std::uint32_t> outputs; // references
-    std::vector<Item> origin;           // of the bounds at the start; none: nobody asks
+    std::vector<Item> origin;           // of the bounds at the start; none: not reported
     std::vector<Bounds> ranges;         // of the inputs
     std::optional<Tick> lateness;       // see Samples
     bool decides = false;               // verdicts; if not, bounds
@@ -62,7 +62,7 @@ class DenseMonitor {
     // The bounds at the start, where there is an origin.
     [[nodiscard]] std::optional<Bounds> at_start() const;
 
-    // What the last call caused, where that is asked for: at the start of the trace, of an output
+    // What the last call caused, where that is required: at the start of the trace, of an output
     // there or at a later time, and at all times, in order.
     [[nodiscard]] Bounds caused_at_start() const noexcept {
         return causes_ ? causes_->at_start() : bounds::anything;
@@ -107,7 +107,7 @@ class DenseMonitor {
     std::vector<Tick> held_;                     // by output, the first tick that is held
     std::vector<Tick> next_held_;                // and that after the next look
     std::vector<Tick> wanted_;                   // by node
-    std::vector<Engine::Lesson> lessons_;
+    std::vector<Engine::Observation> observations_;
     std::int64_t calls_ = 0;
     Tick closed_ = -1; // the last tick of the trace before its end that is final
     bool begun_ = false;

@@ -119,12 +119,12 @@ std::optional<Engine::Failure> Engine::row(Tick t, std::span<const Bounds> value
     return take(t, values);
 }
 
-void Engine::know(std::span<const Lesson> lessons) {
-    for (const Lesson& lesson : lessons) {
+void Engine::know(std::span<const Observation> observations) {
+    for (const Observation& observation : observations) {
         for (int reg = 0; reg < 2; ++reg) {
-            Runs& own = inputs_[lesson.input][static_cast<std::size_t>(reg)];
-            const double now = reg == 0 ? lesson.bounds.lower : -lesson.bounds.upper;
-            while (const auto run = own.first<Below>(lesson.l, lesson.r, now)) {
+            Runs& own = inputs_[observation.input][static_cast<std::size_t>(reg)];
+            const double now = reg == 0 ? observation.bounds.lower : -observation.bounds.upper;
+            while (const auto run = own.first<Below>(observation.l, observation.r, now)) {
                 if (journaling_) journal_.push_back({&own, run->begin, run->end, run->value});
                 own.set(run->begin, run->end, now);
             }
@@ -132,16 +132,16 @@ void Engine::know(std::span<const Lesson> lessons) {
     }
 }
 
-std::optional<Engine::Failure> Engine::learn(std::span<const Lesson> lessons) {
+std::optional<Engine::Failure> Engine::learn(std::span<const Observation> observations) {
     Tick newest = seen_;
-    for (const Lesson& lesson : lessons)
-        newest = std::max(newest, lesson.l);
+    for (const Observation& observation : observations)
+        newest = std::max(newest, observation.l);
     begin(newest);
     journaling_ = partial_;
-    know(lessons);
-    for (const Lesson& lesson : lessons) {
-        for (const std::uint32_t i : readers_[lesson.input]) {
-            const auto failure = relearn(i, lesson.l, lesson.r);
+    know(observations);
+    for (const Observation& observation : observations) {
+        for (const std::uint32_t i : readers_[observation.input]) {
+            const auto failure = relearn(i, observation.l, observation.r);
             if (failure) return attempt(failure);
         }
     }
@@ -162,13 +162,13 @@ std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> supp
     return attempt(propagate(false));
 }
 
-std::optional<Engine::Failure> Engine::suppose(std::span<const Lesson> lessons) {
+std::optional<Engine::Failure> Engine::suppose(std::span<const Observation> observations) {
     begin(seen_);
     journaling_ = true;
-    know(lessons);
-    for (const Lesson& lesson : lessons) {
-        for (const std::uint32_t i : readers_[lesson.input])
-            (void)relearn(i, lesson.l, lesson.r, true);
+    know(observations);
+    for (const Observation& observation : observations) {
+        for (const std::uint32_t i : readers_[observation.input])
+            (void)relearn(i, observation.l, observation.r, true);
     }
     return attempt(propagate(false));
 }
@@ -268,7 +268,7 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
             for (int reg = 0; reg < 2 && !first; ++reg) {
                 for (const std::uint32_t ref : {own.a, own.b}) {
                     if (ref == none) continue;
-                    for (const Piece& piece : news(ref, reg)) {
+                    for (const Piece& piece : new_data(ref, reg)) {
                         if (!failure) failure = remap(i, piece.l, piece.r);
                     }
                 }

@@ -55,7 +55,7 @@ class Engine {
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
 
     // `last`: by node, the last tick that others than nodes will ever ask for, -1 for none. What
-    // nobody asks for is not followed.
+    // nothing reads is not followed.
     void limit(std::span<const Tick> last);
 
     // Up to which tick each input is known as well as it will ever be, from the next change on;
@@ -66,13 +66,13 @@ class Engine {
     [[nodiscard]] std::optional<Failure> wrong_constant();
 
     // Knowledge of inputs at [l, r], within what was known before.
-    struct Lesson {
+    struct Observation {
         std::uint32_t input;
         Tick l;
         Tick r;
         Bounds bounds;
     };
-    [[nodiscard]] std::optional<Failure> learn(std::span<const Lesson> lessons);
+    [[nodiscard]] std::optional<Failure> learn(std::span<const Observation> observations);
 
     // What is supposed of all inputs at [l, r], where nothing is known of them but their ranges. It
     // holds until revert(), with which everything is as it was before.
@@ -83,7 +83,7 @@ class Engine {
     };
     [[nodiscard]] std::optional<Failure> suppose(std::span<const Supposition> suppositions);
     // The same of single inputs, where samples may be late.
-    [[nodiscard]] std::optional<Failure> suppose(std::span<const Lesson> lessons);
+    [[nodiscard]] std::optional<Failure> suppose(std::span<const Observation> observations);
     void revert();
 
     // What is known of an input; the run of equal knowledge ends at `end`.
@@ -93,7 +93,7 @@ class Engine {
     [[nodiscard]] Bounds at(std::uint32_t ref, Tick t) const noexcept;
 
     // What the last change raised.
-    [[nodiscard]] const std::vector<Piece>& news(std::uint32_t ref, int reg) const noexcept {
+    [[nodiscard]] const std::vector<Piece>& new_data(std::uint32_t ref, int reg) const noexcept {
         return nodes_[ref / 2].out[static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
     [[nodiscard]] const Runs& runs(std::uint32_t ref, int reg) const noexcept {
@@ -110,7 +110,7 @@ class Engine {
     [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }
 
     // Nothing more will come at or before `closed`. `wanted`: by node, the first tick that is still
-    // asked for by others than nodes. Drops what nobody needs.
+    // required by others than nodes. Drops what nothing needs.
     void settle(Tick closed, std::span<const Tick> wanted);
 
     // The bounds of a reference at every tick from the first that is held, when the trace ends just
@@ -162,7 +162,7 @@ class Engine {
 
     [[nodiscard]] static bool may_fail(const Node& node) noexcept;
     [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
-    void know(std::span<const Lesson> lessons);
+    void know(std::span<const Observation> observations);
     [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
     void begin(Tick newest) noexcept;
     void clear() noexcept;

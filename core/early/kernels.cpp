@@ -21,7 +21,7 @@ void Engine::change(State& state, int reg, Run run, double now) {
 void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
     l = std::max(l, state.from);
     r = std::min(r, state.to);
-    if (l > r || l >= forever || now == -infinity) return; // nobody wants it, or it is no rise
+    if (l > r || l >= forever || now == -infinity) return; // nothing reads it, or it is no rise
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
     const Runs::Place place = own.find(l);
     const Run here = own.run(place);
@@ -39,8 +39,8 @@ void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
 void Engine::pass(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
-    if (state.from >= forever) return; // nobody wants it
-    if (news(own.a, reg).empty() && (own.b == none || news(own.b, reg).empty())) return;
+    if (state.from >= forever) return; // nothing reads it
+    if (new_data(own.a, reg).empty() && (own.b == none || new_data(own.b, reg).empty())) return;
     const bool greatest =
         own.kind != Kind::both && own.kind != Kind::least && own.kind != Kind::rank_least;
     const bool up = greatest == (reg == 0); // whether the register takes the greatest
@@ -55,7 +55,7 @@ void Engine::pass(std::uint32_t index, int reg) {
     case Kind::rank_greatest:
         return rank(index, reg, up);
     case Kind::held:
-        for (const Piece& piece : news(own.a, reg)) {
+        for (const Piece& piece : new_data(own.a, reg)) {
             const Tick l = piece.l == 0 ? 0 : plus(piece.l, -own.low);
             lift(state, reg, l, plus(piece.r, -own.low), piece.now);
         }
@@ -66,7 +66,7 @@ void Engine::pass(std::uint32_t index, int reg) {
     const Runs& hold = runs(own.a, reg);
     const Runs& goal = runs(own.b, reg);
     for (const std::uint32_t ref : {own.a, own.b}) {
-        for (const Piece& piece : news(ref, reg)) {
+        for (const Piece& piece : new_data(ref, reg)) {
             if (own.kind == Kind::until) {
                 up ? until<true>(state, reg, hold, goal, piece.l, piece.r)
                    : until<false>(state, reg, hold, goal, piece.l, piece.r);
@@ -89,7 +89,7 @@ void Engine::combine(std::uint32_t index, int reg, bool up) {
     const Runs& a = runs(own.a, reg);
     const Runs& b = runs(own.b, reg);
     for (const std::uint32_t ref : {own.a, own.b}) {
-        for (const Piece& piece : news(ref, reg)) {
+        for (const Piece& piece : new_data(ref, reg)) {
             if (up) {
                 lift(state, reg, piece.l, piece.r, piece.now);
                 continue;
@@ -126,7 +126,7 @@ void Engine::slide(std::uint32_t index, int reg, bool up) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);
-    for (const Piece& piece : news(own.a, reg)) {
+    for (const Piece& piece : new_data(own.a, reg)) {
         if (up) {
             lift(state, reg, plus(piece.l, -own.high), plus(piece.r, -own.low), piece.now);
         } else if (own.low <= -forever) {
@@ -146,7 +146,7 @@ void Engine::slide_least(State& state, int reg, const Node& node, const Runs& op
     Tick t = std::max(state.from, plus(piece.l, -node.high));
     Tick last = std::min(state.to, plus(piece.r, -node.low));
     if (piece.r < plus(last, node.high)) {
-        const Run next = operand.at(piece.r + 1); // nearly always what nobody has seen
+        const Run next = operand.at(piece.r + 1); // nearly always beyond what was read
         if (next.value <= piece.old) {
             last = std::min(last, piece.r - node.high);
         } else if (const auto after =

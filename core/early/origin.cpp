@@ -42,7 +42,7 @@ Origin::Origin(std::vector<Item> items, const Engine& engine, bool follows)
             state.held[r] = -state.best[r];
         }
     }
-    look(engine);
+    read(engine);
 }
 
 Bounds Origin::bounds_of(std::size_t item) const noexcept {
@@ -59,7 +59,7 @@ void Origin::limit(std::span<Tick> last) const noexcept {
     }
 }
 
-void Origin::look(const Engine& engine) {
+void Origin::read(const Engine& engine) {
     for (std::size_t i = 0; i < items_.size(); ++i)
         look_at(engine, i);
 }
@@ -84,13 +84,13 @@ void Origin::look_at(const Engine& engine, std::size_t index) noexcept {
         } else if (item.kind != Item::Kind::value) {
             if (greatest) {
                 now = state.value[r];
-                for (const Piece& piece : engine.news(item.a, reg)) {
+                for (const Piece& piece : engine.new_data(item.a, reg)) {
                     if (piece.r >= item.tick) now = Real::join(now, piece.now);
                 }
-                if (engine.news(item.a, reg).empty() && now == -infinity) {
+                if (engine.new_data(item.a, reg).empty() && now == -infinity) {
                     now = runs.most(state.next, forever);
                 }
-            } else if (state.value[r] == -infinity || !engine.news(item.a, reg).empty()) {
+            } else if (state.value[r] == -infinity || !engine.new_data(item.a, reg).empty()) {
                 now = Real::meet(state.best[r], runs.least(state.next, forever));
             } else {
                 now = state.value[r];

@@ -38,7 +38,7 @@ class Origin {
     void limit(std::span<Tick> last) const noexcept;
 
     // Looks at what the engine knows now.
-    void look(const Engine& engine);
+    void read(const Engine& engine);
 
     [[nodiscard]] Bounds value() const noexcept { return bounds_of(items_.size() - 1); }
 

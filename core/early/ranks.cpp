@@ -93,7 +93,7 @@ void Engine::rank(std::uint32_t index, int reg, bool up) {
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);
     const auto order = static_cast<Tick>(own.steps.front().x);
-    for (const Piece& piece : news(own.a, reg)) {
+    for (const Piece& piece : new_data(own.a, reg)) {
         const auto follow = [&](auto&& ranking, Tick t, Tick last) {
             while (t <= last) {
                 const double value = ranking.value();

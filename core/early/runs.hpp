@@ -3,7 +3,7 @@
 //
 // Runs lie in chunks; a directory keeps the first tick and the least and the greatest value of each
 // chunk, and those of groups of chunks, so that a search passes over what it need not look into.
-// The last run goes on for ever; runs that nobody needs any more are dropped at the front.
+// The last run goes on for ever; runs that nothing needs any more are dropped at the front.
 //
 // Cost: a search in the directory and one in a chunk for each access; a chunk is moved in part when
 // a border is added or removed. Memory: two words a run.

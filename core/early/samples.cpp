@@ -76,14 +76,14 @@ Tick Samples::certain(std::size_t input) const noexcept {
     return std::max(now_.closed, column.back().time);
 }
 
-void Samples::collect(std::vector<Engine::Lesson>& lessons) {
-    lessons.clear();
+void Samples::collect(std::vector<Engine::Observation>& observations) {
+    observations.clear();
     if (!now_.start) return;
     const bool starts = !committed_.start;
     const auto learn = [&](std::size_t input, Tick l, Tick r, const Bounds& bounds) {
         l = std::max<Tick>(0, relative(l));
         r = relative(r);
-        if (l <= r) lessons.push_back({static_cast<std::uint32_t>(input), l, r, bounds});
+        if (l <= r) observations.push_back({static_cast<std::uint32_t>(input), l, r, bounds});
     };
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         const Column& column = inputs_[i];

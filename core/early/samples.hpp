@@ -43,7 +43,7 @@ class Samples {
     void commit();
 
     // What has become known since the last commit; ticks count from the start of the trace.
-    void collect(std::vector<Engine::Lesson>& lessons);
+    void collect(std::vector<Engine::Observation>& observations);
 
     // The bounds of an input at a time, as far as they are known.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick time) const noexcept;

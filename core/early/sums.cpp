@@ -18,14 +18,14 @@ void Engine::lift(State& state, Tick l, Tick r, const Bounds& now) {
 std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
     const State& state = nodes_[index];
-    if (state.from >= forever) return std::nullopt; // nobody wants it
+    if (state.from >= forever) return std::nullopt; // nothing reads it
     if (totals_[index].undefined <= seen_) return Failure{index, 0, totals_[index].undefined};
     spans_.clear();
     if (first) {
         spans_.emplace_back(0, forever);
     } else {
         for (int reg = 0; reg < 2; ++reg) {
-            for (const Piece& piece : news(own.a, reg)) {
+            for (const Piece& piece : new_data(own.a, reg)) {
                 totals_[index].change(piece.l, piece.r);
                 spans_.emplace_back(plus(piece.l, -own.high), plus(piece.r, -own.low));
             }

@@ -31,7 +31,7 @@ class Totals {
     }
     void forget() noexcept { block_ = none; }
 
-    // The first tick with an undefined sum; those after what was seen may never be asked for.
+    // The first tick with an undefined sum; those after what was seen may never be read.
     Tick undefined = forever;
     Tick undefined_before = forever; // the last change
 

@@ -59,7 +59,7 @@ class NoteReader {
     [[nodiscard]] std::uint32_t instruction() {
         const auto index = number<std::uint32_t>();
         if (index >= program_.instructions.size()) {
-            refuse("its metadata speaks of instruction " + std::to_string(index) + " of " +
+            refuse("its metadata names instruction " + std::to_string(index) + " of " +
                    std::to_string(program_.instructions.size()));
         }
         return index;
@@ -96,7 +96,7 @@ class NoteReader {
 } // namespace
 
 Metadata Metadata::parse(const Program& program) {
-    if (program.note.empty()) refuse("it has no metadata, so nobody knows the names of its inputs");
+    if (program.note.empty()) refuse("it has no metadata, so the names of its inputs are unknown");
     NoteReader note(program);
     Metadata metadata;
     metadata.numerator = std::bit_cast<std::int64_t>(note.number<std::uint64_t>());

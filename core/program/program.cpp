@@ -178,7 +178,7 @@ class Checker {
         }
     }
 
-    // Of w values the c-th is asked for; the one after the last stands for none.
+    // Of w values the c-th is wanted; the one after the last stands for none.
     void rank() const {
         const double x = instruction_.x;
         if (x >= 1.0 && x <= static_cast<double>(instruction_.n) + 1.0 && x == std::floor(x))

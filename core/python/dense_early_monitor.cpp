@@ -101,7 +101,7 @@ PyObject* DenseEarlyMonitor::update(PyObject* time, const Named& values) noexcep
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }
-    if (decides_) return news();
+    if (decides_) return new_data();
     if (causation_) return made_of(*causation_, monitor_.caused_at_start());
     Py_RETURN_NONE;
 }
@@ -152,10 +152,10 @@ void DenseEarlyMonitor::check(const std::optional<Failure>& failure) const {
     throw nb::python_error();
 }
 
-// ---- answers ------------------------------------------------------------------------------------
+// ---- results ------------------------------------------------------------------------------------
 
 // The verdicts of the first output, in the times of the caller.
-PyObject* DenseEarlyMonitor::news() const noexcept {
+PyObject* DenseEarlyMonitor::new_data() const noexcept {
     const auto& decisions = monitor_.decisions(0);
     auto list = nb::steal(PyList_New(static_cast<Py_ssize_t>(decisions.size())));
     if (!list.is_valid()) return nullptr;

@@ -98,7 +98,7 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] bool takes(PyObject* time, const Named& values, Tick& tick) noexcept;
     [[nodiscard]] PyObject* fail(const Failure& failure) const noexcept;
     void check(const std::optional<Failure>& failure) const;
-    [[nodiscard]] PyObject* news() const noexcept;
+    [[nodiscard]] PyObject* new_data() const noexcept;
     void require_output(std::size_t output) const;
     void transfer(Snapshot& snapshot);
 };

@@ -110,7 +110,7 @@ PyObject* DenseMonitor::update(PyObject* time, const Values& values) noexcept {
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }
-    return answer();
+    return result();
 }
 
 template PyObject* DenseMonitor::update(PyObject* time, const Named& values) noexcept;
@@ -201,7 +201,7 @@ bool DenseMonitor::bind_buffers() noexcept {
     return true;
 }
 
-PyObject* DenseMonitor::answer() const noexcept {
+PyObject* DenseMonitor::result() const noexcept {
     const Events events = results_.front().view();
     nb::object signal = events.count == 0 ? nothing_ : signal_of(events);
     return signal.release().ptr();

@@ -119,7 +119,7 @@ class DenseMonitor {
     [[nodiscard]] bool read(PyObject* time, const Values& values) noexcept;
     [[nodiscard]] bool bind_buffers() noexcept;
     void close();
-    [[nodiscard]] PyObject* answer() const noexcept;
+    [[nodiscard]] PyObject* result() const noexcept;
     [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;
     [[nodiscard]] nb::tuple take(std::vector<dense::EventList>& results);
 };

@@ -80,7 +80,7 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
         return guard_.refuse("order");
     }
     std::size_t guess = 0;
-    lessons_.clear();
+    observations_.clear();
     const char* wrong = values.each([&](PyObject* name, PyObject* value) -> const char* {
         const auto input = names_.place(name, guess++, true);
         if (!input) return "names";
@@ -91,7 +91,7 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
                                      ? ranges_[*input]
                                      : engine_.known(static_cast<std::uint32_t>(*input), *index);
             if (known.lower > x || x > known.upper) return "contradiction";
-            lessons_.push_back({static_cast<std::uint32_t>(*input), *index, *index, {x, x}});
+            observations_.push_back({static_cast<std::uint32_t>(*input), *index, *index, {x, x}});
         } else if (ranges_[*input].lower > x || x > ranges_[*input].upper) {
             return "range";
         }
@@ -100,7 +100,7 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     if (wrong != nullptr) return guard_.refuse(wrong);
     if (settings_.late && *index <= closed_) return guard_.refuse("late");
     try {
-        const auto failure = settings_.late ? engine_.learn(lessons_)
+        const auto failure = settings_.late ? engine_.learn(observations_)
                                             : engine_.row(*index, std::span<const double>(row_));
         if (failure) return fail(*failure, t);
         return advance(*index, t);
@@ -140,12 +140,12 @@ nb::object EarlyMonitor::learn(double time,
     require(after);
     const auto index = times_.place(time);
     if (!index || !settings_.late || *index <= closed_) return checked(guard_.refuse("late"));
-    lessons_.clear();
+    observations_.clear();
     for (const auto& [input, lower, upper] : values) {
         if (input >= row_.size()) throw std::out_of_range("There is no such input.");
-        lessons_.push_back({input, *index, *index, {lower, upper}});
+        observations_.push_back({input, *index, *index, {lower, upper}});
     }
-    const auto failure = engine_.learn(lessons_);
+    const auto failure = engine_.learn(observations_);
     return checked(failure ? fail(*failure, time) : advance(*index, time));
 }
 
@@ -183,7 +183,7 @@ PyObject* EarlyMonitor::advance(Tick index, double time) {
     closed_ = std::max(closed_, settings_.late ? newest - settings_.lateness - 1 : newest);
     note(before);
     if (samples_ % pause == 0) settle();
-    return answer();
+    return result();
 }
 
 // Reads what the last change of the engine has changed up to the newest sample.
@@ -197,8 +197,8 @@ void EarlyMonitor::note(Tick before) {
         }
         changes_[i].collect(engine_, outputs_[i], before, newest);
     }
-    if (origin_) origin_->look(engine_);
-    if (causes_) causes_->look(engine_, *origin_, newest);
+    if (origin_) origin_->read(engine_);
+    if (causes_) causes_->read(engine_, *origin_, newest);
 }
 
 Tick EarlyMonitor::lag(std::size_t output) const {
@@ -243,7 +243,7 @@ nb::object EarlyMonitor::finish() {
             }
         }
         finished_ = true;
-        return checked(answer());
+        return checked(result());
     }
     nb::list all;
     for (const auto& rest : rests) {

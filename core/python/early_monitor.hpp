@@ -114,7 +114,7 @@ class EarlyMonitor : public EarlyBackend {
     std::vector<early::Changes> changes_;            // by output
     std::vector<early::Tick> open_;                  // by output, the first tick without a verdict
     std::vector<early::Tick> wanted_;
-    std::vector<early::Engine::Lesson> lessons_;
+    std::vector<early::Engine::Observation> observations_;
     early::Tick closed_ = -1; // nothing up to here will come
     std::int64_t samples_ = 0;
     bool finished_ = false;
@@ -126,8 +126,8 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] PyObject* advance(early::Tick index, double time);
     [[nodiscard]] early::Tick lag(std::size_t output) const;
     void settle();
-    [[nodiscard]] PyObject* news(std::size_t output) noexcept;
-    [[nodiscard]] PyObject* answer() noexcept;
+    [[nodiscard]] PyObject* new_data(std::size_t output) noexcept;
+    [[nodiscard]] PyObject* result() noexcept;
     nb::object checked(PyObject* result);
     void require(std::int64_t after);
 };

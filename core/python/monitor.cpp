@@ -185,8 +185,8 @@ PyObject* Monitor::take(double time) noexcept {
 // at the given times, or a period apart.
 double Monitor::time_of(std::int64_t sample, const std::optional<Column>& times) const {
     const auto index = static_cast<std::size_t>(sample);
-    const std::size_t so_far = clock_.stamps().count();
-    if (index < so_far) return clock_.stamps().at(index);
+    const std::size_t so_far = clock_.timestamps().count();
+    if (index < so_far) return clock_.timestamps().at(index);
     return times ? times->data()[index - so_far] : clock_.upcoming(index - so_far);
 }
 
@@ -281,12 +281,12 @@ std::uint64_t Monitor::violations() const {
 
 std::optional<double> Monitor::last_time() const {
     usage_.require_idle();
-    return clock_.stamps().last();
+    return clock_.timestamps().last();
 }
 
 std::size_t Monitor::state_bytes() const {
     usage_.require_idle();
-    return executor_.state_bytes() + clock_.stamps().bytes();
+    return executor_.state_bytes() + clock_.timestamps().bytes();
 }
 
 std::optional<double> Monitor::last(std::uint32_t instruction) const {
@@ -310,14 +310,14 @@ std::optional<double> Monitor::latest(std::size_t output) const {
 
 Result Monitor::recent(std::size_t count) const {
     usage_.require_idle();
-    const std::size_t available = clock_.stamps().available();
+    const std::size_t available = clock_.timestamps().available();
     if (count > available) {
         throw std::invalid_argument("Only the times of the last " + std::to_string(available) +
                                     " samples are remembered.");
     }
     Results results;
     results.add(count);
-    clock_.stamps().copy(count, results.pointers().front());
+    clock_.timestamps().copy(count, results.pointers().front());
     return std::move(results.hand_over().front());
 }
 

@@ -2,7 +2,7 @@
 //
 // A thread that is inside may have released the GIL, or run a Python operator that calls back. All
 // methods of a monitor hold the GIL or, without one, a critical section of the monitor's object
-// (locked_class.hpp), which protects the flag. Values are read before the guard is asked: reading
+// (locked_class.hpp), which protects the flag. Values are read before the guard is checked: reading
 // them may run Python code, too. A rejected call has a Python exception set.
 #pragma once
 

@@ -38,11 +38,11 @@ OFFLINE = [
     ({"x": [], "y": []}, "the trace is empty: give at least one sample"),
     (
         {"time": [0, 2, 1], "x": [1, 2, 3], "y": [1, 2, 3]},
-        "time does not increase at sample 2: 1 s comes after 2 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 2: 1 s comes after 2 s; sort the samples and drop repeated timestamps",
     ),
     (
         {"time": [0, 1, 1], "x": [1, 2, 3], "y": [1, 2, 3]},
-        "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated timestamps",
     ),
     (
         {"time": [0, 1, INF], "x": [1, 2, 3], "y": [1, 2, 3]},
@@ -80,7 +80,7 @@ ONLINE = [
     ((NAN, {"x": 1, "y": 1}), "time is nan at sample 1: give a finite number of seconds"),
     (
         (0.0, {"x": 1, "y": 1}),
-        "time does not increase at sample 1: 0 s comes after 0 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 1: 0 s comes after 0 s; sort the samples and drop repeated timestamps",
     ),
     (
         (2.0, {"x": 1, "y": 1}),
@@ -121,7 +121,7 @@ def test_wrong_chunk_leaves_the_monitor_as_it_was(backend: str) -> None:
         "'x' is NaN at sample 3, time 3 s: fill the gap or leave the sample out"
     )
     assert said(rtamt.TraceError, monitor.update_many, {"time": [1, 2], "x": [9, 9]}) == (
-        "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated stamps"
+        "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated timestamps"
     )
     assert said(rtamt.TraceError, monitor.update_many, {"time": [2, 4], "x": [9, 9]}) == (
         "sample 3 at 4 s is 2 s after the one before, expected 1 s (within 10%): "

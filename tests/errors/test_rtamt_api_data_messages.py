@@ -39,7 +39,7 @@ OFFLINE = {
     "text": ({"time": [0, 1], "x": [1, "a"]}, "'x' is 'a' at sample 1, expected a number"),
     "time": (
         {"time": [0, 2, 1], "x": [1, 1, 1]},
-        "time does not increase at sample 2: 1 s comes after 2 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 2: 1 s comes after 2 s; sort the samples and drop repeated timestamps",
     ),
 }
 
@@ -74,7 +74,7 @@ ONLINE = {
     "time": (
         -1,
         [("x", 1.0)],
-        "time does not increase at sample 1: -1 s comes after 0 s; sort the samples and drop repeated stamps",
+        "time does not increase at sample 1: -1 s comes after 0 s; sort the samples and drop repeated timestamps",
     ),
     "no time": (None, [("x", 1.0)], "time is None at sample 1, expected a number of seconds"),
     "infinite time": (

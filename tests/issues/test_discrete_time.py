@@ -293,7 +293,7 @@ def test_samples_out_of_order_are_an_error_and_change_nothing():
         spec.update(-1, [("x", 100.0)])
     assert str(info.value) == (
         "RTAMT Exception: time does not increase at sample 1: -1 s comes after 0 s; "
-        "sort the samples and drop repeated stamps"
+        "sort the samples and drop repeated timestamps"
     )
     assert spec.update(1, [("x", 0.0)]) == 1.0
 

@@ -62,8 +62,8 @@ def test_stamps_that_count_from_1970_give_the_period_they_were_made_with() -> No
     times = 1.7e9 + 0.001 * np.arange(50)
     result = rtamt.parse("always[0:5ms] x").evaluate({"time": times, "x": np.ones(50)})
     assert result.robustness == 1
-    stamps = np.datetime64("2026-01-01T00:00:00", "ms") + np.arange(50)
-    assert rtamt.parse("always[0:5ms] x").evaluate({"time": stamps, "x": np.ones(50)}).robustness == 1
+    timestamps = np.datetime64("2026-01-01T00:00:00", "ms") + np.arange(50)
+    assert rtamt.parse("always[0:5ms] x").evaluate({"time": timestamps, "x": np.ones(50)}).robustness == 1
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -226,10 +226,10 @@ def test_a_sampling_period_set_for_dense_time_was_an_attribute_error(name: str) 
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_both_back_ends_say_the_same_of_an_operation_that_has_no_value(time: str) -> None:
     """The core told of 'x - y', without the last digits of the time; the definition of 'x >= y'."""
-    stamps, values = [1.7e9, 1.7e9 + 1], [1.0, np.inf]
-    data: Any = {"time": stamps, "x": values, "y": values}
+    timestamps, values = [1.7e9, 1.7e9 + 1], [1.0, np.inf]
+    data: Any = {"time": timestamps, "x": values, "y": values}
     if time == "dense":
-        data = {"x": (stamps, values), "y": (stamps, values)}
+        data = {"x": (timestamps, values), "y": (timestamps, values)}
     where = ("sample 1, " if time == "discrete" else "") + "time 1700000001 s"
     for backend in BACKENDS:
         with pytest.raises(rtamt.EvaluationError) as info:

@@ -50,9 +50,9 @@ def test_an_operator_without_a_kernel_gives_the_same(op: Operator, time: str) ->
             specification(op, time, alone=False).evaluate({"x": [[0, 1.0]], "y": [[0, 1.0]]})
         return
     known, alone = (specification(op, time, alone=alone) for alone in (False, True))
-    stamps = np.arange(SAMPLES.shape[1]) * float(PERIOD)
+    timestamps = np.arange(SAMPLES.shape[1]) * float(PERIOD)
     columns = dict(zip("xy", SAMPLES, strict=True))
-    data = columns if time == "discrete" else {name: (stamps, column) for name, column in columns.items()}
+    data = columns if time == "discrete" else {name: (timestamps, column) for name, column in columns.items()}
     used = {name: data[name] for name in known.input_names}
     expected, found = known.evaluate(used).signal, alone.evaluate(used).signal
     np.testing.assert_array_equal(found.values, expected.values)
@@ -62,7 +62,7 @@ def test_an_operator_without_a_kernel_gives_the_same(op: Operator, time: str) ->
     monitor = alone.monitor()
     outputs = [
         monitor.update(float(stamp), **{name: float(columns[name][i]) for name in used})
-        for i, stamp in enumerate(stamps)
+        for i, stamp in enumerate(timestamps)
     ]
     values = [value for value in outputs if value is not None]
     np.testing.assert_array_equal(values, expected.values[: len(values)])

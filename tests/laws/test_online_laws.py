@@ -219,8 +219,8 @@ def test_one_instant_at_a_time_is_a_chunk_of_one(kind: str, data: st.DataObject)
             for name in data.draw(st.lists(st.sampled_from(names), unique=True, max_size=2))
         }
         stamp = data.draw(st.sampled_from([time, np.int64(time) if kind == "ns" else float(time)]))
-        stamps = np.array([time]) if kind == "ns" else [float(time)]
-        chunk = {name: (stamps, [value]) for name, value in values.items()}
+        timestamps = np.array([time]) if kind == "ns" else [float(time)]
+        chunk = {name: (timestamps, [value]) for name, value in values.items()}
         expected = outcome(partial(long.update_many, chunk))
         assert outcome(partial(quick.update, stamp, **values)) == expected
         assert quick.samples == long.samples

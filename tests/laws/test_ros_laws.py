@@ -50,7 +50,7 @@ class Sent(NamedTuple):
 
 @st.composite
 def traffic(draw, period, latency=True):
-    """Draw messages on three topics in the order of their arrival: bursts, gaps, jitter, equal stamps.
+    """Draw messages on three topics in the order of their arrival: bursts, gaps, jitter, equal timestamps.
 
     Those on /c have no header, so that they are of their arrival. ``latency``: whether the others arrive later.
     """
@@ -131,8 +131,10 @@ def checked(folder, text, sent, *options):
     def points(column):
         channel = found.channel(column)
         times = channel.times.tolist()  # nanoseconds, or seconds where these are exact
-        stamps = [time if isinstance(time, int) else round(Fraction(repr(time)) * 10**9) for time in times]
-        return list(zip(stamps, channel.values.tolist(), strict=True))
+        timestamps = [
+            time if isinstance(time, int) else round(Fraction(repr(time)) * 10**9) for time in times
+        ]
+        return list(zip(timestamps, channel.values.tolist(), strict=True))
 
     topics = [name.removesuffix(".value") for name in found.names if name in ("/rob.value", "/other.value")]
     return {

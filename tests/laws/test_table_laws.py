@@ -179,7 +179,7 @@ def test_every_entry_point_reads_a_table_alike_or_rejects_it_alike(asked, tmp_pa
     numbers = {name: answer for name, answer in answers.items() if isinstance(answer, float)}
     assert len(set(numbers.values())) <= 1, answers
     if asked.time == "discrete" and asked.period is None:
-        # A bound may be no multiple of what the monitor assumes, or the stamps are another period apart.
+        # A bound may be no multiple of what the monitor assumes, or the timestamps are another period apart.
         del answers["CSV on stdin"], answers["JSON on stdin"]
     missing = any(row[-2] is None for row in asked.rows)
     about_clocks = {a for a in answers.values() if isinstance(a, str) and re.search(ABOUT_CLOCKS, a)}

@@ -325,22 +325,22 @@ def test_discrete_stamps_come_back_as_they_were_given(
     start: int, way: Way, values: list[float], lag: int, backend: str, data: st.DataObject
 ) -> None:
     text = f"always(eventually[0:{7 * lag}ms](x >= 0))"
-    stamps = [start + 7 * i for i in range(len(values))]
-    recording = {"time": way.give(stamps), "x": values}
+    timestamps = [start + 7 * i for i in range(len(values))]
+    recording = {"time": way.give(timestamps), "x": values}
     spec = rtamt.parse(text, period="7ms", backend=backend)
     result = spec.evaluate(recording, time_unit=way.unit)
-    expected = np.array([way.back(t) for t in stamps])
+    expected = np.array([way.back(t) for t in timestamps])
     assert result.signal.times.dtype == expected.dtype
     assert result.signal.times.tolist() == expected.tolist()
     violated = next((i for i in range(len(values)) if max(values[i : i + lag + 1]) < 0), None)
-    same(rtamt.first_violation(result), None if violated is None else way.back(stamps[violated]))
+    same(rtamt.first_violation(result), None if violated is None else way.back(timestamps[violated]))
 
     cut = data.draw(st.integers(0, len(values)))
     chunks = [
         {name: column[part] for name, column in recording.items()} for part in (slice(cut), slice(cut, None))
     ]
     streamed = rtamt.check_stream(spec, chunks, time_unit=way.unit)
-    same(streamed.first_violation, None if violated is None else way.back(stamps[violated]))
+    same(streamed.first_violation, None if violated is None else way.back(timestamps[violated]))
     assert (streamed.robustness, streamed.satisfied) == (result.robustness, result.satisfied)
 
     online = rtamt.parse(f"eventually[0:{7 * lag}ms](x >= 0)", period="7ms", backend=backend)

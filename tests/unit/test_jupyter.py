@@ -45,8 +45,10 @@ def test_a_plot_as_last_expression_of_a_cell_is_shown_once(result, monkeypatch):
 
 @pytest.mark.parametrize("kind", ["M8[ns]", "m8[ns]", "f8"])
 def test_times_since_1970_are_dates_and_never_raw_numbers(kind):
-    stamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
-    trace = rtamt.read({"time": stamps / 1e9 if kind == "f8" else stamps.astype(kind), "x": [5, 1, 4]})
+    timestamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
+    trace = rtamt.read(
+        {"time": timestamps / 1e9 if kind == "f8" else timestamps.astype(kind), "x": [5, 1, 4]}
+    )
     result = rtamt.parse("always(x >= 3)", period="500ms").evaluate(trace)
     assert "violated, first at 2023-11-14 22:13:20.5 (+0.5 s)" in result._repr_html_()
     for text in (str(trace), trace._repr_html_()):
@@ -55,7 +57,7 @@ def test_times_since_1970_are_dates_and_never_raw_numbers(kind):
 
 
 @pytest.mark.parametrize(
-    ("stamps", "low", "high"),
+    ("timestamps", "low", "high"),
     [
         ([0.0, 1.0, 2.0, 3.0], 1, 2.0),
         (np.datetime64("2026-05-01T12:00:00", "ns") + np.array([0, 1, 2, 3], "m8[s]"),
@@ -63,8 +65,8 @@ def test_times_since_1970_are_dates_and_never_raw_numbers(kind):
         (np.array([0, 1, 2, 3], "m8[s]") + np.timedelta64(2**60, "ns"), 1152921505.5, 1152921507.0),
     ],
 )  # fmt: skip
-def test_a_slice_has_the_samples_from_one_time_to_the_other(stamps, low, high):
-    trace = rtamt.read({"time": stamps, "x": [5, 4, 2, 6]})
+def test_a_slice_has_the_samples_from_one_time_to_the_other(timestamps, low, high):
+    trace = rtamt.read({"time": timestamps, "x": [5, 4, 2, 6]})
     part = trace[low:high]
     assert part["x"].values.tolist() == [4, 2]
     assert (trace[:]["x"].values.tolist(), trace[low:]["x"].values.tolist()[-1]) == ([5, 4, 2, 6], 6)

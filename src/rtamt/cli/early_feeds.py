@@ -212,7 +212,7 @@ class CausationFeed:
 
 
 def _time(monitor: EarlyMonitor, stamp: Any) -> Any:
-    """Return the time of a sample; without stamps, samples are one period apart."""
+    """Return the time of a sample; without timestamps, samples are one period apart."""
     if stamp is not None:
         return stamp
     if not isinstance(monitor, DiscreteEarlyMonitor):

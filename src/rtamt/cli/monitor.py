@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.specification import Specification
 
-#: By how much, as a fraction, a gap may miss a period that it is: stamps since 1970 are no more precise.
+#: By how much, as a fraction, a gap may miss a period that it is: timestamps since 1970 are no more precise.
 _BLUR = 5e-7
 
 _DESCRIPTION = """\
@@ -268,8 +268,8 @@ class Output:
 class SampleFeed:
     """A monitor with the timestamps of the samples whose robustness is not known yet.
 
-    ``assumed``: whether nobody said how long the period is. A file is read with the period that its stamps
-    have, which a stream shows too late: the stamps must then be what is assumed, and not merely near it.
+    ``assumed``: whether nobody said how long the period is. A file is read with the period that its timestamps
+    have, which a stream shows too late: the timestamps must then be what is assumed, and not merely near it.
     """
 
     def __init__(self, monitor: Monitor, output: Output, names: Sequence[str], *, assumed: bool) -> None:
@@ -280,7 +280,7 @@ class SampleFeed:
         self._period = float(monitor.period)
         self._assumed = assumed
         self._last: float | None = None
-        self._stamps: deque[Any] = deque()
+        self._timestamps: deque[Any] = deque()
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is.
@@ -301,13 +301,13 @@ class SampleFeed:
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
         self._last = time
-        self._stamps.append(stamp)
+        self._timestamps.append(stamp)
         for name, known in self._parts.items():
             value = self.monitor[name]
             if isinstance(value, float):
                 known.append(value)
         if robustness is not None:
-            self._point(self._stamps.popleft(), robustness)
+            self._point(self._timestamps.popleft(), robustness)
         return ""
 
     def _differs(self, gap: float) -> bool:
@@ -321,7 +321,7 @@ class SampleFeed:
             signal = self.monitor[name]
             assert isinstance(signal, Signal)
             known.extend(signal.values.tolist())
-        for stamp, robustness in zip(self._stamps, rest.values.tolist(), strict=True):
+        for stamp, robustness in zip(self._timestamps, rest.values.tolist(), strict=True):
             self._point(stamp, robustness)
 
     def _point(self, time: Any, robustness: float) -> None:

@@ -14,7 +14,7 @@ from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
-from rtamt.signals.arrays import TIME, stamps
+from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.regular import check_regular, infer_period
 
 if TYPE_CHECKING:
@@ -253,7 +253,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     if period is not None:
         return mine.resample(period, reading.how, oldest_held(spec, reading))
     try:
-        times = stamps(mine.on_one_clock(mine.names)[TIME]).seconds
+        times = timestamps(mine.on_one_clock(mine.names)[TIME]).seconds
         check_regular(times, infer_period(times))
     except TraceError as error:
         raise TraceError(

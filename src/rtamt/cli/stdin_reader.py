@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from rtamt.readers.timestamps import Clock
     from rtamt.signals.coding import Types
 
-#: The time (None if there are no stamps) and the values.
+#: The time (None if there are no timestamps) and the values.
 Sample = tuple[Any, dict[str, float]]
 
 
@@ -59,8 +59,8 @@ class Samples:
     """Reads one sample from each line: its timestamp (None if there are none) and the values wanted.
 
     A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
-    hold some of the values only. ``time_name``: the column of stamps, "" for none, by default the one
-    that :func:`rtamt.read` would take. ``unit``: of stamps that are numbers. ``binding``: under which names the
+    hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
+    that :func:`rtamt.read` would take. ``unit``: of timestamps that are numbers. ``binding``: under which names the
     variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN.
     """
 
@@ -108,15 +108,15 @@ class Samples:
         try:
             if self._read is not None:
                 return self._read(text, number)
-            stamps = _Stamps(self._names, self._choice, self._dense)
+            timestamps = _Stamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
-                reader = JsonSamples(self._names, stamps, self._dense, self._choice, self._types)
+                reader = JsonSamples(self._names, timestamps, self._dense, self._choice, self._types)
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
             rows = CsvSamples(
                 self._names,
-                stamps,
+                timestamps,
                 self._dense,
                 text,
                 number,
@@ -181,7 +181,7 @@ class _Stamps:
         if value is None or value == "":
             raise line_error(number, str(missing_sample(name, self._samples, None)), name)
 
-    def look(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
+    def select(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
         """Look for the clock among columns and what they hold, None where that is not known yet.
 
         ``all_named``: whether every variable of the formula must be among them.
@@ -218,7 +218,7 @@ class _Stamps:
         return selection
 
     def sample(self, stamp: str | None, values: dict[str, float], number: int) -> Sample:
-        """Return a sample with its stamp, a text in line ``number``; None where there are no stamps."""
+        """Return a sample with its stamp, a text in line ``number``; None where there are no timestamps."""
         time = None
         if stamp is not None:
             assert self.clock is not None
@@ -244,14 +244,14 @@ class JsonSamples:
     def __init__(
         self,
         names: tuple[str, ...],
-        stamps: _Stamps,
+        timestamps: _Stamps,
         dense: bool,
         choice: Choice,
         types: Types,
     ) -> None:
         self._names = names
         self._types = types
-        self._stamps = stamps
+        self._timestamps = timestamps
         self._dense = dense
         self._choice = choice
         self._columns = {name: choice.names.get(name, name) for name in names}
@@ -259,19 +259,19 @@ class JsonSamples:
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
         data = object_in(text, number)
-        if self._stamps.clock is None:
-            self._stamps.look(flat(data), all_named=False)
-        clock = self._stamps.clock
+        if self._timestamps.clock is None:
+            self._timestamps.select(flat(data), all_named=False)
+        clock = self._timestamps.clock
         names = [name for name in self._names if clock is None or name != TIME]
         columns = self._columns
         for name in self._choice.others:
             columns[name] = self._choice.column_of(name, partial(has_value, data))
         names = [name for name in names if not self._dense or has_value(data, columns[name])]
         for name in names:
-            self._stamps.require(columns[name], given_in(data, columns[name], number, name), number)
+            self._timestamps.require(columns[name], given_in(data, columns[name], number, name), number)
         values = {name: number_in(data, columns[name], number, self._types.get(name)) for name in names}
         stamp = None if clock is None else stamp_in(data, clock.field.column, number)
-        return self._stamps.sample(stamp, values, number)
+        return self._timestamps.sample(stamp, values, number)
 
 
 class CsvSamples:
@@ -280,7 +280,7 @@ class CsvSamples:
     def __init__(
         self,
         names: tuple[str, ...],
-        stamps: _Stamps,
+        timestamps: _Stamps,
         dense: bool,
         text: str,
         number: int,
@@ -291,7 +291,7 @@ class CsvSamples:
     ) -> None:
         self._types = types
         self._dense = dense
-        self._stamps = stamps
+        self._timestamps = timestamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
         columns = [*self._header.names, *(split_unit(column)[0] for column in self._header.names)]
         known = {*names, *recorded}
@@ -302,7 +302,7 @@ class CsvSamples:
                 f'expected a JSON object, such as {{"time": 0, "x": 1}}, or a row of CSV column names, '
                 f"got '{shown}'",
             )
-        selection = stamps.look((column, None) for column in self._header.names)
+        selection = timestamps.select((column, None) for column in self._header.names)
         assert selection is not None
         self._columns = [
             Column(name, self._header.names.index(f.column), skip_nan) for name, f in selection.signals
@@ -318,13 +318,13 @@ class CsvSamples:
         except csv.Error as error:
             raise header.error(number, str(error)) from None
         check_width(row, header, number)
-        if self._stamps.clock is None:
-            self._stamps.look(zip(header.names, (cell.strip() or None for cell in row), strict=True))
+        if self._timestamps.clock is None:
+            self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))
         given = self._columns
         if self._dense:
             given = [c for c in given if row[c.position].strip()]
         for column in given:
-            self._stamps.require(column.name, row[column.position].strip(), number)
+            self._timestamps.require(column.name, row[column.position].strip(), number)
         members = {c.name: self._member(c, row, number) for c in given if c.name in self._types}
         codes = {name: code for name, code in members.items() if code is not None}
         given = [c for c in given if c.name not in codes]
@@ -333,9 +333,9 @@ class CsvSamples:
         values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         values |= codes
-        clock = self._stamps.clock
+        clock = self._timestamps.clock
         stamp = None if clock is None else row[header.names.index(clock.field.column)]
-        return self._stamps.sample(stamp, values, number)
+        return self._timestamps.sample(stamp, values, number)
 
     def _member(self, column: Column, row: Sequence[str], number: int) -> float | None:
         """Return the code of the member in a cell, None where a number is expected."""

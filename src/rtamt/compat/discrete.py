@@ -117,14 +117,14 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         :class:`RTAMTException` for wrong data.
         """
         formula = self._result
-        stamps, trace = self._trace(dataset)
+        timestamps, trace = self._trace(dataset)
         values = signal(self._apply_semantics(formula), trace).values
-        gaps = np.diff(stamps)
+        gaps = np.diff(timestamps)
         period = self._period_in_units
         self._violations = int(np.count_nonzero(np.abs(gaps - period) > self._tolerance * period))
         self._value_of = partial(self._values_over, trace)
         self._remember(formula, trace)
-        result: list[list[float]] = np.column_stack((stamps, values)).tolist()
+        result: list[list[float]] = np.column_stack((timestamps, values)).tolist()
         return result
 
     def _values_over(self, trace: DiscreteTrace, part: Formula) -> list[float]:
@@ -135,11 +135,11 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         """Return the timestamps as given, and the trace in seconds, regardless of the gaps between samples."""
         keys = dataset if isinstance(dataset, Mapping) else getattr(dataset, "columns", ())
         columns = {key: dataset[key] for key in keys}
-        stamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
-        if stamps is not None:
-            columns[TIME] = stamps * float(UNITS[self._unit])
+        timestamps = arrays.array(columns[TIME], TIME) if TIME in columns else None
+        if timestamps is not None:
+            columns[TIME] = timestamps * float(UNITS[self._unit])
         unit = "s" if columns else None  # given by the specification, so that large numbers are valid seconds
         trace = record_discrete(columns or dataset, self._inputs, self._period, inf, unit)
-        if stamps is None:
+        if timestamps is None:
             raise missing_variable(TIME, tuple(columns))
-        return stamps, trace
+        return timestamps, trace

@@ -84,8 +84,8 @@ def core_monitor(
     except RuntimeError as error:
         raise not_made(program, error) from None
     except MemoryError:
-        stamps = 8 * (max(program.lags) + 1)  # of the samples whose values are still to come
-        gibibytes = (_core.memory(code, calls) + stamps) / 2**30
+        timestamps = 8 * (max(program.lags) + 1)  # of the samples whose values are still to come
+        gibibytes = (_core.memory(code, calls) + timestamps) / 2**30
         raise UsageError(
             f"the monitor needs {gibibytes:.3g} GiB of memory, which this machine does not give; "
             f"shorten the longest bound or lengthen the period"

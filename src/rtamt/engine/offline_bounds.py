@@ -28,7 +28,7 @@ def discrete(formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
     columns = {name: Enclosure(*ends) for name, ends in trace.bounds.items()}
     known = Knowledge(columns, len(trace), finished=True)
     found = discrete_bounds.bounds(formula, known, trace.period, float(trace.times[0]))
-    return BoundedSignal(trace.stamps, found.lower, found.upper)
+    return BoundedSignal(trace.timestamps, found.lower, found.upper)
 
 
 def dense(formula: Formula, trace: DenseTrace) -> BoundedSignal:

@@ -21,7 +21,7 @@ _FAR = 1e5
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless stamps start far from it).
+    """Positions are seconds after ``origin``: a date, or a number of seconds (0, unless timestamps start far from it).
 
     Numbers of seconds that are a time since 1970 are a date.
     """

@@ -192,7 +192,7 @@ def _check_skipped(source: Source, found: Sequence[tuple[str, Table, Field]], ch
 
 
 def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
-    """Return whether 'time' means the stamps; the engine reads them under that name."""
+    """Return whether 'time' means the timestamps; the engine reads them under that name."""
     fields = [field for table in source.tables for field in table.fields]
     if any(TIME in (field.column, field.name) for field in fields):
         return any(_time_field(source, table, choice)[0] is not None for table in source.tables)

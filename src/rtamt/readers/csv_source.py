@@ -117,7 +117,7 @@ def _blocks(
 
 
 def _whole(column: Raw) -> Raw:
-    """Return a column of integers as int64: stamps are exact then."""
+    """Return a column of integers as int64: timestamps are exact then."""
     return column.astype(np.int64) if (np.isfinite(column) & (column == np.rint(column))).all() else column
 
 

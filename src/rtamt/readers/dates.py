@@ -89,21 +89,21 @@ class Dates:
         return found.view(f"{self._kind or 'M'}8[ns]")
 
     def _of_texts(self, texts: Sequence[tuple[int, str]]) -> Raw:
-        stamps, offsets = [], []
+        timestamps, offsets = [], []
         for i, text in texts:
             match = _DATE.fullmatch(text)
             if match is None:
                 raise DateError(i, f"expected a date such as {EXAMPLE}, like those before")
             zone = match["zone"]
             self._zone(i, zone is not None)
-            stamps.append(f"{match['date']}T{match['time'] or '00:00'}")
+            timestamps.append(f"{match['date']}T{match['time'] or '00:00'}")
             offsets.append(_offset(i, zone))
             if int(text[:4]) not in _YEARS:
                 raise DateError(i, "a year that nanoseconds since 1970 cannot reach")
         try:
-            moments: Raw = np.array(stamps, dtype="M8[ns]") - np.array(offsets, dtype="m8[m]")
+            moments: Raw = np.array(timestamps, dtype="M8[ns]") - np.array(offsets, dtype="m8[m]")
         except ValueError:
-            i = next(i for (i, _), stamp in zip(texts, stamps, strict=True) if _is_no_date(stamp))
+            i = next(i for (i, _), stamp in zip(texts, timestamps, strict=True) if _is_no_date(stamp))
             raise DateError(i, "which is no date of the calendar") from None
         return moments
 

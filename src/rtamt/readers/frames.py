@@ -53,7 +53,7 @@ def kind_of(raw: Raw) -> str:
 def table_of(
     columns: Mapping[str, Raw], clock: str | None = None, units: Mapping[str, str] | None = None
 ) -> Table:
-    """Return arrays of one length as a table; ``clock``: the column that is known to hold the stamps."""
+    """Return arrays of one length as a table; ``clock``: the column that is known to hold the timestamps."""
     fields = {}
     for column, raw in columns.items():
         field = field_of(str(column), kind_of(raw))

@@ -163,12 +163,12 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
 
 
 class _Rows:
-    """Messages of a topic in the order of their stamps, of which some fields are wanted."""
+    """Messages of a topic in the order of their timestamps, of which some fields are wanted."""
 
     def __init__(self, topic: _Topic, wanted: Sequence[Field]) -> None:
         self._topic, self._wanted = topic, wanted
         self._paths = [topic.steps[field.column] for field in wanted if field != topic.table.clock]
-        self._stamps: list[int] = []
+        self._timestamps: list[int] = []
         self._rows: list[list[Any]] = []
         self._recodings: dict[int, Recoding] = {}
         self._last: tuple[int, list[Any]] | None = None
@@ -183,14 +183,14 @@ class _Rows:
                 self._others += row != self._last[1]
                 return
             raise TraceError(
-                f"the stamps on {self._topic.name} go back by {(self._last[0] - stamp) / 1e9:.9g} s at message "
+                f"the timestamps on {self._topic.name} go back by {(self._last[0] - stamp) / 1e9:.9g} s at message "
                 f"{self._count}: was simulated time set back? Cut the bag there"
             )
         if not self._count:
             self._recodings = self._recodings_of(message)
         self._count += 1
         self._last = stamp, row
-        self._stamps.append(stamp)
+        self._timestamps.append(stamp)
         self._rows.append(row)
 
     def _recodings_of(self, message: Any) -> dict[int, Recoding]:
@@ -211,8 +211,8 @@ class _Rows:
         for place, recoding in self._recodings.items():
             for row in rows:
                 row[place] = None if row[place] is None else recoding(float(row[place]))
-        found = _columns(self._wanted, table.clock, self._stamps, rows)
-        self._stamps, self._rows = [], []
+        found = _columns(self._wanted, table.clock, self._timestamps, rows)
+        self._timestamps, self._rows = [], []
         return found
 
 
@@ -235,12 +235,14 @@ def _repeated(topic: str, count: int) -> str:
     )
 
 
-def _columns(wanted: Sequence[Field], clock: Field, stamps: list[int], rows: list[list[Any]]) -> list[Raw]:
+def _columns(
+    wanted: Sequence[Field], clock: Field, timestamps: list[int], rows: list[list[Any]]
+) -> list[Raw]:
     values: Iterator[tuple[Any, ...]] = iter(zip(*rows, strict=True) if rows else [()] * len(wanted))
     found: list[Raw] = []
     for field in wanted:
         if field == clock:
-            found.append(np.array(stamps, dtype=np.int64))
+            found.append(np.array(timestamps, dtype=np.int64))
             continue
         column = next(values)
         missing = [value is None for value in column]

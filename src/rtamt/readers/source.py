@@ -39,7 +39,7 @@ CHUNK = 65_536
 class Field:
     """A column.
 
-    ``kind``: "number", "time" (dates, stamps of a known unit), "text", or "" while unknown. ``skip_nan``:
+    ``kind``: "number", "time" (dates, timestamps of a known unit), "text", or "" while unknown. ``skip_nan``:
     whether a NaN in it is a missing value, and no mistake. ``type``: of the variable, if its values may be names.
     """
 

@@ -66,7 +66,7 @@ def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
 
 
 class Clock:
-    """How the stamps of a column become times, a few at a time: the first one decides for all.
+    """How the timestamps of a column become times, a few at a time: the first one decides for all.
 
     ``said``: the unit that the caller gives. ``notes``: what was guessed.
     """
@@ -96,9 +96,9 @@ class Clock:
         return unit
 
     def times(self, raw: Raw, before: int = 0) -> NDArray[Any]:
-        """Return the next stamps as times: float64 seconds, timedelta64[ns] or datetime64[ns].
+        """Return the next timestamps as times: float64 seconds, timedelta64[ns] or datetime64[ns].
 
-        ``before``: how many stamps there were before. Raises :class:`TraceError` at one that is missing
+        ``before``: how many timestamps there were before. Raises :class:`TraceError` at one that is missing
         or is no time.
         """
         raw = self._plain(raw, before)
@@ -133,7 +133,7 @@ class Clock:
     # ---- what is in the cells --------------------------------------------------------------------
 
     def _plain(self, raw: Raw, before: int) -> Raw:
-        """Return stamps as numbers or dates of numpy, none of which is missing."""
+        """Return timestamps as numbers or dates of numpy, none of which is missing."""
         if self._dates is not None or raw.dtype.kind in "OUS":
             raw = self._of_objects(_objects(raw), before)
         missing = np.isnat(raw) if raw.dtype.kind in "mM" else np.ma.getmaskarray(raw)

@@ -113,7 +113,7 @@ class RosMonitor:
         self.wanted: Container[str] | None = None
         self._values: dict[str, float] = {}
         self._heard: dict[str, int] = {}  # the arrival of a topic's last message
-        self._stamps: dict[str, int] = {}  # the timestamp of its last message
+        self._timestamps: dict[str, int] = {}  # the timestamp of its last message
         self._last: int | None = None  # the latest tick or arrival
         self._silent: set[str] = set()
         self._notices: list[Notice] = []
@@ -176,15 +176,15 @@ class RosMonitor:
         if self._skip_nan and any(map(isnan, values.values())):
             return records
         stamp = stamp_of(message) or now
-        last = self._stamps.get(topic)
+        last = self._timestamps.get(topic)
         # Before the simulated clock is set, messages without a timestamp are ordered by arrival only.
         if last is not None and stamp <= last and (stamp or self._by_message):
             if stamp == last:
                 self._repeat(topic)
                 return records
-            self._begin_anew(f"the stamps on {topic} went back by {seconds_text(last - stamp)}")
+            self._begin_anew(f"the timestamps on {topic} went back by {seconds_text(last - stamp)}")
         self._arrived(topic, now)
-        self._stamps[topic] = stamp
+        self._timestamps[topic] = stamp
         self._faults.pop(topic, None)
         self._repeated.discard(topic)
         self._values.update(values)
@@ -233,7 +233,7 @@ class RosMonitor:
             apart = f"{seconds_text(abs(stamp - now))} {'behind' if stamp < now else 'ahead of'}"
             self._say(
                 Level.WARN,
-                f"the stamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
+                f"the timestamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
             )
         return foreign
 
@@ -277,7 +277,7 @@ class RosMonitor:
             topic for topic, heard in self._heard.items() if self._stale and now - heard > self._stale
         ]:
             self._forget(topic)
-            self._stamps.pop(topic, None)
+            self._timestamps.pop(topic, None)
             self._silent.discard(topic)
         for group in self._sampled:
             group.leap(now)
@@ -290,7 +290,7 @@ class RosMonitor:
             group.forget()
         self._values.clear()
         self._heard.clear()
-        self._stamps.clear()
+        self._timestamps.clear()
         self._silent.clear()
         self._say(Level.WARN, f"{why}: all monitors begin anew")
 

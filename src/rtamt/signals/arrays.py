@@ -63,7 +63,7 @@ class Clocked(ABC):
         """Return times and values for each name."""
 
 
-class Stamps(NamedTuple):
+class Timestamps(NamedTuple):
     """Timestamps in seconds, and in the caller's format: the same seconds, another unit, dates or durations."""
 
     seconds: FloatArray
@@ -87,7 +87,7 @@ def units_of(data: Any) -> Mapping[str, str]:
 
 def columns_of(
     data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES
-) -> tuple[Stamps | None, dict[str, FloatArray], int]:
+) -> tuple[Timestamps | None, dict[str, FloatArray], int]:
     """Return the timestamps (None if there are none), a column for each name, and their common length.
 
     ``types``: of the variables that may be given by the names of members.
@@ -99,7 +99,7 @@ def columns_of(
     if not is_mapping(data):
         check_frame(data, TIME, names)
     columns = {name: _column(data, keys, name, types.get(name)) for name in names}
-    times = stamps(data[TIME], unit) if TIME in keys else None
+    times = timestamps(data[TIME], unit) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
 
 
@@ -188,7 +188,7 @@ def number_of(value: Any) -> float | None:
     return None if isinf(number) and value not in (number, -number) else number
 
 
-def stamps(values: Any, unit: str | None = None) -> Stamps:
+def timestamps(values: Any, unit: str | None = None) -> Timestamps:
     """Return timestamps in seconds and as given; numbers are in ``unit`` or seconds, dates count from 1970.
 
     Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN seconds.
@@ -211,19 +211,19 @@ def stamps(values: Any, unit: str | None = None) -> Stamps:
         )
         seconds = quotients(original.view(np.int64), 1, 10**9)
         seconds[np.isnat(original)] = np.nan
-        return Stamps(seconds, original)
+        return Timestamps(seconds, original)
     numbers = array(values, TIME)
     if unit is None:
         refuse_implausible(raw, TIME)
-        return Stamps(numbers, numbers)
+        return Timestamps(numbers, numbers)
     size = UNITS[unit]
     if not raw.size or (raw.dtype.kind in "iuO" and all_integers(raw)):
         try:
             whole = integers(raw)
         except OverflowError:
             raise TraceError(f"'{TIME}' has an integer that 64 bits cannot hold", variable=TIME) from None
-        return Stamps(quotients(whole, *size.as_integer_ratio()), whole)
-    return Stamps(in_seconds(numbers, size), numbers)
+        return Timestamps(quotients(whole, *size.as_integer_ratio()), whole)
+    return Timestamps(in_seconds(numbers, size), numbers)
 
 
 def _moments(raw: NDArray[Any]) -> NDArray[Any]:
@@ -340,7 +340,7 @@ def field_of(value: Any, head: str, path: Sequence[str], index: int) -> Any:
 
 
 def _common_length(
-    columns: Mapping[str, FloatArray], times: Stamps | None, data: Any, keys: Sequence[str]
+    columns: Mapping[str, FloatArray], times: Timestamps | None, data: Any, keys: Sequence[str]
 ) -> int:
     lengths = {name: len(column) for name, column in columns.items()}
     if times is not None:

@@ -15,7 +15,7 @@ from rtamt.signals import arrays
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rtamt.signals.arrays import Stamps
+    from rtamt.signals.arrays import Timestamps
 
 #: The names of time formats in messages, by the kind of their dtype.
 _KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
@@ -41,22 +41,22 @@ class CallerTimes:
         """Whether all timestamps are seconds."""
         return self.unit is None and self.original is None
 
-    def read(self, times: Any, samples: int) -> Stamps:
+    def read(self, times: Any, samples: int) -> Timestamps:
         """Return times given by the caller; ``samples``: the number of previous samples.
 
         Raises :class:`TraceError` if their format differs from that of previous times.
         """
-        stamps = arrays.stamps(times, self.unit)
-        self.require_alike(stamps, samples)
-        return stamps
+        timestamps = arrays.timestamps(times, self.unit)
+        self.require_alike(timestamps, samples)
+        return timestamps
 
-    def require_alike(self, stamps: Stamps, samples: int) -> None:
+    def require_alike(self, timestamps: Timestamps, samples: int) -> None:
         """Raise :class:`TraceError` if the format of timestamps differs from that of the ``samples`` before."""
         if self.unit is None and samples:
             before = "f" if self.original is None else self.original.dtype.kind
-            if stamps.original.dtype.kind != before:
+            if timestamps.original.dtype.kind != before:
                 raise TraceError(
-                    f"'{arrays.TIME}' is in {_KINDS[stamps.original.dtype.kind]} at sample {samples}, but before "
+                    f"'{arrays.TIME}' is in {_KINDS[timestamps.original.dtype.kind]} at sample {samples}, but before "
                     f"in {_KINDS[before]}: use one of them for all",
                     variable=arrays.TIME,
                     index=samples,
@@ -75,12 +75,12 @@ class CallerTimes:
             dtype = self.original.dtype
             last = arrays.plain(self.original[-1:].view(_NUMBERS[dtype.kind])[0])
             start = Fraction(last) + self.period_in_unit(dtype)
-        stamps = [start + i * self.period_in_unit(dtype) for i in range(count)]
+        timestamps = [start + i * self.period_in_unit(dtype) for i in range(count)]
         if dtype.kind in "mM":
-            return np.array([round(stamp) for stamp in stamps], np.int64).view(dtype)
-        if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in stamps):
-            return np.array([int(stamp) for stamp in stamps], np.int64)
-        return np.array([float(stamp) for stamp in stamps])
+            return np.array([round(stamp) for stamp in timestamps], np.int64).view(dtype)
+        if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in timestamps):
+            return np.array([int(stamp) for stamp in timestamps], np.int64)
+        return np.array([float(stamp) for stamp in timestamps])
 
     def period_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
         """Return how much a period is in times of a format."""

@@ -13,7 +13,7 @@ import numpy as np
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import UNITS, decimal, positive_period
 from rtamt.rewrite.check import PERIODS, check_bounds
-from rtamt.signals.arrays import Stamps, check_numbers, columns_of, is_number, plain, stamps, units_of
+from rtamt.signals.arrays import Timestamps, check_numbers, columns_of, is_number, plain, timestamps, units_of
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
@@ -216,18 +216,18 @@ class DiscreteTrace(DomainTrace):
 
     def signals(self, values: Sequence[FloatArray]) -> list[Signal]:
         """See :class:`DomainTrace`; all signals share its timestamps, which cannot be written."""
-        stamps = self.stamps.view()
-        stamps.flags.writeable = False
-        return [Signal(stamps, column) for column in values]
+        timestamps = self.timestamps.view()
+        timestamps.flags.writeable = False
+        return [Signal(timestamps, column) for column in values]
 
     @property
-    def stamps(self) -> NDArray[Any]:
+    def timestamps(self) -> NDArray[Any]:
         """The timestamps in the caller's format."""
         return self.times if self.original is None else self.original
 
     def time(self, position: int) -> Any:
         """See :class:`DomainTrace`: a number of Python, or a date or duration of numpy."""
-        return plain(self.stamps[position])
+        return plain(self.timestamps[position])
 
     def show(self, position: int) -> str:
         """See :class:`DomainTrace`."""
@@ -242,7 +242,7 @@ class DiscreteTrace(DomainTrace):
     def position(self, at: Any) -> int:
         """See :class:`DomainTrace`."""
         try:
-            seconds: Any = stamps([at], self.unit).seconds[0]
+            seconds: Any = timestamps([at], self.unit).seconds[0]
         except StlError:
             seconds = None
         if is_number(seconds) and isfinite(seconds):
@@ -258,32 +258,34 @@ class DiscreteTrace(DomainTrace):
     @property
     def origin(self) -> Fraction | np.datetime64:
         """See :class:`DomainTrace`."""
-        first = self.stamps[0]
+        first = self.timestamps[0]
         if isinstance(first, np.timedelta64):
             return Fraction(nanoseconds_of(first) or 0, 10**9)
         return first if isinstance(first, np.datetime64) else Fraction(repr(float(self.times[0])))
 
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
         """See :class:`DomainTrace`."""
-        own = isinstance(times, np.ndarray) and _same(times, self.stamps)  # of a signal over this recording
+        own = isinstance(times, np.ndarray) and _same(
+            times, self.timestamps
+        )  # of a signal over this recording
         if own and not elapsed:
             return self.times
-        given = Stamps(self.times, self.stamps) if own else stamps(times, self.unit)
+        given = Timestamps(self.times, self.timestamps) if own else timestamps(times, self.unit)
         if not elapsed:
             return given.seconds
         if given.original.dtype.kind in "mM":  # exact, while seconds since 1970 are rounded to 0.2 µs
-            return quotients((given.original - self.stamps[0]).view(np.int64), 1, 10**9)
+            return quotients((given.original - self.timestamps[0]).view(np.int64), 1, 10**9)
         since: FloatArray = given.seconds - self.times[0]
         return since
 
     def ends(self, *, elapsed: bool) -> tuple[float, float]:
         """See :class:`DomainTrace`."""
-        first, last = self.seconds(self.stamps[[0, -1]], elapsed=elapsed).tolist()
+        first, last = self.seconds(self.timestamps[[0, -1]], elapsed=elapsed).tolist()
         return first, last
 
     def points(self, name: str, *, elapsed: bool) -> tuple[FloatArray, FloatArray]:
         """See :class:`DomainTrace`."""
-        return self.seconds(self.stamps, elapsed=elapsed), self.columns[name]
+        return self.seconds(self.timestamps, elapsed=elapsed), self.columns[name]
 
 
 def record_discrete(
@@ -297,9 +299,9 @@ def record_discrete(
     """Normalise a finished recording; the caller's data is never changed.
 
     ``data``: a mapping, or anything with columns (a pandas or polars frame), from variable to n
-    numbers; ``"time"`` (n stamps, seconds or datetimes) is optional. ``names`` are the variables the
+    numbers; ``"time"`` (n timestamps, seconds or datetimes) is optional. ``names`` are the variables the
     formula reads; others do no harm. Without a ``period`` (seconds) it is taken
-    from the stamps. ``unit``: of stamps that are numbers, by default seconds. ``types``: of the variables
+    from the timestamps. ``unit``: of timestamps that are numbers, by default seconds. ``types``: of the variables
     that are no plain numbers. Raises :class:`TraceError`.
     """
     stamped, columns, n = columns_of(data, names, unit, types)

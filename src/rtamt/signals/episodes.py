@@ -150,8 +150,8 @@ class WindowTracker:
         if first >= end:
             return
         self._begun()
-        stamps = positions if times is None else times
-        self._tracker.take(_notable(stamps[first:end], values[first:end]))
+        timestamps = positions if times is None else times
+        self._tracker.take(_notable(timestamps[first:end], values[first:end]))
         self._last = int(positions[end - 1]), float(values[end - 1])
 
     def _begun(self) -> None:

@@ -92,7 +92,7 @@ def not_increasing(index: int, time: float, before: float) -> TraceError:
     """Return the error for a timestamp that is not later than its predecessor."""
     return TraceError(
         f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
-        f"sort the samples and drop repeated stamps",
+        f"sort the samples and drop repeated timestamps",
         variable=TIME,
         index=index,
         time=time,

@@ -184,10 +184,10 @@ def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> 
     first, each = start * 10**9, step * 10**9
     if each.denominator != 1:
         raise UsageError(
-            f"the period {step} s is no whole number of nanoseconds, in which the stamps are counted"
+            f"the period {step} s is no whole number of nanoseconds, in which the timestamps are counted"
         )
-    stamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
-    return stamps.astype(dtype)
+    timestamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
+    return timestamps.astype(dtype)
 
 
 def _plain(gaps: Times) -> FloatArray:

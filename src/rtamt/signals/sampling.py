@@ -95,7 +95,7 @@ def _channel(name: str, times: Any, values: Any) -> Channel:
     )
     if raw.dtype.kind == "O":
         absent = absent | np.array([value is None for value in raw], dtype=bool)
-    seconds, original = arrays.stamps(times)
+    seconds, original = arrays.timestamps(times)
     if len(seconds) != len(raw):
         raise TraceError(
             f"'{name}' has {len(seconds)} times but {len(raw)} values: give one of each for every sample",

@@ -19,7 +19,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import positive_period
-from rtamt.signals.arrays import TIME, Clocked, stamps
+from rtamt.signals.arrays import TIME, Clocked, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
@@ -413,4 +413,4 @@ def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
 
 def in_seconds(times: Times) -> FloatArray:
     """Return times as float64 seconds; datetimes count from 1970."""
-    return stamps(times).seconds
+    return timestamps(times).seconds

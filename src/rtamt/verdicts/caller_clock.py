@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _FEW = 64
 
 
-class Stamp(NamedTuple):
+class Timestamp(NamedTuple):
     """A time in seconds, and as the caller gave it: an array of one, None where that is the same."""
 
     seconds: float
@@ -52,17 +52,17 @@ class CallerClock:
         copy._limit = self._limit
         return copy
 
-    def read(self, time: Any, samples: int) -> Stamp | None:
+    def read(self, time: Any, samples: int) -> Timestamp | None:
         """Return a time, None for a number of seconds; ``samples``: how many came before.
 
         Raises :class:`TraceError` for what is no time, or of another form than the times before.
         """
         if self.plain and (samples or not arrays.is_moment(time)):
             return None
-        stamps = self._times.read([time], samples)
-        return Stamp(float(stamps.seconds[0]), stamps.original)
+        timestamps = self._times.read([time], samples)
+        return Timestamp(float(timestamps.seconds[0]), timestamps.original)
 
-    def take(self, stamp: Stamp, *, begun: bool) -> None:
+    def take(self, stamp: Timestamp, *, begun: bool) -> None:
         """Remember the time of a sample; ``begun``: whether it is known where the trace starts.
 
         From then on a late sample has the time that follows from those before it, as in the back end.
@@ -76,7 +76,7 @@ class CallerClock:
             self._seconds.insert(place, stamp.seconds)
             self._originals.insert(place, stamp.original)
 
-    def _continues(self, stamp: Stamp) -> bool:
+    def _continues(self, stamp: Timestamp) -> bool:
         """Return whether a time follows from the last one that is kept, in both forms."""
         if not self._seconds:
             return False

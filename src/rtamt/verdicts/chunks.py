@@ -139,7 +139,7 @@ class Requirement:
         found = tracker.summary()
         return (
             found.with_times(time) if self._dense else found
-        )  # in discrete time it has the stamps of samples
+        )  # in discrete time it has the timestamps of samples
 
 
 class Output:
@@ -158,8 +158,8 @@ class Output:
     ) -> None:
         """Take what became known.
 
-        ``last``: the last position that minima and episodes are about; ``times``: the stamps of samples, if a position
-        alone does not give them.
+        ``last``: the last position that minima and episodes are about; ``times``: the timestamps of samples, if
+        a position alone does not give them.
         """
         for tracker in self.trackers:
             tracker.take(positions, values)

@@ -18,7 +18,7 @@ from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.signals.samples import read_time
-from rtamt.verdicts.caller_clock import CallerClock, Stamp
+from rtamt.verdicts.caller_clock import CallerClock, Timestamp
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 
 if TYPE_CHECKING:
@@ -115,11 +115,11 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """How many samples came, also if they are not in the back end yet."""
         return self.samples
 
-    def _stamp(self, time: Any) -> Stamp:
+    def _stamp(self, time: Any) -> Timestamp:
         """Return a time in seconds and as it was given; raise :class:`TraceError` for anything else."""
         stamp = self._clock.read(time, self._count)
         if stamp is None:
-            return Stamp(read_time(time, self.samples, None))
+            return Timestamp(read_time(time, self.samples, None))
         if not isfinite(stamp.seconds):
             raise TraceError(
                 f"time is {stamp.seconds} at sample {self.samples}: give a finite number of seconds"
@@ -132,7 +132,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     def _seconds(self, time: Any) -> float:
         return self._stamp(time).seconds
 
-    def _remember(self, stamp: Stamp, *, begun: bool = True) -> None:
+    def _remember(self, stamp: Timestamp, *, begun: bool = True) -> None:
         """Remember the time of a sample that the back end has taken, if it was not given in seconds."""
         if stamp.original is None:
             return

@@ -83,8 +83,8 @@ def in_parts(trace: Trace, size: int = 4096) -> Iterator[Trace]:
             if times is not None and channel.times is not None:
                 last = None if end >= len(times) else np.searchsorted(channel.times, times[end])
                 here = slice(np.searchsorted(channel.times, times[begin]), last)
-            stamps = None if channel.times is None else channel.times[here]
-            part[name] = replace(channel, times=stamps, values=channel.values[here])
+            timestamps = None if channel.times is None else channel.times[here]
+            part[name] = replace(channel, times=timestamps, values=channel.values[here])
         yield trace.with_channels(part)
 
 
@@ -152,22 +152,22 @@ class DiscreteEarlyCheck(EarlyCheck):
 
     def take(self, chunk: Any) -> bool:
         """See :class:`EarlyCheck`."""
-        stamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types)
+        timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types)
         if not n:
             return False
         if self._period is None:
-            self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
+            self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
         if not self._samples:
             self._begin(self._period)
-        if stamps is not None:
-            check_increasing(stamps.seconds, self._last, self._samples)
-            check_regular(stamps.seconds, self._period, self._tolerance, self._last, self._samples)
-            self._last = float(stamps.seconds[-1])
+        if timestamps is not None:
+            check_increasing(timestamps.seconds, self._last, self._samples)
+            check_regular(timestamps.seconds, self._period, self._tolerance, self._last, self._samples)
+            self._last = float(timestamps.seconds[-1])
         step = float(self._period)
         self._times += (
             [i * step for i in range(self._samples, self._samples + n)]
-            if stamps is None
-            else [arrays.plain(time) for time in stamps.original]
+            if timestamps is None
+            else [arrays.plain(time) for time in timestamps.original]
         )
         if not self._samples:
             self._start = self._times[0]

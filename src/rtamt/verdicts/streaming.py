@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from rtamt.engine.discrete.monitor import Monitor
     from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics
-    from rtamt.signals.arrays import Stamps
+    from rtamt.signals.arrays import Timestamps
     from rtamt.signals.dense import Dense
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain_interface import TimeDomain
@@ -152,24 +152,24 @@ class DiscreteStream(Stream):
         self._period = domain.period
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
-        # The stamps of positions where something is violated, and of the first.
+        # The timestamps of positions where something is violated, and of the first.
         self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
         """See :class:`Stream`."""
-        stamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
+        timestamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
         if not n:
             return
         if self._monitor is None:
-            self._monitor = self._begin(stamps)
-        self._known(self._monitor, push_samples(self._monitor, stamps, columns, n))
+            self._monitor = self._begin(timestamps)
+        self._known(self._monitor, push_samples(self._monitor, timestamps, columns, n))
         self.samples += n
 
-    def _begin(self, stamps: Stamps | None) -> Monitor:
-        if stamps is not None:
-            check_increasing(stamps.seconds)
+    def _begin(self, timestamps: Timestamps | None) -> Monitor:
+        if timestamps is not None:
+            check_increasing(timestamps.seconds)
         if self._period is None:
-            self._period = Fraction(1) if stamps is None else infer_period(stamps.seconds)
+            self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
         domain = Discrete(self._period, self._tolerance)
         domain.check(self.spec.formula, self.spec.text)
         spec = self._group.begin(domain, self.spec)

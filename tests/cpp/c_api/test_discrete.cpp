@@ -91,7 +91,7 @@ TEST_CASE("what is no program is refused with a sentence cut to the room") {
     CHECK(rtamt_create(bytes.data(), bytes.size(), &monitor, message.data(), message.size()) ==
           RTAMT_REFUSED);
     CHECK(message.data() == std::string("This is not a program that can be carried: it has no "
-                                        "metadata, so nobody knows the names of its inputs."));
+                                        "metadata, so the names of its inputs are unknown."));
     CHECK(rtamt_step(nullptr, nullptr, 0, nullptr, 0) == RTAMT_REFUSED);
     CHECK(rtamt_message(nullptr) == std::string("There is no monitor: it was not created."));
     rtamt_destroy(nullptr);

@@ -58,7 +58,7 @@ void step(rtamt_monitor* monitor, int i, Bits& bits) {
     bits.push_back(std::bit_cast<std::uint64_t>(known.value));
 }
 
-// All that a monitor of discrete time can be asked.
+// All that a monitor of discrete time offers.
 Bits discrete_run(const std::vector<std::uint8_t>& bytes) {
     rtamt_monitor* monitor = create(bytes);
     Bits bits;

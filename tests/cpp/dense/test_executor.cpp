@@ -176,7 +176,7 @@ TEST_CASE("chunks of many blocks that fail leave no trace") {
     }
 }
 
-TEST_CASE("a value that nobody asks for after the end may be undefined") {
+TEST_CASE("a value that nothing reads after the end may be undefined") {
     // 1 / once[0,5](x) with x = 0 from 3 on is 1/0 = inf; 0 / it would be 0/0 from 8 on, after the
     // end at 6: that is no failure, unless a future operator looks so far.
     Builder builder;

@@ -31,7 +31,7 @@ TEST_CASE("extremum is its definition for any width lag and chunks") {
     }
 }
 
-TEST_CASE("long traces are cut into steps that nobody sees") {
+TEST_CASE("long traces are cut into steps without changing the result") {
     Random random(6);
     for (const std::int64_t width : {0, 7, 3000}) {
         Builder builder;
@@ -49,7 +49,7 @@ TEST_CASE("an arrival and an expiry at the same instant are one event") {
     CHECK((outputs[0] == Signal{{0, 6}, {9, 4}}));
 }
 
-TEST_CASE("exact ticks at stamps of nanoseconds since 1970") {
+TEST_CASE("exact ticks at timestamps of nanoseconds since 1970") {
     constexpr std::int64_t base = 1'700'000'000'000'000'000;
     Builder builder;
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 100'000'000, 100'000'000));

@@ -13,11 +13,11 @@ static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 TEST_CASE("time must be finite and grow") {
     Clock clock(1.0, inf, true, 1);
-    CHECK(!clock.stamps().last());
+    CHECK(!clock.timestamps().last());
     CHECK((!clock.accepts(not_a_number) && !clock.accepts(inf) && !clock.accepts(-inf)));
     CHECK(clock.accepts(-7.5));
     clock.advance(-7.5);
-    CHECK(clock.stamps().last() == -7.5);
+    CHECK(clock.timestamps().last() == -7.5);
     CHECK((!clock.accepts(-7.5) && !clock.accepts(-8.0) && !clock.accepts(not_a_number)));
     CHECK((clock.accepts(-7.0) && clock.accepts(1e9)));
 }
@@ -39,7 +39,7 @@ TEST_CASE("lenient clock counts a gap out of tolerance") {
     }
     CHECK(clock.violations() == 2);
     clock.reset();
-    CHECK((clock.violations() == 0 && !clock.stamps().last()));
+    CHECK((clock.violations() == 0 && !clock.timestamps().last()));
     CHECK(clock.accepts(0.0));
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("lenient clock takes the same time again and counts it") {
     CHECK((clock.accepts(10.0) && !clock.accepts(9.5)));
     clock.advance(10.0);
     CHECK(clock.violations() == 1);
-    CHECK((clock.stamps().count() == 2 && clock.stamps().last() == 10.0));
+    CHECK((clock.timestamps().count() == 2 && clock.timestamps().last() == 10.0));
     Clock strict(2.0, 2.0, true, 1);
     strict.advance(10.0);
     CHECK(!strict.accepts(10.0));
@@ -58,15 +58,15 @@ TEST_CASE("lenient clock takes the same time again and counts it") {
 TEST_CASE("ticks start at zero and do not drift") {
     Clock clock(0.1, 0.5, true, 1);
     clock.tick(1);
-    CHECK(clock.stamps().last() == 0.0);
+    CHECK(clock.timestamps().last() == 0.0);
     for (int i = 0; i < 100000; ++i)
         clock.tick(1);
-    CHECK(clock.stamps().last() == 100000 * 0.1);
+    CHECK(clock.timestamps().last() == 100000 * 0.1);
     clock.tick(0);
-    CHECK(clock.stamps().last() == 100000 * 0.1);
+    CHECK(clock.timestamps().last() == 100000 * 0.1);
     clock.advance(10000.13);
     clock.tick(5);
-    CHECK(clock.stamps().last() == 10000.13 + 5 * 0.1);
+    CHECK(clock.timestamps().last() == 10000.13 + 5 * 0.1);
 }
 
 TEST_CASE("ticks after regular times go on from the first of them") {
@@ -74,7 +74,7 @@ TEST_CASE("ticks after regular times go on from the first of them") {
     for (int i = 0; i < 7; ++i)
         clock.advance(3.0 + i * 0.1);
     clock.tick(3);
-    CHECK((clock.stamps().last() == 3.0 + 9 * 0.1 && clock.stamps().regular()));
+    CHECK((clock.timestamps().last() == 3.0 + 9 * 0.1 && clock.timestamps().regular()));
 }
 
 TEST_CASE("a copy tells the same times and goes on alike") {
@@ -92,8 +92,8 @@ TEST_CASE("a copy tells the same times and goes on alike") {
         twin.tick(2);
         std::vector<double> times(4);
         std::vector<double> others(4);
-        clock.stamps().copy(4, times.data());
-        twin.stamps().copy(4, others.data());
+        clock.timestamps().copy(4, times.data());
+        twin.timestamps().copy(4, others.data());
         CHECK((times == others && twin.violations() == clock.violations()));
     }
 }
@@ -102,9 +102,9 @@ TEST_CASE("ticks of many samples are as many ticks") {
     Clock clock(0.5, 0.5, true, 4);
     clock.tick(4);
     std::vector<double> times(4);
-    clock.stamps().copy(4, times.data());
+    clock.timestamps().copy(4, times.data());
     CHECK((times == std::vector<double>{0.0, 0.5, 1.0, 1.5}));
     clock.reset();
     clock.tick(1);
-    CHECK(clock.stamps().last() == 0.0);
+    CHECK(clock.timestamps().last() == 0.0);
 }

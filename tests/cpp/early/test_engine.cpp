@@ -10,7 +10,7 @@
 
 using namespace early_oracle;
 using rtamt::early::Engine;
-using Lesson = Engine::Lesson;
+using Observation = Engine::Observation;
 
 namespace {
 
@@ -50,7 +50,7 @@ double pieces_of(const Graph& graph) {
         const std::array<double, 1> row{random.number(0)};
         REQUIRE(!engine.row(t, std::span<const double>(row)));
         for (std::uint32_t i = 0; i < graph.nodes.size(); ++i)
-            pieces += engine.news(2 * i, 0).size() + engine.news(2 * i, 1).size();
+            pieces += engine.new_data(2 * i, 0).size() + engine.new_data(2 * i, 1).size();
         wanted.back() = std::max<Tick>(0, t + 1 - graph.nodes.back().horizon);
         engine.settle(t, wanted);
     }
@@ -81,7 +81,7 @@ TEST_CASE("bounds after every row of samples are those of the definition") {
     }
 }
 
-TEST_CASE("what is asked for up to a tick alone has the bounds of the definition there") {
+TEST_CASE("what is required up to a tick alone has the bounds of the definition there") {
     for (std::uint32_t seed = 0; seed < 300; ++seed) {
         CAPTURE(seed);
         Random random(seed);
@@ -117,16 +117,16 @@ TEST_CASE("knowledge in any order gives the bounds of the definition") {
             const bool rest = random.chance(10);
             const Tick r = rest ? forever : std::min(end_of_test - 1, l + random.between(0, 5));
             const Bounds bounds = random_bounds(random);
-            std::vector<Lesson> lessons; // each within what was known
+            std::vector<Observation> observations; // each within what was known
             for (Tick t = l; t <= std::min(r, end_of_test); ++t) {
                 Bounds& now = known[input][static_cast<std::size_t>(t)];
                 const Bounds both = narrowed(now, bounds);
                 if (both.lower > both.upper) continue;
                 now = both;
                 const Tick end = t == end_of_test ? forever : t;
-                lessons.push_back({input, t, end, both});
+                observations.push_back({input, t, end, both});
             }
-            REQUIRE(!engine.learn(lessons));
+            REQUIRE(!engine.learn(observations));
             for (std::uint32_t k = 0; k < 2; ++k)
                 REQUIRE(engine.known(k, l) == known[k][static_cast<std::size_t>(l)]);
             check_all(engine, graph, known, 0);
@@ -167,7 +167,7 @@ TEST_CASE("what is final is dropped and the rest stays right, also in a restored
     }
 }
 
-TEST_CASE("the pieces of news are exactly what has changed") {
+TEST_CASE("the pieces of new_data are exactly what has changed") {
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
         CAPTURE(seed);
         Random random(seed);
@@ -185,12 +185,12 @@ TEST_CASE("the pieces of news are exactly what has changed") {
                 for (Tick k = 0; k < end_of_test; ++k) {
                     const auto place = static_cast<std::size_t>(k);
                     Bounds replayed = before[i][place];
-                    for (const auto& piece : engine.news(2 * i, 0)) {
+                    for (const auto& piece : engine.new_data(2 * i, 0)) {
                         if (piece.l > k || k > piece.r) continue;
                         REQUIRE(piece.old == replayed.lower);
                         replayed.lower = piece.now;
                     }
-                    for (const auto& piece : engine.news(2 * i, 1)) {
+                    for (const auto& piece : engine.new_data(2 * i, 1)) {
                         if (piece.l > k || k > piece.r) continue;
                         REQUIRE(piece.old == -replayed.upper);
                         replayed.upper = -piece.now;
@@ -213,9 +213,10 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     window.low = -2;
     graph.nodes = {root, window};
     Engine engine(graph, {}, true);
-    const Lesson fine{0, 0, 3, Interval::of(4)};
+    const Observation fine{0, 0, 3, Interval::of(4)};
     REQUIRE(!engine.learn(std::span(&fine, 1)));
-    const std::array<Lesson, 2> wrong{{{0, 4, 4, Interval::of(9)}, {0, 5, 5, Interval::of(-1)}}};
+    const std::array<Observation, 2> wrong{
+        {{0, 4, 4, Interval::of(9)}, {0, 5, 5, Interval::of(-1)}}};
     const auto failure = engine.learn(wrong);
     REQUIRE(failure);
     CHECK(failure->node == 0);
@@ -225,11 +226,11 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     CHECK(engine.at(2, 5) == Bounds{2, rtamt::infinity});
     CHECK(engine.known(0, 4) == rtamt::bounds::anything);
     // Bounds outside its domain wait for better ones, unless none will come.
-    const Lesson open{0, 4, 4, {-3, -2}};
+    const Observation open{0, 4, 4, {-3, -2}};
     REQUIRE(!engine.learn(std::span(&open, 1)));
     const std::array<Tick, 2> settled{4, -1};
     engine.settle_inputs(settled);
-    const Lesson closed{0, 4, 4, {-3, -2.5}};
+    const Observation closed{0, 4, 4, {-3, -2.5}};
     CHECK(engine.learn(std::span(&closed, 1)));
 }
 

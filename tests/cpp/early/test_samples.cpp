@@ -53,19 +53,19 @@ Engine knowledge() {
 }
 
 void check_same(Samples& samples, Engine& engine, const Model& model) {
-    std::vector<Engine::Lesson> lessons;
-    samples.collect(lessons);
+    std::vector<Engine::Observation> observations;
+    samples.collect(observations);
     REQUIRE(samples.start() == model.start());
     if (!model.start()) {
-        REQUIRE(lessons.empty());
+        REQUIRE(observations.empty());
         return;
     }
-    for (const auto& lesson : lessons) {
-        const Bounds before = engine.known(lesson.input, lesson.l);
-        REQUIRE(before.lower <= lesson.bounds.lower);
-        REQUIRE(lesson.bounds.upper <= before.upper);
+    for (const auto& observation : observations) {
+        const Bounds before = engine.known(observation.input, observation.l);
+        REQUIRE(before.lower <= observation.bounds.lower);
+        REQUIRE(observation.bounds.upper <= before.upper);
     }
-    REQUIRE(!engine.learn(lessons));
+    REQUIRE(!engine.learn(observations));
     for (std::uint32_t input = 0; input < 2; ++input) {
         for (Tick t = *model.start(); t < last_tick + 20; ++t) {
             REQUIRE(engine.known(input, t - *model.start()) == model.known(input, t));
@@ -110,9 +110,9 @@ TEST_CASE("samples make known what the definition says, in order or late") {
                     if (bounds.lower < bounds.upper) bounds.upper = bounds.lower;
                 }
                 if (random.chance(20)) { // an update that fails
-                    std::vector<Engine::Lesson> lessons;
+                    std::vector<Engine::Observation> observations;
                     samples.add(input, time, bounds);
-                    samples.collect(lessons);
+                    samples.collect(observations);
                     samples.rollback();
                     REQUIRE(samples.may_come(input, time));
                 }
@@ -137,9 +137,9 @@ TEST_CASE("samples make known what the definition says, in order or late") {
         if (!model.start()) continue;
         samples.finish();
         model.closed = 1000;
-        std::vector<Engine::Lesson> lessons;
-        samples.collect(lessons);
-        REQUIRE(!engine.learn(lessons));
+        std::vector<Engine::Observation> observations;
+        samples.collect(observations);
+        REQUIRE(!engine.learn(observations));
         for (std::uint32_t input = 0; input < 2; ++input) {
             for (Tick t = *model.start(); t < last_tick + 20; ++t)
                 REQUIRE(engine.known(input, t - *model.start()) == model.known(input, t));
@@ -150,9 +150,9 @@ TEST_CASE("samples make known what the definition says, in order or late") {
 TEST_CASE("samples that are final are dropped") {
     Samples samples({range}, std::nullopt);
     for (Tick t = 0; t < 1000; ++t) {
-        std::vector<Engine::Lesson> lessons;
+        std::vector<Engine::Observation> observations;
         samples.add(0, t, Interval::of(1));
-        samples.collect(lessons);
+        samples.collect(observations);
         samples.commit();
     }
     CHECK(samples.bytes() <= 200);
@@ -164,8 +164,8 @@ TEST_CASE("times far from zero are taken, and too long traces are not") {
     REQUIRE(samples.may_come(0, epoch));
     samples.add(0, epoch, range);
     samples.add(0, epoch + 10, range);
-    std::vector<Engine::Lesson> lessons;
-    samples.collect(lessons);
+    std::vector<Engine::Observation> observations;
+    samples.collect(observations);
     samples.commit();
     REQUIRE(samples.start() == epoch);
     CHECK(samples.settled()[0] == 4);

@@ -30,8 +30,7 @@ Bounds total(const std::vector<Bounds>& x, Tick end, Tick width) {
 
 } // namespace
 
-TEST_CASE(
-    "totals are sums of bounds in the order of the definition whatever is asked and changes") {
+TEST_CASE("totals are sums of bounds in the order of the definition whatever is read and changes") {
     oracle::Random random(9);
     for (const Tick width : {1, 2, 3, 7, 8, 30, 100}) {
         std::vector<Bounds> x;

@@ -42,7 +42,7 @@ TEST_CASE("no truncation is read") {
     const std::string note = program.note;
     program.note.clear();
     CHECK(refusal(program) ==
-          refused("it has no metadata, so nobody knows the names of its inputs"));
+          refused("it has no metadata, so the names of its inputs are unknown"));
     for (std::size_t size = 1; size < note.size(); ++size) {
         program.note = note.substr(0, size);
         CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
@@ -74,7 +74,7 @@ TEST_CASE("what makes no sense is refused") {
     CHECK(refusal_of(metadata) ==
           refused("its parameter 'limit' is instruction 3, which is no constant"));
     metadata.parameters[0].instructions = {6};
-    CHECK(refusal_of(metadata) == refused("its metadata speaks of instruction 6 of 6"));
+    CHECK(refusal_of(metadata) == refused("its metadata names instruction 6 of 6"));
     metadata.parameters[0].instructions = {};
     CHECK(refusal_of(metadata) == refused("its parameter 'limit' stands nowhere"));
     metadata = good();

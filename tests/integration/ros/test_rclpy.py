@@ -79,8 +79,8 @@ def test_robustness_and_verdicts_come_every_period_from_arguments_or_parameters(
 
     verdict = wait_for(told, "the violation")[0]
     assert (verdict.name, verdict.horizon) == ("rob.value", 15.0)
-    stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in puppet.heard[-2:]]
-    assert (stamps[1] - stamps[0]) % 10**8 == 0
+    timestamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in puppet.heard[-2:]]
+    assert (timestamps[1] - timestamps[0]) % 10**8 == 0
     assert node.stop(signal.SIGINT) == 0
     assert "Traceback" not in node.output
 

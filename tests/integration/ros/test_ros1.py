@@ -79,9 +79,9 @@ def test_the_command_of_the_paper_on_its_listing_8(ros, puppet):
     assert puppet.messages("rtamt/rob") == []
     publish(puppet, "rtamt/gnt", 1.0)
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 2)[:2]
-    stamps = [message["header"]["stamp"] for message in heard]
-    assert [later - earlier for earlier, later in pairwise(stamps)] == [SECOND]
-    assert abs(stamps[0] - puppet.ask(do="now")["answer"]) < 60 * SECOND
+    timestamps = [message["header"]["stamp"] for message in heard]
+    assert [later - earlier for earlier, later in pairwise(timestamps)] == [SECOND]
+    assert abs(timestamps[0] - puppet.ask(do="now")["answer"]) < 60 * SECOND
     # Pastified, the request of the first sample is due 5 samples later; till then nothing was asked.
     assert [message["value"] for message in heard] == [float("inf")] * 2
     assert node.stop(signal.SIGINT) == 0
@@ -285,8 +285,8 @@ def test_the_launch_file_takes_parameters(ros, puppet):
     publish(puppet, "rtamt/req", 0.0)
     publish(puppet, "rtamt/gnt", 0.0)
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 2)
-    stamps = [message["header"]["stamp"] for message in heard]
-    assert stamps[1] - stamps[0] == SECOND // 5
+    timestamps = [message["header"]["stamp"] for message in heard]
+    assert timestamps[1] - timestamps[0] == SECOND // 5
     assert "/stl_monitor" in ros.run("rosnode", "list").stdout
     node.stop(signal.SIGINT)
 

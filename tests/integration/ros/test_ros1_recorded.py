@@ -117,6 +117,6 @@ def test_listings_3_to_7_of_the_paper_run_as_a_script(ros, puppet):
     publish(puppet, "rtamt/gnt", 1.0)
     # A request is out five samples later: the grant is 2 short.
     heard = puppet.wait_for("rtamt/rob", lambda messages: any(m["value"] == -2 for m in messages))
-    stamps = [message["header"]["stamp"] for message in heard]
-    assert stamps == sorted(stamps)
+    timestamps = [message["header"]["stamp"] for message in heard]
+    assert timestamps == sorted(timestamps)
     assert FLOAT in ros.run("rostopic", "info", "rtamt/rob").stdout

@@ -42,7 +42,7 @@ def test_a_line_may_have_more_than_the_formula_reads(run):
         '\ufeff# comment\ntime,"x"\r\n0,5\r\n1," 2 "\r\n',
         jsonl({"time": 0, "x": 5}, {"time": 1, "x": 2}),
         "\ufeff\n" + jsonl({"t": 0, "x": 5}) + "\n# comment\n" + jsonl({"t": 1, "x": 2}),
-        jsonl({"Stamp": 0, "x": 5}, {"Stamp": 1, "x": 2}),
+        jsonl({"Timestamp": 0, "x": 5}, {"Timestamp": 1, "x": 2}),
         jsonl({"x": 5}, {"x": 2}),
     ],
 )

@@ -66,7 +66,7 @@ def test_online_violations_are_counted_from_reset_to_reset():
         (
             0,
             [("x", 50.0)],
-            "time does not increase at sample 2: 0 s comes after 1 s; sort the samples and drop repeated stamps",
+            "time does not increase at sample 2: 0 s comes after 1 s; sort the samples and drop repeated timestamps",
         ),
         (
             2,

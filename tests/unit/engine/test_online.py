@@ -166,7 +166,7 @@ def test_the_state_of_another_program_is_refused() -> None:
 
 @BACKENDS
 def test_a_variable_called_time(backend: str) -> None:
-    """Once an error about dimensions: 'time' was taken for stamps that all variables share."""
+    """Once an error about dimensions: 'time' was taken for timestamps that all variables share."""
     spec = rtamt.parse("time >= 1", backend=backend, time="dense")
     monitor: Any = spec.monitor()
     monitor.update(0.0, time=3.0)

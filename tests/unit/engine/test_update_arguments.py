@@ -56,8 +56,11 @@ def test_times_of_short_floats_cause_no_overflow_warning(kind, number):
         with pytest.raises(rtamt.TraceError) as caught:
             opened(kind).update(large, x=1.0)
         assert "np." not in str(caught.value)
-    stamps = np.arange(3, dtype=number)
-    assert rtamt.parse("x >= 0", time=kind["time"]).evaluate({"time": stamps, "x": stamps}).robustness == 0
+    timestamps = np.arange(3, dtype=number)
+    assert (
+        rtamt.parse("x >= 0", time=kind["time"]).evaluate({"time": timestamps, "x": timestamps}).robustness
+        == 0
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind.values()))

@@ -158,8 +158,8 @@ def test_of_many_causes_one_for_each_predicate_and_those_closest_to_the_critical
 
 
 def test_dates_are_dates_with_the_seconds_since_the_start_and_no_nanoseconds():
-    stamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
-    for times in (stamps.astype("M8[ns]"), stamps.astype("m8[ns]"), stamps / 1e9):
+    timestamps = np.array([1_700_000_000_000_000_000 + i * 500_000_000 for i in range(3)])
+    for times in (timestamps.astype("M8[ns]"), timestamps.astype("m8[ns]"), timestamps / 1e9):
         for time in ("discrete", "dense"):
             told = str(
                 explained(

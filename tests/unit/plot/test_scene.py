@@ -58,7 +58,7 @@ def test_dense_stretches_are_exact_and_the_last_value_holds():
 
 
 @pytest.mark.parametrize(
-    ("stamps", "origin", "told"),
+    ("timestamps", "origin", "told"),
     [
         (np.array([0, 2, 5], "datetime64[s]"), np.datetime64(0, "ns"), "1970-01-01 00:00:02 (+2 s)"),
         (
@@ -70,8 +70,8 @@ def test_dense_stretches_are_exact_and_the_last_value_holds():
         (np.array([0, 2, 5], "timedelta64[s]"), 0.0, "2 s"),
     ],
 )
-def test_times_of_every_kind_have_positions(stamps, origin, told):
-    result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]}, time="dense")
+def test_times_of_every_kind_have_positions(timestamps, origin, told):
+    result = rtamt.parse("always(x >= 3)").evaluate({"time": timestamps, "x": [5, 1, 4]}, time="dense")
     seen = scene(result)
     assert seen.clock.origin == origin
     assert seen.clock.text(seen.critical[1]) == told
@@ -79,8 +79,8 @@ def test_times_of_every_kind_have_positions(stamps, origin, told):
 
 
 def test_dates_in_discrete_time_are_dates():
-    stamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
-    result = rtamt.parse("always(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]})
+    timestamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
+    result = rtamt.parse("always(x >= 3)").evaluate({"time": timestamps, "x": [5, 1, 4]})
     seen = scene(result)
     assert seen.verdict == ("violated, robustness -2, first violation at 2026-03-01 12:00:01 (+1 s)")
     assert seen.explanation.summary[2].startswith(

@@ -23,10 +23,10 @@ def test_law_blocks_change_nothing(tmp_path_factory, rows, size):
         chunks = list(rtamt.scan(path))
     for name, column in (("x", 0), ("y", 1)):
         expected = [float(row[column].strip(' "')) for row in rows if row[column]]
-        stamps = [i for i, row in enumerate(rows) if row[column]]
+        timestamps = [i for i, row in enumerate(rows) if row[column]]
         for trace in (whole, parts):
             assert trace[name].values.tolist() == expected
-            assert trace[name].times.tolist() == stamps
+            assert trace[name].times.tolist() == timestamps
         assert np.concatenate([chunk[name].values for chunk in chunks]).tolist() == expected
 
 

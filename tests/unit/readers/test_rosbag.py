@@ -217,14 +217,14 @@ def test_the_written_bag_keeps_nanoseconds_types_and_qualities_of_service(tmp_pa
         (copied,) = (connection for connection in reader.connections if connection.topic == "/x")
         assert copied.msgtype == FLOAT_STAMPED
         assert copied.ext.offered_qos_profiles == ([] if bag.ros1 else [SENSOR])
-        stamps = {connection.topic: [] for connection in reader.connections}
+        timestamps = {connection.topic: [] for connection in reader.connections}
         for connection, recorded, raw in reader.messages():
             header = reader.deserialize(raw, connection.msgtype).header.stamp
-            stamps[connection.topic].append((header.sec * 10**9 + header.nanosec, recorded))
+            timestamps[connection.topic].append((header.sec * 10**9 + header.nanosec, recorded))
     exact = [start + i * period for i in range(5)]
-    assert stamps["/x"] == [(stamp, stamp + held) for stamp in exact]
-    assert stamps["/rtamt/robustness"][0] == (start, start)
-    assert {stamp for stamp, _ in stamps["/rtamt/robustness"]} <= set(exact)
+    assert timestamps["/x"] == [(stamp, stamp + held) for stamp in exact]
+    assert timestamps["/rtamt/robustness"][0] == (start, start)
+    assert {stamp for stamp, _ in timestamps["/rtamt/robustness"]} <= set(exact)
 
 
 def test_a_recorded_robustness_topic_stays_and_the_offline_one_lies_beside_it(drive, tmp_path):
@@ -261,7 +261,7 @@ def test_stamps_that_go_back_are_refused_and_repeated_ones_are_one_sample(tmp_pa
     with pytest.raises(TraceError) as caught:
         rtamt.read(bag.path)
     assert str(caught.value) == (
-        "the stamps on /y go back by 4 s at message 2: was simulated time set back? Cut the bag there"
+        "the timestamps on /y go back by 4 s at message 2: was simulated time set back? Cut the bag there"
     )
 
 

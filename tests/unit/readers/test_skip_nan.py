@@ -88,13 +88,13 @@ def test_a_value_is_held_for_as_long_as_is_said_whatever_the_chunks(
     tmp_path_factory, unit, gaps, chunk, periods
 ):
     path = tmp_path_factory.getbasetemp() / f"held_{unit}.csv"
-    stamps = {
+    timestamps = {
         "s": [repr(i / 10) for i in range(len(gaps))],
         "ms": [str(1_700_000_000_000 + i * 100) for i in range(len(gaps))],
         "dates": [f"2026-01-01T00:00:{i // 10:02d}.{i % 10}" for i in range(len(gaps))],
     }[unit]
     cells = ["nan" if gap and i % 2 else "" if gap else str(i) for i, gap in enumerate(gaps)]
-    path.write_text("time,x\n" + "".join(f"{t},{x}\n" for t, x in zip(stamps, cells, strict=True)))
+    path.write_text("time,x\n" + "".join(f"{t},{x}\n" for t, x in zip(timestamps, cells, strict=True)))
     options = {"columns": ["x"], "skip_nan": ["x"], "hold_for": f"{periods * 100}ms"}
     if unit == "ms":
         options["time_unit"] = "ms"

@@ -205,9 +205,9 @@ def test_equal_arrays_are_stored_once():
 
 
 def test_infinities_are_text_and_dates_are_milliseconds():
-    stamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
+    timestamps = np.datetime64("2026-03-01T12:00") + np.arange(3) * np.timedelta64(1, "s")
     store = Store()
-    data = data_of(scene(rtamt.parse("prev(x >= 3)").evaluate({"time": stamps, "x": [5, 1, 4]})), store)
+    data = data_of(scene(rtamt.parse("prev(x >= 3)").evaluate({"time": timestamps, "x": [5, 1, 4]})), store)
     assert array(store, data["nodes"][0]["line"]["y"]["blob"]).tolist() == [np.inf, 2, -2]
     assert (data["nodes"][0]["value"], data["nodes"][0]["line"]["ends"]) == ("inf", [False, True])
     assert (data["dated"], data["origin"]) == (True, 1_772_366_400_000.0)

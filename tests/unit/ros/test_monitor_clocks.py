@@ -84,7 +84,7 @@ def test_stamps_of_another_clock_are_replaced_by_the_arrival_and_it_is_said_once
         told += watched.tick(10**6 * SECOND + i * SECOND // 20)
     assert numbers(told) == [(10**6, 0), (10**6 + 0.1, 2), (10**6 + 0.2, 4)]
     assert said(watched) == [
-        "the stamps on /req are 999900 s behind the clock: its messages are sampled as of their arrival"
+        "the timestamps on /req are 999900 s behind the clock: its messages are sampled as of their arrival"
     ]
 
 
@@ -98,7 +98,7 @@ def test_discrete_stamps_that_go_back_begin_anew_and_equal_ones_are_left_out():
     assert numbers(told) == [(49, 4)]
     assert said(watched) == [
         "messages on /req with the stamp of the one before them are left out",
-        "the stamps on /req went back by 2 s: all monitors begin anew",
+        "the timestamps on /req went back by 2 s: all monitors begin anew",
     ]
 
 

@@ -36,7 +36,7 @@ def test_dense_stamps_that_go_back_begin_anew_and_equal_ones_are_left_out_once_s
         assert watched.message("/req", message(9, at=50), 1) == []
     assert said(watched) == [NO_CLOCK, "messages on /req with the stamp of the one before them are left out"]
     assert numbers(watched.message("/req", message(3, at=2), 2)) == [(2, 3)]
-    assert said(watched) == ["the stamps on /req went back by 48 s: all monitors begin anew"]
+    assert said(watched) == ["the timestamps on /req went back by 48 s: all monitors begin anew"]
 
 
 def test_dense_verdicts_are_unknown_until_the_horizon_has_passed():

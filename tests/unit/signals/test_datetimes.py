@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import rtamt
-from rtamt.signals.arrays import stamps
+from rtamt.signals.arrays import timestamps
 from rtamt.signals.ticks import date_of
 
 NOON = datetime(2026, 3, 29, 0, 30)
@@ -43,8 +43,8 @@ def test_stamps_of_every_kind_are_the_same_seconds():
     zoned = [moment.replace(tzinfo=timezone.utc).astimezone(ZONE) for moment in moments]
     frames = pd.DatetimeIndex(moments), list(map(pd.Timestamp, zoned))
     for given in (moments, zoned, np.array(moments, "M8[us]"), *frames):
-        assert stamps(given).seconds.tolist() == expected
-        assert stamps(given).original.tolist() == np.array(moments, "M8[ns]").tolist()
+        assert timestamps(given).seconds.tolist() == expected
+        assert timestamps(given).original.tolist() == np.array(moments, "M8[ns]").tolist()
 
 
 def test_a_date_with_a_time_zone_beside_one_without_is_an_error():

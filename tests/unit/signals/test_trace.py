@@ -108,7 +108,7 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
         (lambda _: rtamt.read({"x": ([0.0], [1]), "y": ([5.0], [1])}).resample(1, how="linear"),
          "the signals have no instant in common"),
         (lambda _: rtamt.read({"x": (np.array([2**60]), [1])}, time_unit="ns").resample(Fraction(1, 3)),
-         "the period 1/3 s is no whole number of nanoseconds, in which the stamps are counted"),
+         "the period 1/3 s is no whole number of nanoseconds, in which the timestamps are counted"),
     ],
 )  # fmt: skip
 def test_messages(call, message):

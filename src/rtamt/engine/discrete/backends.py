@@ -39,7 +39,7 @@ class CompiledDiscrete(Compiled):
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Compiled`."""
         evaluator = BoundsEvaluator(formulas, step)
-        return lambda trace: [BoundedSignal(trace.stamps, *ends) for ends in evaluator.of_bounds(trace)]
+        return lambda trace: [BoundedSignal(trace.timestamps, *ends) for ends in evaluator.of_bounds(trace)]
 
     def session(
         self,

@@ -17,7 +17,7 @@ from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Stamps
+from rtamt.signals.arrays import Timestamps
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.episodes import plain_times
@@ -239,10 +239,10 @@ class Monitor(MonitorBase, OnlineMonitor):
         data = self._binding.applied(data)
         return self._push(*arrays.columns_of(data, self.input_names, self._times.unit, self._types))
 
-    def _push(self, stamps: Stamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
+    def _push(self, timestamps: Timestamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
         """See :func:`push_samples`."""
         samples = self.samples
-        (times, original), columns = self._chunk(stamps, given, n)
+        (times, original), columns = self._chunk(timestamps, given, n)
         before = self._recent(min(self._oldest, samples))
         try:
             known = self._backend.push(times, columns, samples)
@@ -369,22 +369,22 @@ class Monitor(MonitorBase, OnlineMonitor):
     # ---- what goes wrong -------------------------------------------------------------------------
 
     def _chunk(
-        self, stamps: Stamps | None, columns: Mapping[str, arrays.FloatArray], n: int
-    ) -> tuple[Stamps, list[arrays.FloatArray]]:
+        self, timestamps: Timestamps | None, columns: Mapping[str, arrays.FloatArray], n: int
+    ) -> tuple[Timestamps, list[arrays.FloatArray]]:
         last = self._last_time
-        if stamps is None:
+        if timestamps is None:
             times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
-            stamps = Stamps(times, times if self._times.plain else self._times.later(n))
+            timestamps = Timestamps(times, times if self._times.plain else self._times.later(n))
         elif n:
-            self._times.require_alike(stamps, self.samples)
+            self._times.require_alike(timestamps, self.samples)
         else:
-            stamps = Stamps(stamps.seconds, self._recent(0))
-        times = stamps.seconds
+            timestamps = Timestamps(timestamps.seconds, self._recent(0))
+        times = timestamps.seconds
         check_increasing(times, last, self.samples)
         check_regular(times, self._period, self._tolerance, last, self.samples)
         for name, column in columns.items():
             arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
-        return stamps, [columns[name] for name in self.input_names]
+        return timestamps, [columns[name] for name in self.input_names]
 
     def _is_finished(self) -> UsageError:
         return UsageError("the monitor has finished its trace; call reset() before the next sample")
@@ -406,7 +406,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
 
 def push_samples(
-    monitor: Monitor, stamps: Stamps | None, columns: Mapping[str, arrays.FloatArray], n: int
+    monitor: Monitor, timestamps: Timestamps | None, columns: Mapping[str, arrays.FloatArray], n: int
 ) -> Signal:
     """Take a chunk of ``n`` samples as returned by ``arrays.columns_of``; not thread-safe."""
-    return monitor._push(stamps, columns, n)
+    return monitor._push(timestamps, columns, n)

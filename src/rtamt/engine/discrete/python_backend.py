@@ -62,7 +62,7 @@ class PythonMonitor:
         self._unit = float(unit)
         self._tolerance = tolerance
         self._strict = strict
-        self._stamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
+        self._timestamps: deque[float] = deque(maxlen=max(lags, default=0) + 1)
         self._values: dict[str, float] = {}
         self._finished = False
         self._usage = UsageGuard()
@@ -83,7 +83,7 @@ class PythonMonitor:
 
     @property
     def _last_time(self) -> float | None:
-        return self._stamps[-1] if self._stamps else None
+        return self._timestamps[-1] if self._timestamps else None
 
     @property
     @exclusive
@@ -104,7 +104,7 @@ class PythonMonitor:
     @exclusive
     def recent(self, count: int) -> FloatArray:
         """Return the timestamps of the last ``count`` samples."""
-        return np.array(list(self._stamps)[len(self._stamps) - count :], dtype=np.float64)
+        return np.array(list(self._timestamps)[len(self._timestamps) - count :], dtype=np.float64)
 
     def update(self, time: float, values: Mapping[str, float]) -> float | None:
         """Take one sample with a value for every variable."""
@@ -141,7 +141,7 @@ class PythonMonitor:
         if len(times):
             self._begin(float(times[0]))
         known = self._news = self._monitor.push(list(columns) or [np.zeros(len(times))])
-        self._stamps.extend(float(time) for time in times)
+        self._timestamps.extend(float(time) for time in times)
         self.violations += sum(off)
         if len(times):
             self._values = {name: float(c[-1]) for name, c in zip(self._names, columns, strict=True)}
@@ -159,7 +159,7 @@ class PythonMonitor:
         """Forget the trace."""
         self._monitor.reset()
         self._finished = False
-        self._stamps.clear()
+        self._timestamps.clear()
         self._values = {}
         self._news = [np.empty(0) for _ in self._news]
         self.violations = 0
@@ -167,13 +167,13 @@ class PythonMonitor:
     @exclusive
     def state(self) -> tuple[Any, ...]:
         """Return the state after the samples so far."""
-        mine = tuple(self._stamps), self._values, self._news, self._finished, self.violations
+        mine = tuple(self._timestamps), self._values, self._news, self._finished, self.violations
         return mine, self._monitor.state()
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restore the state of a monitor of the same program."""
-        (stamps, self._values, self._news, self._finished, self.violations), definition = state
-        self._stamps.extend(stamps)
+        (timestamps, self._values, self._news, self._finished, self.violations), definition = state
+        self._timestamps.extend(timestamps)
         self._monitor.restore(definition)
 
     @exclusive
@@ -197,14 +197,14 @@ class PythonMonitor:
         self._begin(time)
         self._news = self._monitor.push(columns)
         known = self._news[0]
-        self._stamps.append(time)
+        self._timestamps.append(time)
         self._values = values
         self.violations += off
         return float(known[0]) if len(known) else None
 
     def _begin(self, time: float) -> None:
         """Let the definition's messages count time from the first timestamp."""
-        if not self._stamps:
+        if not self._timestamps:
             self._monitor.start = time * self._unit
 
     def _off(self, before: float | None, time: float) -> bool:

@@ -326,11 +326,11 @@ class MemberMonitor:
         data = self._binding.applied(data)
         made = members.chunk(data, self._fields)
         names = [*self.input_names, *made.columns]
-        stamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
+        timestamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
         if n == 0:
             return Signal(np.empty(0), np.empty(0))
         times = np.array(self._next_time() + float(self.period) * np.arange(n), np.float64)
-        times = times if stamps is None else stamps.seconds
+        times = times if timestamps is None else timestamps.seconds
         for name, column in columns.items():
             arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         before = self._state()

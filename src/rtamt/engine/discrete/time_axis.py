@@ -71,12 +71,12 @@ class DiscreteTimeAxis(TimeAxis):
 
     def show(self, cell: int) -> str:
         """See :class:`TimeAxis`."""
-        stamps = self._recording.stamps
-        if stamps.dtype.kind in "mM":
-            seconds = [Fraction(nanoseconds_of(stamps[i]) or 0, 10**9) for i in (0, cell)]
+        timestamps = self._recording.timestamps
+        if timestamps.dtype.kind in "mM":
+            seconds = [Fraction(nanoseconds_of(timestamps[i]) or 0, 10**9) for i in (0, cell)]
         else:
             seconds = [Fraction(repr(float(self._recording.times[i]))) for i in (0, cell)]
-        if stamps.dtype.kind == "M" or is_epoch(seconds[0]):
+        if timestamps.dtype.kind == "M" or is_epoch(seconds[0]):
             return moment_text(seconds[1], seconds[0])
         return self._recording.show(cell)
 

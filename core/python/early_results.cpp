@@ -15,15 +15,15 @@ using early::Decision;
 using early::forever;
 using early::Tick;
 
-// ---- answers ------------------------------------------------------------------------------------
+// ---- results ------------------------------------------------------------------------------------
 
-PyObject* EarlyMonitor::answer() noexcept {
-    if (settings_.verdict) return news(0);
+PyObject* EarlyMonitor::result() noexcept {
+    if (settings_.verdict) return new_data(0);
     if (causation_ && !finished_) return made_of(*causation_, causes_->at_start());
     Py_RETURN_NONE;
 }
 
-PyObject* EarlyMonitor::news(std::size_t output) noexcept {
+PyObject* EarlyMonitor::new_data(std::size_t output) noexcept {
     Py_ssize_t count = 0;
     auto& decisions = news_[output];
     for (const Decision& decision : decisions)
@@ -48,7 +48,7 @@ PyObject* EarlyMonitor::news(std::size_t output) noexcept {
 nb::object EarlyMonitor::verdicts(std::size_t output) {
     guard_.require_idle();
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
-    return checked(news(output));
+    return checked(new_data(output));
 }
 
 std::optional<std::pair<double, double>> EarlyMonitor::origin() const {
@@ -106,7 +106,7 @@ nb::object EarlyMonitor::supposed(
         value = engine_.at(outputs_[*output], sample);
     } else {
         early::Origin origin = origin_.value();
-        origin.look(engine_);
+        origin.read(engine_);
         value = origin.value();
     }
     engine_.revert();

@@ -2,7 +2,7 @@
 //
 // Cost: a multiplication a sample. Memory: none while every sample comes exactly a period after the
 // one before, which is computed instead; from the first that does not, a ring of as many numbers as
-// were asked for, touched as far as the trace has come.
+// were requested, touched as far as the trace has come.
 #pragma once
 
 #include "../program/snapshot.hpp"
@@ -14,10 +14,10 @@
 
 namespace rtamt::discrete {
 
-class Stamps {
+class Timestamps {
   public:
     // Keeps the last `size` times, at least one.
-    Stamps(double period, std::size_t size)
+    Timestamps(double period, std::size_t size)
         : arena_(size * sizeof(double)),
           ring_(static_cast<double*>(arena_.take(size * sizeof(double)))), size_(size),
           period_(period) {}
