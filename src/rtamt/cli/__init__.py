@@ -18,6 +18,7 @@ outcome          the outcome of a requirement on a recording, as reports show it
 runner           every requirement on every recording, on all cores
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
+stream_members   the members of groups in JSON or CSV lines
 json_lines       a line of JSON to numbers and timestamps
 early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
 held_feed        streams whose variables arrive at any time, sampled by ``sample ... hold``

@@ -65,11 +65,11 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield the values of an object; fields of nested objects have names with dots."""
+    """Yield the values of an object; fields of nested objects have names with dots, an empty one has its own."""
     stack = list(data.items())
     while stack:
         name, value = stack.pop(0)
-        if isinstance(value, dict):
+        if isinstance(value, dict) and value:
             stack += [(f"{name}.{key}", inner) for key, inner in value.items()]
         else:
             yield name, value
@@ -89,7 +89,11 @@ def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
 
 def number_in(data: dict[str, Any], name: str, number: int, type_: ValueType | None = None) -> float:
     """Return a number of the object, or the code of a member that is given by its name."""
-    value = given_in(data, name, number)
+    return number_of(given_in(data, name, number), name, number, type_)
+
+
+def number_of(value: Any, name: str, number: int, type_: ValueType | None = None) -> float:
+    """Return a value of the object as a number, see :func:`number_in`."""
     if isinstance(value, str) and isinstance(type_, Enumeration):
         return code_of(value, name, type_, number)
     if isinstance(value, (bool, int, float)):

@@ -80,10 +80,12 @@ class Live:
     def __exit__(self, *_: object) -> None:
         self._live.stop()
 
-    def sample(self, values: Mapping[str, float]) -> None:
-        """Take a sample that the monitor has taken."""
+    def sample(self, values: Mapping[str, float | None], *, whole: bool = False) -> None:
+        """Take a sample that the monitor has taken; ``whole``: what it leaves out has no value any more."""
         self._samples += 1
-        self._latest.update(values)
+        if whole:
+            self._latest.clear()
+        self._latest.update((name, value) for name, value in values.items() if value is not None)
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + self.PAUSE
             self._live.refresh()

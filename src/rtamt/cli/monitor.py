@@ -27,6 +27,7 @@ from rtamt.cli.json_lines import STDIN
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
 from rtamt.cli.stdin_reader import Samples, lines_of
+from rtamt.cli.stream_members import StreamMembers
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
 from rtamt.rewrite.check import unbounded_future
@@ -62,6 +63,7 @@ ignored. Timestamps are found and read as in files (see 'rtamt check --help'): i
 stamp or datetime, with an optional unit ('t [ms]', 'time_ms'), else in the only column of dates. Without
 timestamps, samples are one period apart. A stream does not reveal its period in advance: --period sets it
 (default: 1 s; timestamps must then be 1 s apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
+In discrete time, members of groups may come and go: one that is left out, null or an empty cell is absent.
 
 With --time dense, signals change at any instant, and each has its own time base: a JSON object may contain only
 some of the variables, a cell of CSV may be empty, and a line of output is printed for every change and for the
@@ -134,7 +136,8 @@ def run(args: argparse.Namespace) -> int:
     if args.tolerance is not None and not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
-    spec.require_no_groups("'rtamt monitor'")
+    if spec.groups:
+        _check_quantified(spec, args)
     dense = spec.domain.continuous
     live = _live(spec) if args.live else None
     output = Output(verdicts=spec.semantics == "boolean", live=live)
@@ -161,6 +164,7 @@ def run(args: argparse.Namespace) -> int:
         binding=spec.binding,
         types=spec.types,
         skip_nan=held and rule is not None and rule.skip_nan,
+        members=StreamMembers(spec.groups) if spec.groups else None,
     )
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object per line, or CSV with a header row")
@@ -184,7 +188,7 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
             problem = watched.take(*sample, number) if sample is not None else ""
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)
-                live.sample(sample[1])
+                live.sample(sample[1], whole=samples.members is not None)
         if problem:
             complain(problem)
             code = ERROR
@@ -201,12 +205,26 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
     return code
 
 
+def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
+    """Raise :class:`CommandError` for what no monitor of members that come and go offers."""
+    rule = spec.domain.sampling(spec.sampling)
+    unfit = [f"--time {args.time}"] if spec.domain.part("members") is None else []
+    unfit += [f"--verdict {args.verdict}"] if args.verdict not in {None, DELAYED} else []
+    unfit += [f"'{rule}'"] if rule is not None and rule.hold else []
+    for what in unfit:
+        raise CommandError(
+            f"the formula quantifies over '{next(iter(spec.groups))}', whose members come and go, and 'rtamt monitor' "
+            f"does not support {what} for it: leave that out, or check recordings with 'rtamt check'"
+        )
+
+
 def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> EarlyFeed | None:
     """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
     verdict = args.verdict
     if args.explain and verdict != "eager":
         raise CommandError("--explain explains verdicts before the horizon: use it with --verdict eager")
-    at_start = verdict in {None, "interval"} and unbounded_future(spec.formula) is not None
+    unbounded = not spec.groups and unbounded_future(spec.formula) is not None
+    at_start = verdict in {None, "interval"} and unbounded
     if not at_start and verdict in {None, DELAYED}:
         return None
     if at_start:

@@ -153,9 +153,17 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
             if unchecked:
                 found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
                 return list(together(found, unchecked).values())
-            known = spec.over(members.members_of(spec.groups, sorted(source.signals)))
-            # A cell that is empty ends the presence of a member.
-            choice = replace(choice_for([known], trace, reading), gaps=True)
+            names = members.members_of(spec.groups, sorted(source.signals))
+            fields = members.declared_fields(names, spec.groups)
+            choice = choice_for([spec.over(names)], trace, reading)
+            # A cell that is empty ends the presence of a member, also that of a field that no formula reads.
+            choice = replace(
+                choice,
+                columns=tuple(dict.fromkeys((*(choice.columns or ()), *fields))) or None,
+                types={name: each.values for name, each in fields.items() if each.values}
+                | dict(choice.types),
+                gaps=True,
+            )
             whole = spec.binding.applied(trace_of(source, choice))
         bound = members.bound(whole, spec.groups, spec.input_names, own_clocks=True, source=shown(trace))
         over = spec.over(bound.members)

@@ -46,13 +46,14 @@ from rtamt.signals.unit_conversion import conversion_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
+    from rtamt.cli.stream_members import StreamMembers
     from rtamt.readers.assemble import Selection
     from rtamt.readers.source import Field, Raw
     from rtamt.readers.timestamps import Clock
     from rtamt.signals.coding import Types
 
-#: The time (None if there are no timestamps) and the values.
-Sample = tuple[Any, dict[str, float]]
+#: The time (None if there are no timestamps) and the values: numbers, or None where a member has no sample.
+Sample = tuple[Any, dict[str, Any]]
 
 
 class Samples:
@@ -61,7 +62,8 @@ class Samples:
     A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
     that :func:`rtamt.read` would take. ``unit``: of timestamps that are numbers. ``binding``: under which names the
-    variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN.
+    variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN. ``members``:
+    finds the members of groups, which may be absent.
     """
 
     def __init__(
@@ -74,8 +76,10 @@ class Samples:
         binding: Binding | None = None,
         types: Types = NO_TYPES,
         skip_nan: bool = False,
+        members: StreamMembers | None = None,
     ) -> None:
         self._types = types
+        self.members = members
         self._skip_nan = skip_nan
         self._names = tuple(names)
         self._binding = Binding(self._names) if binding is None else binding
@@ -110,7 +114,9 @@ class Samples:
                 return self._read(text, number)
             timestamps = _Stamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
-                reader = JsonSamples(self._names, timestamps, self._dense, self._choice, self._types)
+                reader = JsonSamples(
+                    self._names, timestamps, self._dense, self._choice, self._types, self.members
+                )
                 sample = reader.read(text, number)
                 self._read = reader.read
                 return sample
@@ -123,6 +129,7 @@ class Samples:
                 self._recorded,
                 self._types,
                 skip_nan=self._skip_nan,
+                members=self.members,
             )
             self.units = rows.units
             self._read = self._converted(rows)
@@ -135,7 +142,7 @@ class Samples:
     def _converted(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
         """Return what reads rows, with values in their declared units."""
         found = {}
-        for name, declared in self._binding.units:
+        for name, declared in {**rows.declared, **dict(self._binding.units)}.items():
             recorded = rows.units.get(name, "")
             conversion = conversion_of(name, recorded, declared) if recorded else None
             self.units[name] = declared
@@ -148,7 +155,7 @@ class Samples:
         def read(text: str, number: int) -> Sample:
             time, values = rows.read(text, number)
             for name, conversion in found.items():
-                if name in values:
+                if values.get(name) is not None:
                     values[name] = float(conversion(values[name]))
             return time, values
 
@@ -175,6 +182,10 @@ class _Stamps:
         self._samples = 0
         self._cells: Cells | None = None
         self.clock: Clock | None = None
+
+    def add(self, names: Iterable[str]) -> None:
+        """Take further columns for signals."""
+        self._names = tuple(dict.fromkeys((*self._names, *names)))
 
     def require(self, name: str, value: object, number: int) -> None:
         """Raise :class:`TraceError` where a sample of discrete time, in line ``number``, has no value."""
@@ -248,9 +259,11 @@ class JsonSamples:
         dense: bool,
         choice: Choice,
         types: Types,
+        members: StreamMembers | None = None,
     ) -> None:
         self._names = names
         self._types = types
+        self._members = members
         self._timestamps = timestamps
         self._dense = dense
         self._choice = choice
@@ -270,6 +283,11 @@ class JsonSamples:
         for name in names:
             self._timestamps.require(columns[name], given_in(data, columns[name], number, name), number)
         values = {name: number_in(data, columns[name], number, self._types.get(name)) for name in names}
+        if self._members is not None:
+            found = self._members.in_object(data, number)
+            if clock is not None:
+                found.pop(clock.field.column, None)
+            values = found | values
         stamp = None if clock is None else stamp_in(data, clock.field.column, number)
         return self._timestamps.sample(stamp, values, number)
 
@@ -288,13 +306,19 @@ class CsvSamples:
         types: Types,
         *,
         skip_nan: bool,
+        members: StreamMembers | None = None,
     ) -> None:
-        self._types = types
         self._dense = dense
         self._timestamps = timestamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
+        fields = {} if members is None else members.in_header(self._header.names)
+        timestamps.add(fields)
+        self._types = {name: each.values for name, each in fields.items() if each.values} | dict(types)
+        #: The declared units of members.
+        self.declared = {name: each.unit for name, each in fields.items() if each.unit}
+        self._may_be_absent = fields.keys() - set(names)
         columns = [*self._header.names, *(split_unit(column)[0] for column in self._header.names)]
-        known = {*names, *recorded}
+        known = {*names, *recorded, *fields}
         if names and not any(is_stamps(c) or may_be_stamps(c) or c in known for c in columns):
             shown = text if len(text) <= 60 else f"{text[:60]}..."
             raise line_error(
@@ -323,6 +347,8 @@ class CsvSamples:
         given = self._columns
         if self._dense:
             given = [c for c in given if row[c.position].strip()]
+        absent = [c for c in given if c.name in self._may_be_absent and not row[c.position].strip()]
+        given = [c for c in given if c not in absent]
         for column in given:
             self._timestamps.require(column.name, row[column.position].strip(), number)
         members = {c.name: self._member(c, row, number) for c in given if c.name in self._types}
@@ -330,7 +356,8 @@ class CsvSamples:
         given = [c for c in given if c.name not in codes]
         truths = [c for c in given if self._is_boolean(c.name, row[c.position].strip())]
         given = [c for c in given if c not in truths]
-        values = dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
+        values: dict[str, Any] = dict.fromkeys(c.name for c in absent)
+        values |= dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         values |= codes
         clock = self._timestamps.clock

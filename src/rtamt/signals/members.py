@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rtamt.errors import TraceError
+from rtamt.language.quantifiers import Field
 from rtamt.language.value_types import Enumeration
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
@@ -70,6 +71,17 @@ def members_of(groups: Fields, names: Iterable[str]) -> dict[str, tuple[str, ...
     return found
 
 
+def declared_fields(members: Mapping[str, tuple[str, ...]], groups: Fields) -> dict[str, Field]:
+    """Return the fields of members by their names in data, with what is declared of them."""
+    found: dict[str, Field] = {}
+    for name, (group, fields) in groups.items():
+        declared = {each.name: each for each in group.fields}
+        for member in members[name]:
+            for field in fields:
+                found.setdefault(f"{member}.{field}", declared.get(field, Field(field)))
+    return found
+
+
 def bound(
     data: Any, groups: Fields, names: Collection[str], *, own_clocks: bool, source: str = "the data"
 ) -> Bound:
@@ -80,6 +92,16 @@ def bound(
     """
     known = _names(data)
     members = members_of(groups, known)
+    require_members(members, groups, known, source)
+    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else _on_one_clock
+    made, throughout = read(data, _columns(members, groups), names)
+    return Bound(made, Members(members, frozenset(throughout)))
+
+
+def require_members(
+    members: Mapping[str, tuple[str, ...]], groups: Fields, known: Sequence[str], source: str
+) -> None:
+    """Raise :class:`TraceError` for a group without members; ``known``: the names in the ``source``."""
     for name, found in members.items():
         if not found:
             group = groups[name][0]
@@ -88,9 +110,6 @@ def bound(
                 f"{source} has no member of the group '{name}': no name matches \"{group.pattern}\" and a field, "
                 f"such as {group.pattern.replace('*', '1')}.{(*groups[name][1], 'x')[0]}; names: {recorded}"
             )
-    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else _on_one_clock
-    made, throughout = read(data, _columns(members, groups), names)
-    return Bound(made, Members(members, frozenset(throughout)))
 
 
 class Chunk(NamedTuple):

@@ -145,6 +145,15 @@ def test_conditions_read_whether_a_quantifier_holds_and_not_its_robustness():
     assert parsed.monitor().update_many(data).values.tolist() == parsed.evaluate(data).signal.values.tolist()
 
 
+def test_a_variable_that_the_pattern_matches_is_a_member_in_updates_and_chunks_alike():
+    parsed = rtamt.parse("input float car_0.x " + CARS + "forall v in cars: v.x - car_0.x > 1")
+    sample = {"car_0.x": 0.0, "car_1.x": 5.0}
+    assert parsed.monitor().update(0.0, **sample) == -1.0
+    assert parsed.monitor().update_many(
+        {name: [value] for name, value in sample.items()}
+    ).values.tolist() == [-1.0]
+
+
 WRONG = [
     ({"ego": 1.0, "cra_1.x": 1.0}, "the formula has no variable 'cra_1.x'; variables: ego, car_*"),
     ({"car_1.x": 1.0, "car_1.v": 1.0}, "the data has no 'ego'; signals: none"),

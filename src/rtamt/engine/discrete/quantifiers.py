@@ -368,9 +368,10 @@ class MemberMonitor:
         given: dict[str, dict[str, Any]] = {}
         heads = {name.split(".")[0] for name in self.input_names}
         for name, value in values.items():
+            member = self._note_member(name, value, given)
             if name in self.input_names or name in heads:
-                own[name] = value
-            elif not self._note_member(name, value, given) and name not in self._declared:
+                own[name] = value  # of a member, too, if the pattern matches the name
+            elif not member and name not in self._declared:
                 patterns = [group.pattern for group, _ in self._fields.values()]
                 raise unknown_variable(name, [*self.input_names, *patterns])
         for name in self.input_names:
