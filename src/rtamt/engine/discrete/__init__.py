@@ -7,6 +7,7 @@ backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
 quantifiers           the monitor of quantifiers, over members that come and go
+member_executors      what executes quantifiers: one executor for each member
 time_axis             a recording in samples, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor
 early_python_backend  the definition of bounds behind the interface of the core's EarlyMonitor

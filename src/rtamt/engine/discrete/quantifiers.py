@@ -1,25 +1,20 @@
-"""The discrete-time monitor of formulas with quantifiers: one executor for each member that is present.
+"""The discrete-time monitor of formulas with quantifiers, over members that come and go.
 
-A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
-state; one that is gone runs on, as absent, until what it had can no longer matter. The outer formula is monitored as
-any other: what the members give together is a column of it.
+The outer formula is monitored as any other: what the members of a quantifier give together is a column of it.
 """
 
 from __future__ import annotations
 
-import operator
 from copy import copy
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.discrete.member_executors import Plan, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import types_of
-from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays, members
 from rtamt.signals.binding import Binding
@@ -28,9 +23,10 @@ from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.engine.discrete.member_executors import Sample
     from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
     from rtamt.rewrite.quantifier_streams import Quantified
@@ -39,155 +35,6 @@ if TYPE_CHECKING:
 
 #: After how many samples the state is remembered, from which a failed update goes back.
 _REMEMBER = 64
-
-#: How quantifiers combine what their members give.
-_COMBINED: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
-    {"forall": min, "exists": max, "count": operator.add}
-)
-
-#: A member's fields at a sample, by name.
-_Sample = dict[str, float]
-
-
-class _Executor(Monitor):
-    """The monitor of a quantifier's formula over one member."""
-
-    #: The index and the time of its first sample, and the member in words.
-    origin: tuple[int, float, str] = (0, 0.0, "")
-
-    def _no_value(self, error: Any) -> Exception:
-        begin, time, who = self.origin
-        index = error.args[1]
-        found = undefined(
-            self._session.culprit(error), at_sample(begin + index, time + index * float(self._period))
-        )
-        return type(found)(f"{who}: {found}")
-
-
-class _Quantifier:
-    """A quantifier: its compiled formula, and the executors of the members at present.
-
-    ``bound``: the members that the variables of the quantifiers around it stand for.
-    """
-
-    def __init__(self, plan: _Plan, bound: Mapping[str, str]) -> None:
-        self.plan = plan
-        self.bound = bound
-        self.running: dict[str, _Running] = {}
-
-    def step(
-        self, present: Mapping[str, Mapping[str, _Sample]], values: _Sample, at: tuple[int, float]
-    ) -> float:
-        """Take a sample; return what the members gave together at the instant one lag ago.
-
-        ``present``: the members of each group that are present, with their fields. ``values``: of all other variables.
-        ``at``: the index and the time of the sample.
-        """
-        plan = self.plan
-        here = present[plan.group]
-        for member in here:
-            if member not in self.running and plan.differs(self.bound, member):
-                self.running[member] = _Running(plan, {**self.bound, plan.variable: member}, at)
-        total = plan.none
-        gone = []
-        for member, running in self.running.items():
-            sample = here.get(member)
-            running.absent = 0 if sample is not None else running.absent + 1
-            if plan.keep is not None and running.absent > plan.keep:
-                gone.append(member)
-                continue
-            given = running.step(present, values, sample, at)
-            if given is not None:
-                total = plan.combined(total, given)
-        for member in gone:
-            del self.running[member]
-        return total
-
-    def state(self) -> Any:
-        """Return the state of all executors."""
-        return {member: running.state() for member, running in self.running.items()}
-
-    def restore(self, state: Any) -> None:
-        """Go back to a state."""
-        self.running = {}
-        for member, each in state.items():
-            self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, (0, 0.0))
-            self.running[member].restore(each)
-
-    def executors(self) -> Iterator[_Executor]:
-        """Yield the executors of all members, also inside."""
-        for running in self.running.values():
-            yield running.executor
-            for inner in running.inside:
-                yield from inner.executors()
-
-
-class _Running:
-    """The executor of one member, and the quantifiers inside."""
-
-    def __init__(self, plan: _Plan, bound: Mapping[str, str], at: tuple[int, float]) -> None:
-        self.plan = plan
-        self.executor = copy(plan.template)
-        who = ", ".join(f"{variable} is {member}" for variable, member in bound.items())
-        self.executor.origin = (*at, who)
-        self.inside = [_Quantifier(inner, bound) for inner in plan.inside]
-        self.absent = 0
-
-    def step(
-        self,
-        present: Mapping[str, Mapping[str, _Sample]],
-        values: _Sample,
-        sample: _Sample | None,
-        at: tuple[int, float],
-    ) -> float | None:
-        plan = self.plan
-        mine = dict(values)
-        mine[plan.channel] = 0.0 if sample is None else 1.0
-        for field, name in plan.fields.items():
-            mine[name] = plan.fillers[field] if sample is None else sample[field]
-        for inner in self.inside:
-            mine[inner.plan.column] = inner.step(present, mine, at)
-        return self.executor.step(*[mine[name] for name in self.executor.input_names])
-
-    def state(self) -> Any:
-        return (
-            self.executor._state(),
-            self.executor.origin,
-            self.absent,
-            [each.state() for each in self.inside],
-        )
-
-    def restore(self, state: Any) -> None:
-        own, self.executor.origin, self.absent, inside = state
-        self.executor._resume(own)
-        for inner, each in zip(self.inside, inside, strict=True):
-            inner.restore(each)
-
-
-class _Plan:
-    """What is fixed of a quantifier."""
-
-    def __init__(
-        self, of: Quantified, domain: Discrete, text: str | None, backend: str, fields: Fields
-    ) -> None:
-        assert domain.period is not None
-        self.variable, self.group = of.binder.variable, of.binder.group.name
-        self.apart = of.binder.apart
-        self.column, self.none = of.column, of.none
-        self.lag = int(of.lag / domain.period)
-        self.keep = None if of.keep is None else int(of.keep / domain.period) + self.lag + 1
-        self.combined: Callable[[float, float], float] = _COMBINED[of.kind]
-        group, names = fields[self.group]
-        self.fields = {name: f"{self.variable}.{name}" for name in names}
-        self.fillers = {name: members.filler(group.values(name)) for name in names}
-        self.channel = channel_of(self.variable)
-        self.template = _Executor(of.formula, domain, text=text, backend=backend)
-        self.inside = [_Plan(each, domain, text, backend, fields) for each in of.inside]
-
-    def differs(self, bound: Mapping[str, str], member: str) -> bool:
-        """Return whether a member is another one than those that the quantifier keeps apart from it."""
-        names = {**bound, self.variable: member}
-        return all(names[one] != names[other] for one, other in self.apart)
 
 
 class _News:
@@ -250,7 +97,7 @@ class MemberMonitor:
     ) -> None:
         domain = domain.online
         self._outer = Monitor(formula, domain, text=text, backend=backend, watch=watch)
-        self._plans = [_Plan(each, domain, text, backend, fields) for each in quantified]
+        self._plans = [Plan(each, domain, text, backend, fields) for each in quantified]
         self._fields = fields
         self._declared = frozenset(declared)
         self._factory = factory
@@ -264,7 +111,7 @@ class MemberMonitor:
         self._begin()
 
     def _begin(self) -> None:
-        self._quantifiers = [_Quantifier(plan, {}) for plan in self._plans]
+        self._quantifiers = [QuantifierExecutor(plan, {}) for plan in self._plans]
         self._finished = False
         #: What the last chunk made known of each formula; of a sample, the outer monitor has it.
         self._news: dict[Any, Signal] = {}
@@ -353,7 +200,7 @@ class MemberMonitor:
         samples = self.samples
         numbers = dict.fromkeys(self.input_names, 1.0)
         known = _News(self._watched)
-        nobody: dict[str, dict[str, _Sample]] = {name: {} for name in self._fields}
+        nobody: dict[str, dict[str, Sample]] = {name: {} for name in self._fields}
         for _ in range(self._late if samples else 0):
             known.note(self._advance(self._next_time(), numbers, nobody, running=0.0), self._outer)
         last = self._outer._recent(self._late + 1)[0] if samples else None
@@ -362,7 +209,7 @@ class MemberMonitor:
         self._news = known.signals(last)
         return self._news[None]
 
-    def _read(self, values: Mapping[str, Any], time: Any) -> tuple[_Sample, dict[str, dict[str, _Sample]]]:
+    def _read(self, values: Mapping[str, Any], time: Any) -> tuple[Sample, dict[str, dict[str, Sample]]]:
         """Return the numbers of an update, and the members that are present."""
         own: dict[str, Any] = {}
         given: dict[str, dict[str, Any]] = {}
@@ -407,7 +254,7 @@ class MemberMonitor:
 
     def _sample(
         self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
-    ) -> _Sample:
+    ) -> Sample:
         """Return the fields of a member as numbers."""
         for field in fields:
             if field not in sample:
@@ -428,7 +275,7 @@ class MemberMonitor:
         )
         return {field: numbers[name] for field, name in names.items()}
 
-    def _take(self, time: Any, numbers: _Sample, present: dict[str, dict[str, _Sample]]) -> float | None:
+    def _take(self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]]) -> float | None:
         """Take a sample that was read; if it fails, nothing has changed."""
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
@@ -443,7 +290,7 @@ class MemberMonitor:
         return robustness
 
     def _advance(
-        self, time: Any, numbers: _Sample, present: dict[str, dict[str, _Sample]], running: float = 1.0
+        self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]], running: float = 1.0
     ) -> float | None:
         values = {**numbers, RUNNING: running}
         seconds = arrays.number_of(time)
@@ -485,7 +332,7 @@ class MemberMonitor:
 
     def _remember(self) -> None:
         self._before = self._state()
-        self._since: list[tuple[Any, _Sample, dict[str, dict[str, _Sample]]]] = []
+        self._since: list[tuple[Any, Sample, dict[str, dict[str, Sample]]]] = []
 
     def _go_back(self) -> None:
         """Return to the state before a sample that failed."""
@@ -500,7 +347,7 @@ class MemberMonitor:
         twin.__dict__.update(self.__dict__)
         twin._usage = UsageGuard()
         twin._outer = copy(self._outer)
-        twin._quantifiers = [_Quantifier(plan, {}) for plan in self._plans]
+        twin._quantifiers = [QuantifierExecutor(plan, {}) for plan in self._plans]
         twin._restore(self._state())
         return twin
 

@@ -1,0 +1,173 @@
+"""What executes quantifiers in discrete time: one executor for each member that is present.
+
+A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
+state; one that is gone runs on, as absent, until what it had can no longer matter.
+"""
+
+from __future__ import annotations
+
+import operator
+from copy import copy
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rtamt.engine.discrete.monitor import Monitor
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.rewrite.presence import channel_of
+from rtamt.signals import members
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from rtamt.rewrite.quantifier_streams import Quantified
+    from rtamt.signals.discrete import Discrete
+    from rtamt.signals.members import Fields
+
+#: How quantifiers combine what their members give.
+_COMBINED: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
+    {"forall": min, "exists": max, "count": operator.add}
+)
+
+#: A member's fields at a sample, by name.
+Sample = dict[str, float]
+
+
+class _Executor(Monitor):
+    """The monitor of a quantifier's formula over one member."""
+
+    #: The index and the time of its first sample, and the member in words.
+    origin: tuple[int, float, str] = (0, 0.0, "")
+
+    def _no_value(self, error: Any) -> Exception:
+        begin, time, who = self.origin
+        index = error.args[1]
+        found = undefined(
+            self._session.culprit(error), at_sample(begin + index, time + index * float(self._period))
+        )
+        return type(found)(f"{who}: {found}")
+
+
+class QuantifierExecutor:
+    """A quantifier: its compiled formula, and the executors of the members at present.
+
+    ``bound``: the members that the variables of the quantifiers around it stand for.
+    """
+
+    def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
+        self.plan = plan
+        self.bound = bound
+        self.running: dict[str, _Running] = {}
+
+    def step(
+        self, present: Mapping[str, Mapping[str, Sample]], values: Sample, at: tuple[int, float]
+    ) -> float:
+        """Take a sample; return what the members gave together at the instant one lag ago.
+
+        ``present``: the members of each group that are present, with their fields. ``values``: of all other variables.
+        ``at``: the index and the time of the sample.
+        """
+        plan = self.plan
+        here = present[plan.group]
+        for member in here:
+            if member not in self.running and plan.differs(self.bound, member):
+                self.running[member] = _Running(plan, {**self.bound, plan.variable: member}, at)
+        total = plan.none
+        gone = []
+        for member, running in self.running.items():
+            sample = here.get(member)
+            running.absent = 0 if sample is not None else running.absent + 1
+            if plan.keep is not None and running.absent > plan.keep:
+                gone.append(member)
+                continue
+            given = running.step(present, values, sample, at)
+            if given is not None:
+                total = plan.combined(total, given)
+        for member in gone:
+            del self.running[member]
+        return total
+
+    def state(self) -> Any:
+        """Return the state of all executors."""
+        return {member: running.state() for member, running in self.running.items()}
+
+    def restore(self, state: Any) -> None:
+        """Go back to a state."""
+        self.running = {}
+        for member, each in state.items():
+            self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, (0, 0.0))
+            self.running[member].restore(each)
+
+    def executors(self) -> Iterator[_Executor]:
+        """Yield the executors of all members, also inside."""
+        for running in self.running.values():
+            yield running.executor
+            for inner in running.inside:
+                yield from inner.executors()
+
+
+class _Running:
+    """The executor of one member, and the quantifiers inside."""
+
+    def __init__(self, plan: Plan, bound: Mapping[str, str], at: tuple[int, float]) -> None:
+        self.plan = plan
+        self.executor = copy(plan.template)
+        who = ", ".join(f"{variable} is {member}" for variable, member in bound.items())
+        self.executor.origin = (*at, who)
+        self.inside = [QuantifierExecutor(inner, bound) for inner in plan.inside]
+        self.absent = 0
+
+    def step(
+        self,
+        present: Mapping[str, Mapping[str, Sample]],
+        values: Sample,
+        sample: Sample | None,
+        at: tuple[int, float],
+    ) -> float | None:
+        plan = self.plan
+        mine = dict(values)
+        mine[plan.channel] = 0.0 if sample is None else 1.0
+        for field, name in plan.fields.items():
+            mine[name] = plan.fillers[field] if sample is None else sample[field]
+        for inner in self.inside:
+            mine[inner.plan.column] = inner.step(present, mine, at)
+        return self.executor.step(*[mine[name] for name in self.executor.input_names])
+
+    def state(self) -> Any:
+        return (
+            self.executor._state(),
+            self.executor.origin,
+            self.absent,
+            [each.state() for each in self.inside],
+        )
+
+    def restore(self, state: Any) -> None:
+        own, self.executor.origin, self.absent, inside = state
+        self.executor._resume(own)
+        for inner, each in zip(self.inside, inside, strict=True):
+            inner.restore(each)
+
+
+class Plan:
+    """What is fixed of a quantifier."""
+
+    def __init__(
+        self, of: Quantified, domain: Discrete, text: str | None, backend: str, fields: Fields
+    ) -> None:
+        assert domain.period is not None
+        self.variable, self.group = of.binder.variable, of.binder.group.name
+        self.apart = of.binder.apart
+        self.column, self.none = of.column, of.none
+        self.lag = int(of.lag / domain.period)
+        self.keep = None if of.keep is None else int(of.keep / domain.period) + self.lag + 1
+        self.combined: Callable[[float, float], float] = _COMBINED[of.kind]
+        group, names = fields[self.group]
+        self.fields = {name: f"{self.variable}.{name}" for name in names}
+        self.fillers = {name: members.filler(group.values(name)) for name in names}
+        self.channel = channel_of(self.variable)
+        self.template = _Executor(of.formula, domain, text=text, backend=backend)
+        self.inside = [Plan(each, domain, text, backend, fields) for each in of.inside]
+
+    def differs(self, bound: Mapping[str, str], member: str) -> bool:
+        """Return whether a member is another one than those that the quantifier keeps apart from it."""
+        names = {**bound, self.variable: member}
+        return all(names[one] != names[other] for one, other in self.apart)
