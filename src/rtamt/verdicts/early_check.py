@@ -68,7 +68,7 @@ def in_parts(trace: Trace, size: int = 4096) -> Iterator[Trace]:
     """Yield a trace as traces that follow one another, each of about so many times.
 
     >>> import rtamt
-    >>> [list(part["x"].values) for part in in_parts(rtamt.read({"time": [0, 1, 2], "x": [5, 6, 7]}), 2)]
+    >>> [part["x"].values.tolist() for part in in_parts(rtamt.read({"time": [0, 1, 2], "x": [5, 6, 7]}), 2)]
     [[5.0, 6.0], [7.0]]
     """
     channels = {name: trace.channel(name) for name in trace}
