@@ -16,6 +16,8 @@ parameters       the option ``--set``
 language         the option ``--language``
 outcome          the outcome of a requirement on a recording, as reports show it
 runner           every requirement on every recording, on all cores
+early_outcomes   the same, reading a recording no further than the verdicts need
+chunks           a recording that is read in chunks
 bag              check a bag, and write a copy with the results
 stdin_reader     JSON or CSV lines to samples
 stream_members   the members of groups in JSON or CSV lines

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import os
 import time
-from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from itertools import islice
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rtamt.batch import evaluate_requirements
+from rtamt.cli.chunks import Chunks
 from rtamt.cli.command import NO_STAMPS
+from rtamt.cli.early_outcomes import early_outcomes
 from rtamt.cli.outcome import (
     Outcome,
     applicable,
@@ -26,7 +27,6 @@ from rtamt.cli.reading_options import (
     choice_for,
     how_to_mend,
     is_resampled,
-    oldest_held,
     on_clock,
     read_for,
 )
@@ -36,29 +36,22 @@ from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
 from rtamt.signals import members
-from rtamt.signals.arrays import TIME
 from rtamt.signals.episodes import Episodes
-from rtamt.signals.resampling import Sampler
-from rtamt.verdicts.early_check import holds_at_end, in_parts
 from rtamt.verdicts.streaming import check_stream, check_streamable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from fractions import Fraction
+    from collections.abc import Iterator, Sequence
 
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
     from rtamt.results import Result
     from rtamt.signals.trace import Trace
-    from rtamt.specification import Specification
     from rtamt.verdicts.chunks import StreamResult
-    from rtamt.verdicts.early_check import EarlyCheck
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
 LARGE = 256 * 2**20
 #: Bytes of all files together from which on starting a process for each core pays.
 _WORTH_PROCESSES = 16 * 2**20
-_UNREAD = "later samples are not checked"
 
 
 def outcomes(
@@ -178,7 +171,7 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
 def _checked(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording that has the signals for them."""
     early = {
-        requirement.label: _early(requirement, trace, reading) if reading.early else None
+        requirement.label: early_outcomes(requirement, trace, reading) if reading.early else None
         for requirement in requirements
     }
     rest = [requirement for requirement in requirements if early[requirement.label] is None]
@@ -205,80 +198,6 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
     return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
 
 
-def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:
-    """Check no further than the verdicts need; None where they need the whole recording."""
-    begin = time.perf_counter()
-    rows = requirement.rows or (requirement,)
-    specs = [row.spec for row in rows]
-    make = requirement.spec.domain.part("early_check")
-    if make is None or not all(map(holds_at_end, specs)):
-        return None
-    resampled = is_resampled(requirement.spec, trace, reading)
-    period = reading.resample or requirement.spec.period
-    as_it_comes = not resampled or not (
-        period is None or requirement.spec.domain.continuous or TIME in requirement.spec.input_names
-    )
-    if resampled and requirement.rows:
-        found = [_early(row, trace, reading) for row in requirement.rows]
-        return None if None in found else [o for each in found if each is not None for o in each]
-    spec = requirement.spec
-    try:
-        check: EarlyCheck = make(specs)
-        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            if as_it_comes and source.in_chunks:
-                chunks = _Chunks(spec, chunks_of(source, choice_for([spec], trace, reading)))
-                taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
-            else:
-                whole = spec.binding.applied(trace_of(source, choice_for([spec], trace, reading)))
-                parts = in_parts(on_clock(whole, spec, trace, reading))
-                taken = chunks = _Chunks(spec, parts, bound=True)
-            if not any(map(check.take, taken)):
-                return None
-    except StlError:  # the check of the whole recording reports what is wrong
-        return None
-    assert check.decided is not None
-    seconds = (time.perf_counter() - begin) / len(rows)
-    return [
-        Outcome(
-            row.label,
-            shown(trace),
-            "satisfied" if part.satisfied else "violated",
-            part.bounds.lower if part.bounds.lower == part.bounds.upper else float("nan"),
-            plain_time(part.first_violation),
-            moment_of(part.first_violation, part.start),
-            part.samples,
-            part.period,
-            notes=(
-                *chunks.remarks,
-                f"{_stop(row, rows)} at {moment_of(part.decided_at, part.start)}, {_UNREAD}",
-            ),
-            decided_at=plain_time(part.decided_at),
-            bounds=part.bounds,
-            seconds=seconds,
-        )
-        for row, part in zip(rows, check.decided, strict=True)
-    ]
-
-
-def _sampled(
-    chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, reading: Reading
-) -> Iterator[Mapping[str, Any]]:
-    """Yield chunks on their own time base: the values of all signals every ``period``."""
-    assert period is not None
-    sampler = Sampler(spec.input_names, period, reading.how, oldest_held(spec, reading))
-    for chunk in chunks:
-        channels = {name: chunk.channel(name) for name in chunk}
-        known = sampler.take(
-            {name: (c.times, c.values) for name, c in channels.items() if c.times is not None}
-        )
-        if known is not None:
-            yield {TIME: known[0], **known[1]}
-
-
-def _stop(row: Requirement, rows: Sequence[Requirement]) -> str:
-    return "decided" if len(rows) == 1 else f"{row.label} is decided"
-
-
 def _is_large(trace: str, reading: Reading) -> bool:
     if reading.whole:
         return False
@@ -288,13 +207,13 @@ def _is_large(trace: str, reading: Reading) -> bool:
 def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check in chunks if format and formula allow it, else read the recording whole."""
     begin = time.perf_counter()
-    chunks: _Chunks | None = None
+    chunks: Chunks | None = None
     found: StreamResult | None = None
     try:
         check_streamable(requirement.spec)
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
-                chunks = _Chunks(
+                chunks = Chunks(
                     requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
                 )
                 found = check_stream(requirement.spec, chunks)
@@ -387,30 +306,3 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         seconds=time.perf_counter() - begin,
         result=result,
     )
-
-
-class _Chunks:
-    """Chunks, whether their timestamps are dates, and the number of samples so far."""
-
-    def __init__(self, spec: Specification, chunks: Iterator[Trace], *, bound: bool = False) -> None:
-        self._chunks = chunks if bound else map(spec.binding.applied, chunks)
-        self._counts: Counter[str] = Counter()
-        self.last: Trace | None = None
-        #: The first time of all.
-        self.start: Any = 0.0
-        #: The notes of the last chunk, which include those of all before.
-        self.remarks: tuple[str, ...] = ()
-
-    def __iter__(self) -> Iterator[Trace]:
-        for chunk in self._chunks:
-            if self.last is None:
-                self.start = chunk.start if chunk.start is not None else 0.0
-            else:
-                self._counts.update({name: len(self.last[name].values) for name in self.last})
-            self.last = chunk
-            self.remarks = chunk.remarks
-            yield chunk
-
-    def before(self, error: StlError) -> int:
-        """Return how many samples the variable that an error is about had before the last chunk."""
-        return self._counts[str(getattr(error, "variable", None))]
