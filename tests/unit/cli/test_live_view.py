@@ -139,6 +139,14 @@ def test_members_and_booleans_are_shown_by_name():
     assert "mode = MANUAL  p = false" in seen
 
 
+def test_members_of_groups_that_are_absent_are_not_drawn():
+    stdin = '{"car_1.x": 5, "car_2.x": 4}\n{"car_2.x": 7}\n{"car_2.x": null, "car_3.x": 9}\n'
+    formula = 'group cars = "car_*"; forall v in cars: v.x >= 3'
+    code, seen, _ = monitor("pipe", stdin, formula=formula)
+    assert code == 0
+    assert "3 samples  car_3.x = 9\r" in seen
+
+
 def test_bounds_at_the_start_narrow_to_the_robustness():
     stream = Terminal()
     live = Live("always(x >= 3)", stream)
