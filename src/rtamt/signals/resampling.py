@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 #: Ways of filling in what lies between two samples.
 HOW = ("hold", "linear")
 
+#: Times of doubles are no more exact than this many seconds: 3 * 0.1 s lies behind 0.3 s, and a sum of steps drifts.
+NEAR = Fraction(1, 10**6)
+
 
 def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) -> Times:
     """Return instants ``period`` apart, from the first at which all signals have a value; see ``Trace.resample``."""
@@ -37,17 +40,26 @@ def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) ->
     last = (max if how == "hold" else min)(exact_time(times[-1]) for times in timed)
     if last < start:
         raise TraceError("the signals have no instant in common")
-    return _grid(start, step, int((last - start) / step) + 1, timed[0].dtype)
+    count = floor((last - start + _nearness(step, timed[0].dtype)) / step) + 1
+    return _grid(start, step, count, timed[0].dtype)
 
 
 def resampled(
-    name: str, times: Times, values: FloatArray, grid: Times, how: str, hold_for: Fraction | None = None
+    name: str,
+    times: Times,
+    values: FloatArray,
+    grid: Times,
+    how: str,
+    hold_for: Fraction | None = None,
+    step: Fraction | None = None,
 ) -> tuple[FloatArray, list[str]]:
     """Return the values of a signal at the instants of a grid, and a note on samples that they leave out.
 
-    ``hold_for``: raise :class:`TraceError` where the last value is older (seconds).
+    ``hold_for``: raise :class:`TraceError` where the last value is older (seconds). ``step``: the distance of the
+    instants, if they are apart by a period: a time that differs from one by the rounding of a double is that instant.
     """
-    places = np.searchsorted(times, grid, side="right") - 1
+    near = 0 if step is None else _nearness(step, grid.dtype)
+    places = np.searchsorted(times, grid + float(near) if near else grid, side="right") - 1
     if how == "hold" and hold_for is not None:
         _check_ages(name, times[places], grid, hold_for)
     if how == "hold":
@@ -127,17 +139,17 @@ class Sampler:
     ) -> tuple[Times, dict[str, FloatArray]] | None:
         """Return the instants up to ``end`` and the values there; None if there are fewer than ``least``."""
         assert self._start is not None
-        steps = (end - self._start) / self._step
-        until = max(self._count, floor(steps) + 1 if closed else ceil(steps))
+        dtype = next(iter(self._pending.values()))[0].dtype
+        steps, near = (end - self._start) / self._step, _nearness(self._step, dtype) / self._step
+        until = max(self._count, floor(steps + near) + 1 if closed else ceil(steps - near))
         count, first = until - self._count, self._count
         if count < least:
             return None
         self._count = until
-        dtype = next(iter(self._pending.values()))[0].dtype
         grid = _grid(self._start + first * self._step, self._step, count, dtype)
         found = {}
         for name, (times, values) in self._pending.items():
-            found[name], _ = resampled(name, times, values, grid, self._how, self._hold_for)
+            found[name], _ = resampled(name, times, values, grid, self._how, self._hold_for, self._step)
             place = int(np.searchsorted(times, grid[-1], side="right")) - 1
             self._pending[name] = times[place:], values[place:]
         return grid, found
@@ -156,7 +168,7 @@ def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
 
 def _check_ages(name: str, times: Times, grid: Times, hold_for: Fraction) -> None:
     ages = _plain(grid - times) / (1e9 if grid.dtype.kind in "mM" else 1.0)
-    near = float(hold_for) - 1e-6  # times of doubles are no more exact
+    near = float(hold_for - NEAR)
     for i in np.flatnonzero(ages > near).tolist():
         if exact_time(grid[i]) - exact_time(times[i]) > hold_for:
             raise TraceError(
@@ -171,6 +183,11 @@ def exact_time(time: Any) -> Fraction:
     if isinstance(time, np.datetime64 | np.timedelta64):
         return Fraction(int(time.astype(np.int64)), 10**9)
     return Fraction(repr(float(time)))
+
+
+def _nearness(step: Fraction, dtype: np.dtype[Any]) -> Fraction:
+    """Return how far, in seconds, a time may lie from an instant of a grid and still be that instant."""
+    return min(NEAR, step / 10**4) if dtype.kind == "f" else Fraction(0)
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.language.units.durations import positive_period
+from rtamt.language.units.durations import duration, positive_period
 from rtamt.signals.arrays import TIME, Clocked, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
@@ -318,7 +318,7 @@ class Trace(Clocked):
         )
         if limit is not None and how != "hold":
             raise UsageError(f"hold_for= is for how='hold', got how='{how}'")
-        return self._at(grid_of(self._all_timed(), period, how), how, limit)
+        return self._at(grid_of(self._all_timed(), period, how), how, limit, duration(period))
 
     def hold(self) -> Trace:
         """Return all signals at the timestamps of each, holding last values, from the latest first timestamp on.
@@ -332,12 +332,14 @@ class Trace(Clocked):
         grid = merged(timed)
         return self._at(grid[grid >= max(times[0] for times in timed)], "hold")
 
-    def _at(self, grid: Times, how: str, hold_for: Fraction | None = None) -> Trace:
+    def _at(
+        self, grid: Times, how: str, hold_for: Fraction | None = None, step: Fraction | None = None
+    ) -> Trace:
         channels: dict[str, Channel] = {}
         losses: list[str] = []
         for name, channel in self._channels.items():
             assert channel.times is not None
-            values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for)
+            values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for, step)
             losses += left_out
             channels[name] = replace(channel, times=grid, values=values, first_gap=None)
         return self.with_channels(channels, losses)

@@ -210,3 +210,24 @@ def test_samples_that_are_nan_are_skipped():
         spec.evaluate({"time": [0, 1, 2, 3, 4], "x": [1, np.nan, np.nan, np.nan, 2]})
     with pytest.raises(TraceError, match="'x' is NaN at sample 1"):
         rtamt.parse("sample 1s hold; always(x <= 3)").evaluate({"time": [0, 1, 2], "x": [1, np.nan, 2]})
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        np.arange(10) * 0.1,
+        np.cumsum(np.full(10, 0.1)) - 0.1,
+        1.7e9 + np.arange(10) * 0.1,
+        np.arange(10) * 0.1 - 1e-13,
+    ],
+    ids=["products", "sums", "epoch", "short"],
+)
+def test_samples_on_rounded_instants_were_left_out(times):
+    values = np.full(10, 80.0)
+    values[3] = 1.0
+    result = rtamt.parse("sample 100ms hold  float x  always(x > 50)").evaluate({"time": times, "x": values})
+    assert result.robustness == -49
+    assert len(result.signal.times) == 10
+    read = rtamt.read({"time": times, "x": values}).resample("100ms")
+    assert read["x"].values.tolist() == values.tolist()
+    assert read.losses == ()
