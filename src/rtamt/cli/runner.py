@@ -146,7 +146,7 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
             if unchecked:
                 found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
                 return list(together(found, unchecked).values())
-            names = members.members_of(spec.groups, sorted(source.signals))
+            names = members.members_of(spec.groups, sorted(source.signals), source.aliases)
             fields = members.declared_fields(names, spec.groups)
             choice = choice_for([spec.over(names)], trace, reading)
             # A cell that is empty ends the presence of a member, also that of a field that no formula reads.

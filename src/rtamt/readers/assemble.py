@@ -217,6 +217,8 @@ class _Columns:
         for table, field in everything:
             self._by_column[field.column].append((table, field))
             self._by_name[field.name].append((table, field))
+            if field.alias:
+                self._by_name[field.alias].append((table, field))
 
     def __contains__(self, column: str) -> bool:
         return column in self._by_column or column in self._by_name
@@ -334,7 +336,8 @@ def _channels(
             numbers, mine = numbers[~missing], times[~missing]
             first_gap = row
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
-        made[name] = Channel(mine, numbers, unit, field.column, first_gap)
+        alias = field.alias if name == field.name else ""
+        made[name] = Channel(mine, numbers, unit, field.column, first_gap, alias)
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)

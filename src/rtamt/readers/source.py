@@ -41,6 +41,7 @@ class Field:
 
     ``kind``: "number", "time" (dates, timestamps of a known unit), "text", or "" while unknown. ``skip_nan``:
     whether a NaN in it is a missing value, and no mistake. ``type``: of the variable, if its values may be names.
+    ``alias``: another name, which listings leave out.
     """
 
     column: str
@@ -49,6 +50,7 @@ class Field:
     kind: str = ""
     skip_nan: bool = field(default=False, compare=False)
     type: ValueType | None = field(default=None, compare=False)
+    alias: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,9 +90,13 @@ class Source:
     @property
     def signals(self) -> set[str]:
         """The names of all columns."""
-        return {
-            name for table in self.tables for field in table.fields for name in (field.column, field.name)
-        }
+        fields = [field for table in self.tables for field in table.fields]
+        return {name for field in fields for name in (field.column, field.name)}.union(self.aliases)
+
+    @property
+    def aliases(self) -> dict[str, str]:
+        """From the other names of columns to their names."""
+        return {field.alias: field.name for table in self.tables for field in table.fields if field.alias}
 
     @property
     def in_chunks(self) -> bool:

@@ -32,7 +32,8 @@ def open_ulog(path: str) -> Source:
     """Open a flight log.
 
     A field is called ``topic.field``, that of further instances ``topic[1].field``, elements of arrays
-    ``topic.field[0]``. Names with brackets need another one to be used in formulas: ``names=``.
+    ``topic.field[0]``. ``topic[0].field`` is an alias of ``topic.field``, so that a group has all instances. Names
+    with brackets need another one to be used in formulas, ``names=``, or double quotes.
     """
     core = library("pyulog.core", "PX4 flight logs")
     # pyulog prints what is damaged, where the robustness of a command line goes.
@@ -100,7 +101,11 @@ def _table(topic: Any) -> Table:
     prefix = topic.name if topic.multi_id == 0 else f"{topic.name}[{topic.multi_id}]"
     names = {f"{prefix}.{field}": field for field in topic.data}
     clock = Field(f"{prefix}.{_CLOCK}", f"{prefix}.{_CLOCK}", "us", "number")
-    fields = [Field(name, name, "", "number") for name in names if name != clock.column]
+    fields = [
+        Field(name, name, "", "number", alias="" if topic.multi_id else f"{topic.name}[0].{field}")
+        for name, field in names.items()
+        if name != clock.column
+    ]
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         return [topic.data[names[field.column]] for field in wanted]

@@ -64,12 +64,13 @@ class Binding:
         channels = {name: trace.channel(name) for name in trace}
         by_column = {split_unit(channel.column)[0]: name for name, channel in reversed(channels.items())}
         by_column |= {channel.column: name for name, channel in reversed(channels.items())}
+        by_column = {**trace.aliases, **by_column}
         columns = self.found_in({*by_column, *channels})
         source = {}
         for name in self.names:
             column = columns.get(name)
             if column is None:
-                place = name if name in channels else None
+                place = name if name in channels else trace.aliases.get(name)
             else:
                 place = by_column.get(column, column if column in channels else name)
                 if place not in channels:
@@ -79,9 +80,11 @@ class Binding:
         made: dict[str, Channel] = {}
         for place, channel in channels.items():
             readers = [name for name, other in source.items() if other == place]
-            if not readers and place not in source:
+            if place not in source and all(name == channel.alias for name in readers):
                 made[place] = channel
-            made.update({n: replace(channel, column=columns.get(n, channel.column)) for n in readers})
+            for name in readers:
+                alias = channel.alias if name == place else ""
+                made[name] = replace(channel, column=columns.get(name, channel.column), alias=alias)
         notes = []
         for name, unit in self.units:
             channel_of = made.get(name)

@@ -8,6 +8,7 @@ a channel that is 1 where it is present and 0 where it is not stands beside them
 from __future__ import annotations
 
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -43,16 +44,20 @@ class Bound(NamedTuple):
     members: Members
 
 
-def members_of(groups: Fields, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+def members_of(
+    groups: Fields, names: Iterable[str], aliases: Mapping[str, str] = MappingProxyType({})
+) -> dict[str, tuple[str, ...]]:
     """Return the members of each group among recorded names, in their order.
 
-    Raises :class:`TraceError` for a member that lacks a field.
+    ``aliases``: from other names of the same samples to recorded names; they count where the pattern of a group does
+    not match the recorded name. Raises :class:`TraceError` for a member that lacks a field.
     """
-    names = list(names)
+    names = [name for name in names if name not in aliases]
     found: dict[str, tuple[str, ...]] = {}
     for group, fields in groups.values():
         having: dict[str, set[str] | None] = {}
-        for name in names:
+        others = [alias for alias, name in aliases.items() if group.member(name) is None]
+        for name in (*others, *names):
             if group.matches(name):
                 having[name] = None  # values with fields
             elif (parts := group.member(name)) is not None:
@@ -91,10 +96,11 @@ def bound(
     without members.
     """
     known = _names(data)
-    members = members_of(groups, known)
+    members = members_of(groups, known, _aliases(data))
     require_members(members, groups, known, source)
     read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else _on_one_clock
-    made, throughout = read(data, _columns(members, groups), names)
+    columns = _columns(members, groups)
+    made, throughout = read(_with_aliases(data, columns), columns, names)
     return Bound(made, Members(members, frozenset(throughout)))
 
 
@@ -136,8 +142,9 @@ class Chunk(NamedTuple):
 
 def chunk(data: Any, groups: Fields) -> Chunk:
     """Return some samples of a stream with the members of groups as ordinary variables, of which there may be none."""
-    found = members_of(groups, _names(data))
+    found = members_of(groups, _names(data), _aliases(data))
     known = _columns(found, groups)
+    data = _with_aliases(data, known)
     if isinstance(data, Clocked):
         data = data.on_one_clock([name for name in data if name != TIME])  # type: ignore[attr-defined]
     made, throughout = _on_one_clock(data, known, ())
@@ -188,6 +195,22 @@ def _names(data: Any) -> list[str]:
     if not is_frame(data):
         raise not_a_mapping(data, "values, such as {'time': [...], 'car_1.x': [...]}")
     return [str(name) for name in data.columns if name != TIME]
+
+
+def _aliases(data: Any) -> Mapping[str, str]:
+    return data.aliases if isinstance(data, Trace) else {}
+
+
+def _with_aliases(data: Any, members: Sequence[_Member]) -> Any:
+    """Return data that has the fields of members under the names of these, also where they are aliases."""
+    aliases = _aliases(data)
+    columns = [
+        column for each in members for field in each.fields if (column := each.column(field)) in aliases
+    ]
+    if not columns:
+        return data
+    own = {name: data.channel(name) for name in data}
+    return data.with_channels(own | {column: replace(data.channel(column), alias="") for column in columns})
 
 
 # ---- samples that all have the same timestamps ---------------------------------------------------

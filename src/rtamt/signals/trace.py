@@ -44,7 +44,7 @@ class Channel:
     timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
     ``unit``: the unit of the values, as the source writes it. ``column``: the name of the signal in the source.
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
-    than those of its table; None where it has all.
+    than those of its table; None where it has all. ``alias``: another name, which listings leave out.
     """
 
     times: Times | None
@@ -52,6 +52,7 @@ class Channel:
     unit: str = ""
     column: str = ""
     first_gap: int | None = None
+    alias: str = ""
 
 
 class Trace(Clocked):
@@ -146,11 +147,17 @@ class Trace(Clocked):
 
     def channel(self, name: str) -> Channel:
         """Return one signal with its unit; raise :class:`TraceError` where there is none of that name."""
-        if name not in self._channels:
+        found = self._channels.get(name) or self._channels.get(self.aliases.get(name, ""))
+        if found is None:
             raise TraceError(
                 f"{self._source} has no '{name}'{choices(name, self._channels, 'signals')}", variable=name
             )
-        return self._channels[name]
+        return found
+
+    @property
+    def aliases(self) -> dict[str, str]:
+        """From other names of signals to their names: ``topic[0].field`` of a PX4 log is ``topic.field``."""
+        return {channel.alias: name for name, channel in self._channels.items() if channel.alias}
 
     @overload
     def __getitem__(self, name: str) -> Signal: ...
@@ -187,7 +194,10 @@ class Trace(Clocked):
         for old in names.values():
             self.channel(old)
         new = {old: name for name, old in names.items()}
-        renamed = {new.get(name, name): channel for name, channel in self._channels.items()}
+        renamed = {
+            new.get(name, name): replace(channel, alias="") if name in new else channel
+            for name, channel in self._channels.items()
+        }
         if len(renamed) < len(self._channels):
             twice = next(name for name in names if name in self._channels and name not in names.values())
             raise UsageError(f"{self._source} has a '{twice}' already; choose another name")
@@ -203,7 +213,7 @@ class Trace(Clocked):
         for name in names:
             self.channel(name)
         return self.with_channels(
-            {name: channel for name, channel in self._channels.items() if name in names}
+            {name: each for name, each in self._channels.items() if name in names or each.alias in names}
         )
 
     def extended(self, signals: Mapping[str, Signal], units: Mapping[str, str] | None = None) -> Trace:
