@@ -314,6 +314,7 @@ class SpecificationText:
             parameters=self.parameters,
             templates=self.document.templates,
             groups=self.document.groups,
+            units=self.document.units,
         )
         if self.resolved is not None:
             formula = resolve(formula, self.resolved[1])

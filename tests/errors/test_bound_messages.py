@@ -110,3 +110,38 @@ def test_nested_bounds_that_add_up_to_more_than_ticks_can_count():
         assert info.value.message == message
         assert info.value.span.start == 7 * len("always[0:7e7] ") + len("always")
     assert spec.evaluate({"x": [[0, 1]]}, time="dense", resolution="1us").robustness == 1.0
+
+
+@pytest.mark.parametrize(
+    ("unit", "text", "sentence", "marks"),
+    [
+        (
+            "m",
+            "always[0:k](x >= 3)",
+            "'k' is in m, and a bound is a time: declare it in h, min, s, ms, us or ns, or without a unit",
+            "         ^",
+        ),
+        (
+            "m/s",
+            "f(x, k)",
+            "in 'f': 'w' is in m/s, and a bound is a time: declare it in h, min, s, ms, us or ns, or without a unit",
+            "^^^^^^^",
+        ),
+        (
+            "ms",
+            "always[0:k ms](x >= 3)",
+            "'k' has a unit already, ms; leave out the unit here",
+            "           ^^",
+        ),
+        (
+            "ms",
+            "always[0:k s](x >= 3)",
+            "'k' has a unit already, ms; leave out the unit here",
+            "           ^",
+        ),
+    ],
+)
+def test_a_constant_in_the_wrong_unit_for_a_bound(unit: str, text: str, sentence: str, marks: str) -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        rtamt.parse(f"const float k = 5 [{unit}]\ndef f(y, w) = always[0:w](y >= 3)\n{text}")
+    assert str(info.value) == f"{sentence}\n  line 3, column {marks.index('^') + 1}:\n    {text}\n    {marks}"

@@ -14,10 +14,12 @@ import rtamt
 from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
 from rtamt.language.printing.printer import number, to_text
+from rtamt.language.units.durations import UNITS
 from tests.strategies import dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 BACKENDS = st.sampled_from(["cpp", "python"])
 #: Other values than those of generated constants, as defaults.
@@ -46,6 +48,48 @@ def draw_parameters(
         rtamt.parse(to_text(formula), **settings),
         values,
     )
+
+
+#: Formulas over x bounded by k, which are as if the duration in its place were written there.
+BOUNDED = st.sampled_from(
+    [
+        "always[0:{k}](x >= 3)",
+        "eventually[{k}:1h] always[0:{k}](x >= 3)",
+        "(x >= 3) since[0:{k}] (x <= 1)",
+        "delay[{k}](x) >= 3 and rate[{k}](x) < 1",
+        "atleast[0:{k}](80%, x >= 3)",
+        "recent(x, {k})",
+    ]
+)
+
+
+@settings(max_examples=60)
+@given(BOUNDED, st.sampled_from(list(UNITS)), st.integers(1, 900), st.integers(1, 900), st.booleans())
+def test_a_bound_has_the_declared_unit_of_its_parameter(
+    formula: str, unit: str, default: int, later: int, through: bool
+) -> None:
+    def parsed(k: str, declared: str = "") -> Any:
+        assume(unit not in ("h", "min") or "1h" not in formula)
+        template = "def recent(y, w) = once[0:w](y >= 3)\n"
+        template += f"def whole(y, x, w) = {formula.format(k='w')}\n" if through else ""
+        use = f"whole(x, x, {k})" if through else formula.format(k=k)
+        return rtamt.parse(f"input float x {declared}\n{template}{use}")
+
+    spec = parsed("k", f"parameter float k = {default} [{unit}]")
+    for value, known in ((default, spec), (later, spec.with_parameters(k=later))):
+        plain = parsed(f"{value}{unit}")
+        assert known.formula == plain.formula
+        assert str(known) == str(plain)
+        assert known.horizon == plain.horizon == rtamt.parse(str(known)).horizon
+        assert known.parameters == {"k": value}
+
+
+def test_a_parameter_bounds_an_interval_of_an_imported_template(tmp_path: Path) -> None:
+    (tmp_path / "soon.stl").write_text("def soon(y, within) = eventually[0:within](y > 3)")
+    text = 'import "soon.stl"  input float x  parameter float k = 500 [ms]\nsoon(x, k)'
+    spec = rtamt.parse(text, folder=tmp_path)
+    assert str(spec) == "eventually[0:500ms](x > 3)"
+    assert str(spec.with_parameters(k=20)) == "eventually[0:20ms](x > 3)"
 
 
 def outcome(call: Callable[[], Any]) -> str:

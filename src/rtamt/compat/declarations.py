@@ -313,6 +313,7 @@ class Declarations(ABC):
             tables=document.tables,
             unit=self._unit,
             parameters=document.parameters,
+            units=document.units,
         )
 
     def _adopt(self, document: Document) -> None:

@@ -11,7 +11,7 @@ from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from rtamt.language.formula import Formula, Span
     from rtamt.language.parsing.sampling import Sampling
@@ -50,6 +50,11 @@ class Declaration:
     columns: tuple[str, ...] = ()
     optional: bool = False
     span: Span | None = field(default=None, compare=False, repr=False)
+
+
+def constant_units(declarations: Iterable[Declaration]) -> dict[str, str]:
+    """Return the declared units of constants and parameters, as written; those without a unit are left out."""
+    return {each.name: each.unit for each in declarations if each.kind != "var" and each.unit}
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +144,11 @@ class Document:
         """The value in use of every declared parameter."""
         declared = (d.name for d in self.declarations if d.kind == "parameter")
         return MappingProxyType({name: self.constants[name] for name in declared})
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The declared unit of every constant and parameter that has one, as written."""
+        return MappingProxyType(constant_units(self.declarations))
 
     @cached_property
     def formula(self) -> Formula:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
-from rtamt.language.document import Declaration
+from rtamt.language.document import Declaration, constant_units
 from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
@@ -143,6 +143,7 @@ class DeclarationParser(ImportParser):
             enumerations=self._enumerations,
             tables=self._tables,
             groups=self._groups,
+            units=constant_units(self._declarations.values()),
         )
 
     def _declaration(self) -> bool:

@@ -151,7 +151,15 @@ def _bound(parser: FormulaParser) -> Bound:
             value /= divisor
     elif token.kind in ("name", "quoted"):
         stands_for = bound(parser, token.name, token.span)
-        value, unit = (_constant(parser, token), "") if stands_for is None else stands_for
+        value, unit = stands_for or (_constant(parser, token), parser.scope.units.get(token.name, ""))
+        if unit and unit not in UNITS:
+            *most, last = UNITS
+            raise parser.error(
+                f"'{token.name}' is in {unit}, and a bound is a time: declare it in {', '.join(most)} or {last}, "
+                f"or without a unit",
+                token.span,
+                BoundError,
+            )
     else:
         raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
     span = Span(first.start, parser.tokens[parser.index - 1].end)
@@ -159,7 +167,9 @@ def _bound(parser: FormulaParser) -> Bound:
         raise parser.error("a bound may not be negative; for the past use a past operator", span, BoundError)
     name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
     if name.text in UNITS and unit:
-        raise parser.error(f"'{token.name}' has a unit already, {unit}", name.span, BoundError)
+        raise parser.error(
+            f"'{token.name}' has a unit already, {unit}; leave out the unit here", name.span, BoundError
+        )
     if name.text in UNITS and value is not None:
         unit = parser.next().text
     elif name.kind == "name" and after.text in (":", ",", "]", ")"):

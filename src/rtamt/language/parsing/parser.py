@@ -374,6 +374,7 @@ def parse_formula(
     parameters: Collection[str] = (),
     templates: Mapping[str, Template] | None = None,
     groups: Mapping[str, Group] | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> Formula:
     """Parse the text of a formula.
 
@@ -382,7 +383,8 @@ def parse_formula(
     names; with None, every other name is a variable. ``types``: of those that are Booleans or of one of the
     ``enumerations``. ``unit``: the unit of bounds without one; a lower bound without a unit has that of the
     upper bound, as in RTAMT. ``parameters``: which of the constants are parameters. ``templates``: those of a
-    document (:attr:`Document.templates`), by name. ``groups``: those of a document, by name.
+    document (:attr:`Document.templates`), by name. ``groups``: those of a document, by name. ``units``: the declared
+    units of constants, which are those of bounds.
 
     Raises :class:`ParseError`, :class:`NameInFormulaError` or :class:`BoundError`, each with a caret
     under the position, and :class:`UsageError` for an unknown unit. Source: the paper's
@@ -403,6 +405,7 @@ def parse_formula(
         enumerations=enumerations or {},
         tables=tables or {},
         groups=groups or {},
+        units=units or {},
     )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()

@@ -39,6 +39,8 @@ class Scope:
     tables: Mapping[str, Operator] = field(default_factory=lambda: MappingProxyType({}))
     groups: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
     members: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
+    #: The declared units of constants, as written; a bound has that of its constant.
+    units: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only view can be neither pickled nor copied; the mapping behind it can.

@@ -43,6 +43,8 @@ _LEAST, _GREATEST = Fraction(0), Fraction(10) ** 9
 class Argument(NamedTuple):
     """The argument of a parameter: a formula, or a duration of ``length`` units.
 
+    ``unit``: of the duration, or the declared one of the constant that the formula is.
+
     ``unknown``: while the template is defined, a parameter stands for any formula or duration.
     """
 
@@ -109,7 +111,7 @@ class Uses:
                 if id(node) not in self._classes:
                     number = self._known.setdefault(self._shape(node), len(self._known))
                     self._classes[id(node)] = (number, node)
-        return self._classes[id(formula)][0], argument.unknown
+        return self._classes[id(formula)][0], argument.unit, argument.unknown
 
     def _shape(self, node: Formula) -> Any:
         if isinstance(node, Apply):
@@ -262,7 +264,9 @@ def _argument(parser: FormulaParser) -> Argument:
         if passed.formula is not None:
             parser.borrowed.add(id(passed.formula))
         return passed
-    return Argument(parser.expression())
+    formula = parser.expression()
+    name = formula.name if isinstance(formula, Const) else None
+    return Argument(formula, unit="" if name is None else parser.scope.units.get(name, ""))
 
 
 def _unclosed(parser: FormulaParser, opening: Token) -> SpecificationError:
@@ -376,8 +380,8 @@ def bound(parser: FormulaParser, name: str, span: Span) -> tuple[Fraction | None
         )
     value = argument.formula.value
     if isinf(value):
-        return (None if value > 0 else Fraction(-1)), ""
-    return exact(str(value)), ""
+        return (None if value > 0 else Fraction(-1)), argument.unit
+    return exact(str(value)), argument.unit
 
 
 def _is_lower(parser: FormulaParser) -> bool:
@@ -392,8 +396,11 @@ def constants_of(parser: FormulaParser, names: Iterable[str]) -> tuple[str, ...]
     found = []
     for name in names:
         argument = parser.scope.arguments.get(name)
-        if argument is None:
+        if argument is None and name in parser.scope.constants:
             found.append(name)
-        elif isinstance(argument.formula, Const) and argument.formula.name is not None:
+        elif (
+            argument is not None and isinstance(argument.formula, Const) and argument.formula.name is not None
+        ):
+            # A constant of the use; the file of the template need not know it.
             found.append(argument.formula.name)
-    return tuple(name for name in found if name in parser.scope.constants)
+    return tuple(found)

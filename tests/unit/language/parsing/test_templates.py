@@ -89,7 +89,7 @@ MESSAGES = [
     ("def f(x, a, b) = always[a:b] x; f(v, 5, 2)", BoundError, "                                ^^^^^^^^^^",
      "in 'f': the interval [a:b] is reversed: it ends before it begins"),
     ("def f(x, a) = always[0:a ms] x; f(v, 5s)", BoundError, "                                ^^^^^^^^",
-     "in 'f': 'a' has a unit already, s"),
+     "in 'f': 'a' has a unit already, s; leave out the unit here"),
     ("def f(o) = o.x > 3; f(v + 1)", ParseError, "                    ^^^^^^^^",
      "in 'f': 'o' is no signal here, and only signals have fields, such as o.x"),
     ("def f(x, x) = x > 3", ParseError, "         ^", "'f' has two parameters called 'x'"),
