@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: Elements of an array that become columns of their own; longer ones are images and clouds of points.
 _ELEMENTS = 1000
 #: Scans have a column for the nearest thing: the least of the ranges that are valid, inf where none is.
-_SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges[min]"
+_SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
 
@@ -41,7 +41,7 @@ def open_bag(path: str, recover: bool = False) -> Source:
     """Open a bag. ``recover``: read a damaged MCAP file as far as possible.
 
     A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
-    message of the topic holds. A laser scan also has the column ``/topic.ranges[min]``, its least valid range. The
+    message of the topic holds. A laser scan also has the column ``/topic.ranges.min``, its least valid range. The
     time of a message is the stamp in its header, in nanoseconds; where there is none, or it was left at 0, the time
     at which it was recorded.
     """

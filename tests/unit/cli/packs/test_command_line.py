@@ -42,19 +42,27 @@ def test_requirements_whose_topics_are_missing_have_a_row_and_no_effect_on_the_e
     rows = {row["requirement"]: row for row in map(json.loads, answer.out.splitlines())}
     assert list(rows) == list(rtamt.pack("px4").requirements)
     checked = {name for name, row in rows.items() if "unchecked" not in row}
-    assert checked == {"ARM-1", "BAT-1", "ATT-5", "RATE-1", "RATE-2", "RATE-3"}
+    assert checked == {
+        "ARM-1",
+        "BAT-1",
+        "BAT-4",
+        "BAT-6",
+        "ATT-5",
+        "ATT-6",
+        *(f"RATE-{k}" for k in range(1, 6)),
+    }
     assert all(rows[name]["satisfied"] for name in checked)
     assert rows["BAT-2"] == {
         "requirement": "BAT-2",
         "trace": "flight.ulg",
         "unchecked": "not checked: no 'battery_status.remaining'",
-        "description": "the battery is never critical in flight",
+        "description": "the battery is never critical in flight, as far as its capacity is known",
         "severity": "error",
     }
     assert (answer.code, answer.err) == (0, "")
     text = run("check", "px4", name).out
     assert "BAT-2, flight.ulg: not checked: no 'battery_status.remaining'\n" in text
-    assert text.endswith("6 satisfied, 21 unchecked\n")
+    assert text.endswith("11 satisfied, 25 unchecked\n")
 
 
 def test_a_violation_decides_the_exit_code_and_limits_can_be_set(run, tmp_path):
@@ -111,7 +119,7 @@ def test_a_bag_of_a_mobile_base(run, tmp_path, kind):
         vector = types["geometry_msgs/msg/Vector3"]
         twist = "geometry_msgs/msg/Twist"
         data = made(BASE)
-        for k, t in enumerate(data["/scan.ranges[min]"][0]):
+        for k, t in enumerate(data["/scan.ranges.min"][0]):
             x = float(data["/cmd_vel.linear.x"][1][k])
             message = types[twist](linear=vector(x=x, y=0.0, z=0.0), angular=vector(x=0.0, y=0.0, z=0.0))
             bag.write("/cmd_vel", twist, round((1 + t) * SECOND), message)
@@ -129,16 +137,24 @@ def test_a_bag_of_a_mobile_base(run, tmp_path, kind):
     assert written == {"LIMIT_1", "LIMIT_2", "OBST_1"}
 
 
+def test_a_table_of_a_mobile_base_may_have_the_nearest_range(run, write):
+    """Its name was read as a unit: minutes, which cannot be converted to metres."""
+    answer = run("check", "mobile_base", write("log.csv", "time,/scan.ranges.min\n0,1\n0.05,0.5\n"), "--json")
+    (row,) = (row for row in map(json.loads, answer.out.splitlines()) if "unchecked" not in row)
+    assert (answer.code, row["requirement"]) == (0, "OBST-1")
+    assert row["robustness"] == pytest.approx(0.28)
+
+
 def test_reports_of_unchecked_requirements(run, tmp_path):
     name = flight(tmp_path / "flight.ulg")
     options = ["--junit", "report.xml", "--sarif", "report.sarif", "--html", "report.html", "--quiet"]
     assert run("check", "px4", name, *options).code == 0
     root = ET.parse(tmp_path / "report.xml").getroot()  # noqa: S314
-    assert (root.get("tests"), root.get("skipped"), root.get("failures")) == ("27", "21", "0")
+    assert (root.get("tests"), root.get("skipped"), root.get("failures")) == ("36", "25", "0")
     (suite,) = (s for s in root if s.get("name") == "BAT-2")
     assert suite[0][0].tag == "skipped"
     results = json.loads((tmp_path / "report.sarif").read_text())["runs"][0]["results"]
-    assert [r["kind"] for r in results].count("notApplicable") == 21
+    assert [r["kind"] for r in results].count("notApplicable") == 25
     page = (tmp_path / "report.html").read_text()
     assert "not checked: no &#39;battery_status.remaining&#39;" in page
     answer = run("explain", "px4", name)

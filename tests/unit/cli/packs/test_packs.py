@@ -4,7 +4,7 @@ import pytest
 
 import rtamt
 from rtamt.texts import packs
-from tests.unit.cli.packs.traces import PACKS, made
+from tests.unit.cli.packs.traces import PACKS, PX4, after, made
 
 EACH = [(pack, requirement) for pack, (_, violated) in PACKS.items() for requirement in violated]
 
@@ -49,3 +49,43 @@ def test_rc_that_was_lost_before_the_recording_is_no_loss(specs):
     """It was reported as a loss at the first sample."""
     data = made(PACKS["px4"][0], **{"failsafe_flags.manual_control_signal_lost": 1})
     assert specs["px4"].requirements["RC-1"].evaluate(data).satisfied is True
+
+
+def test_rc_that_was_lost_before_arming_is_a_loss(specs):
+    """It was satisfied though the vehicle never was in failsafe."""
+    changed = {
+        "failsafe_flags.manual_control_signal_lost": after(1, 1),
+        "vehicle_status.arming_state": after(2, 2, 1),
+    }
+    rc = specs["px4"].requirements["RC-1"]
+    assert rc.evaluate(made(PX4, **changed)).satisfied is False
+    assert rc.evaluate(made(PX4, **changed, **{"vehicle_status.failsafe": after(6, 1)})).satisfied is True
+    assert (
+        rc.evaluate(made(PX4, **changed, **{"vehicle_status.failsafe": after(6, 1, 0, 8)})).satisfied is False
+    )
+
+
+@pytest.mark.parametrize(
+    ("changed", "visible"),
+    [
+        ({"battery_status.cell_count": 0, "battery_status.voltage_v": 9}, "BAT-4"),
+        ({"battery_status.voltage_v": 0}, "BAT-4"),
+        ({"battery_status.remaining": -1}, "BAT-5"),
+    ],
+)
+def test_unknown_values_of_the_battery_violate_only_the_requirement_that_they_are_known(
+    specs, changed, visible
+):
+    """Unknown remaining capacity and voltage were violations; 9 V of an unknown number of cells passed silently."""
+    data = made(PX4, **changed)
+    battery = {name: one for name, one in specs["px4"].requirements.items() if name.startswith("BAT")}
+    assert [name for name, one in battery.items() if not one.evaluate(data).satisfied] == [visible]
+
+
+def test_a_gps_topic_that_stops_does_not_pass(specs):
+    """Its last position was held to the end of the flight, and no requirement was violated."""
+    data = made(PX4)
+    for name in [name for name in data if name.startswith("vehicle_gps_position")]:
+        data[name] = tuple(column[:31] for column in data[name])
+    gps = {name: one for name, one in specs["px4"].requirements.items() if name.startswith("GPS")}
+    assert [name for name, one in gps.items() if not one.evaluate(data).satisfied] == ["GPS-4"]

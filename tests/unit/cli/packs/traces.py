@@ -27,6 +27,21 @@ def after(begin, value, before=0.0, end=inf):
     return lambda t: value if begin <= t < end else before
 
 
+_TOPICS = (
+    "battery_status",
+    "vehicle_attitude",
+    "vehicle_angular_velocity",
+    "vehicle_rates_setpoint",
+    "vehicle_imu_status",
+    "estimator_status",
+    "vehicle_gps_position",
+)
+
+
+def _stopped(topic):
+    return {f"{topic}.timestamp": lambda t: 1e6 * min(t, 5)}
+
+
 _ROLLED = {"vehicle_attitude.q[0]": cos(radians(10)), "vehicle_attitude.q[1]": sin(radians(10))}
 _PITCHED = {"vehicle_attitude.q[0]": cos(radians(10)), "vehicle_attitude.q[2]": sin(radians(10))}
 _FALLEN = {"vehicle_attitude.q[0]": cos(radians(35)), "vehicle_attitude.q[1]": sin(radians(35))}
@@ -38,6 +53,7 @@ PX4 = {
     "battery_status.voltage_v": 15.2,
     "battery_status.cell_count": 4,
     "battery_status.remaining": lambda t: 0.9 - t / 100,
+    **{f"{topic}.timestamp": lambda t: 1e6 * t for topic in _TOPICS},
     "vehicle_attitude.q[0]": 1,
     "vehicle_attitude.q[1]": 0,
     "vehicle_attitude.q[2]": 0,
@@ -74,16 +90,23 @@ PX4_VIOLATED = {
     "BAT-1": {"battery_status.voltage_v": after(5, 13.9, 15.2, 8)},
     "BAT-2": {"battery_status.remaining": 0.06},
     "BAT-3": {"battery_status.remaining": 0.1},
+    "BAT-4": {"battery_status.cell_count": 0},
+    "BAT-5": {"battery_status.remaining": after(5, -1, 0.8)},
+    "BAT-6": _stopped("battery_status"),
     "ATT-1": _ROLLED | {"vehicle_attitude_setpoint.q_d[1]": -sin(radians(4))},
     "ATT-2": _PITCHED,
     "ATT-3": _ROLLED | {"vehicle_attitude_setpoint.roll_body": radians(-4)},
     "ATT-4": _PITCHED | {"vehicle_attitude_setpoint.pitch_body": radians(-4)},
     "ATT-5": _FALLEN,
+    "ATT-6": _stopped("vehicle_attitude"),
     "RATE-1": {"vehicle_rates_setpoint.roll": after(5, 2)},
     "RATE-2": {"vehicle_rates_setpoint.pitch": after(5, 2)},
     "RATE-3": {"vehicle_rates_setpoint.yaw": after(5, -2)},
+    "RATE-4": _stopped("vehicle_angular_velocity"),
+    "RATE-5": _stopped("vehicle_rates_setpoint"),
     "VIB-1": {"vehicle_imu_status.accel_vibration_metric": after(5, 6, 2, 8)},
     "VIB-2": {"estimator_status.vibe[2]": after(5, 0.05, 0.01, 8)},
+    "VIB-3": _stopped("vehicle_imu_status"),
     "EKF-1": {"estimator_status.vel_test_ratio": after(5, 1.2, 0, 7)},
     "EKF-2": {"estimator_status.pos_test_ratio": after(5, 1.2, 0, 7)},
     "EKF-3": {"estimator_status.hgt_test_ratio": after(5, 1.2, 0, 7)},
@@ -93,9 +116,11 @@ PX4_VIOLATED = {
     "EKF-7": {"estimator_status.hgt_test_ratio": after(5, 0.6)},
     "EKF-8": {"estimator_status.hdg_test_ratio": after(5, 0.6)},
     "EKF-9": {"estimator_status.filter_fault_flags": after(14, 4)},
+    "EKF-10": _stopped("estimator_status"),
     "GPS-1": {"vehicle_gps_position.fix_type": after(5, 2, 3, 7)},
     "GPS-2": {"vehicle_gps_position.satellites_used": after(5, 5, 9, 7)},
     "GPS-3": {"vehicle_gps_position.eph": after(5, 3.5, 1, 7)},
+    "GPS-4": _stopped("vehicle_gps_position"),
     "RC-1": {"failsafe_flags.manual_control_signal_lost": after(5, 1)},
 }
 
@@ -129,7 +154,7 @@ BASE = {
     "/cmd_vel.angular.z": 0,
     "/odom.twist.twist.linear.x": lambda t: min(0.2, max(0, (t - 2) / 2)) if t < 10 else 0,
     "/odom.twist.twist.angular.z": 0.1,
-    "/scan.ranges[min]": 1,
+    "/scan.ranges.min": 1,
     "/emergency_stop.data": after(12, 1),
     "/amcl_pose.pose.covariance[0]": 0.01,
     "/amcl_pose.pose.covariance[7]": 0.02,
@@ -145,8 +170,8 @@ BASE_VIOLATED = {
     "LIMIT-3": {"/odom.twist.twist.linear.x": after(5, 0.5)},
     "LIMIT-4": {"/odom.twist.twist.linear.x": after(5, 0.6)},
     "LIMIT-5": {"/odom.twist.twist.angular.z": after(5, 0.7)},
-    "OBST-1": {"/scan.ranges[min]": after(5, 0.2, 1)},
-    "OBST-2": {"/scan.ranges[min]": after(5, 0.3, 1)},
+    "OBST-1": {"/scan.ranges.min": after(5, 0.2, 1)},
+    "OBST-2": {"/scan.ranges.min": after(5, 0.3, 1)},
     "STOP-1": {"/emergency_stop.data": after(5, 1)},
     "LOC-1": {"/amcl_pose.pose.covariance[7]": after(5, 0.3)},
     "LOC-2": {"/amcl_pose.pose.covariance[35]": after(5, 0.1)},
