@@ -182,11 +182,7 @@ BLENDER = Traces(
     {
         "det_bbt": 0.2,
         "ridge_on": 0,
-        "check11": 1,
-        "check12": 0,
-        "check21": 1e-9,
-        "check22": 1,
-        "check33": 1,
+        **{f"check{i}{j}": float(i == j) + 1e-9 for i in (1, 2, 3) for j in (1, 2, 3)},
         "residual": 1e-5,
     },
     {
@@ -204,6 +200,7 @@ PILOT = Traces(
         "engaged": 1,
         "roll_hold": 1,
         "heading_mode": 0,
+        "heading_hold": 0,
         "altitude_hold": 1,
         "turn_knob": 0,
         "roll": 0,
@@ -213,6 +210,8 @@ PILOT = Traces(
         "altitude": 1000,
         "roll_reference": 0,
         "roll_command": 0,
+        "roll_hold_command": 0,
+        "heading_command": 0,
         "aileron": 0,
     },
     {
@@ -222,6 +221,7 @@ PILOT = Traces(
         ),
         "AP-001": ({"engaged": 0}, {"engaged": 0, "roll_command": 1}),
         "AP-002": ({}, {"roll_hold": 0}),
+        "AP-002b": ({"roll_command": 3, "roll_hold_command": 3}, {"roll_command": 3}),
         "AP-003a": ({**_HOLD, "roll": 20, "roll_reference": 20}, {**_HOLD, "roll": 20, "roll_reference": 0}),
         "AP-003b": ({**_HOLD, "roll": 4}, {**_HOLD, "roll": 4, "roll_reference": 4}),
         "AP-003c": (
@@ -234,6 +234,8 @@ PILOT = Traces(
         "AP-005": ({"roll_rate": -6}, {"roll_rate": -7}),
         "AP-006": ({"roll": 30}, {"roll": 34}),
         "AP-007": ({"aileron": 14}, {"aileron": -16}),
+        "AP-008a": ({"heading_hold": 1, "heading_mode": 1}, {"heading_hold": 1}),
+        "AP-008b": ({"heading_hold": 1, "heading_command": 0}, {"heading_hold": 1, "heading_command": 5}),
         "AP-010a": (
             {"heading_mode": 1, "heading_reference": 179.8, "heading": -179.8},
             {"heading_mode": 1, "heading_reference": 90, "heading": 88},

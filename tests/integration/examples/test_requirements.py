@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import rtamt
-from tests.integration.examples.requirement_traces import TRACES
+from tests.integration.examples.requirement_traces import TRACES, step
 
 FOLDER = Path(__file__).parents[3] / "examples" / "requirements"
 EACH = [(file, requirement) for file, traces in TRACES.items() for requirement in traces.cases]
@@ -33,3 +33,21 @@ def test_a_requirement_separates_a_good_trace_from_a_bad_one(file, requirement):
     assert good.robustness >= 0
     assert bad.satisfied is False
     assert bad.robustness <= 0
+
+
+@pytest.mark.parametrize(("failure", "moved"), [(1, "ib"), (2, "ic"), (4, "ic")])
+def test_the_selected_value_is_held_whichever_branch_has_failed(failure, moved):
+    """Only the failure of branch c was covered."""
+    file = "lockheed_martin/triplex_signal_monitor"
+    requirement = loaded(file).requirements["TSM-004"]
+    columns = {"failure": failure, moved: step(5, 3, 1)}
+    assert requirement.evaluate(TRACES[file].made(columns | {"selected": 1})).satisfied is True
+    assert requirement.evaluate(TRACES[file].made(columns | {"selected": step(6, 2, 1)})).satisfied is False
+
+
+@pytest.mark.parametrize("element", [f"check{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)])
+def test_every_element_of_the_inverse_is_checked(element):
+    """Four of the nine were left out."""
+    file = "lockheed_martin/effector_blender"
+    columns = TRACES[file].made({element: 0.5})
+    assert loaded(file).requirements["EB-002"].evaluate(columns).satisfied is False
