@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING
 
-from rtamt.errors import SpecificationError, placed
+from rtamt.errors import SpecificationError, line_and_column
 from rtamt.language.document import Declaration, Import
 from rtamt.language.formula import Span
 from rtamt.language.parsing.imports import ImportedFileError, Library, called, moved
@@ -93,12 +93,15 @@ class ImportParser(RequirementParser):
             raise self.error(str(error), token.span) from None
         if file not in library.documents:
             library.open.append(file)
-            other = type(self)(text, self.language, self.unit, Scope(), self._values, library, self._truths)
             try:
+                other = type(self)(
+                    text, self.language, self.unit, Scope(), self._values, library, self._truths
+                )
                 document = other.document(imported=True)
             except SpecificationError as error:
-                raise error if error.text is not text else placed(error, called(file)) from None
-            library.open.pop()
+                raise self._error_in(file, error, token) from None
+            finally:
+                library.open.pop()
             names = (
                 *document.constants,
                 *document.definitions,
@@ -128,6 +131,20 @@ class ImportParser(RequirementParser):
         self._types.update(document.types)
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})
+
+    def _error_in(self, file: str, error: SpecificationError, token: Token) -> SpecificationError:
+        """Return the error of an imported file at the import: where it is in the file, but no line of the file.
+
+        The file may belong to someone else than who reads the message.
+        """
+        message = error.message
+        if (
+            error.text is not None and error.span is not None
+        ):  # not yet placed in a file that this one imports
+            line, column = line_and_column(error.text, error.span.start)
+            message = f"{called(file)}, line {line}, column {column}: {message}"
+        outermost = len(self.library.open) == 1
+        return self.error(message, token.span, type(error)) if outermost else type(error)(message)
 
     def _from(self, name: str) -> str:
         """Return where a name comes from, for messages: "" if it is of this text."""
