@@ -33,6 +33,7 @@ def bounded_rate(x, _p, limit, window):
 
 
 def spike(x, _p, amplitude, width):
+    # The ends are exactly a width apart; the first value stands for those before it.
     for t in range(len(x)):
         begin = max(t - width, 0)
         for s in range(begin, t + 1):
@@ -174,6 +175,11 @@ BY_HAND = [
     ("bounded_rate(x, 3, 2s)", [0, 1, 4, 5, 9], 0.5),  # 3 - (9 - 4) / 2
     ("spike(x, 2, 2s)", [0, 0, 5, 1, 0], 2),  # 5 - max(1, 0) is 2 more than 2
     ("no_spike(x, 2, 2s)", [0, 0, 5, 1, 0], -2),
+    # A pulse is no spike of a width at whose beginning x is high: 3 s before the end x is 5, and 2 s before it 0.
+    ("no_spike(x, 2, 3s)", [5, 0, 5, 0], 2),
+    ("spike(x, 2, 3s)", [5, 0, 5, 0], -2),
+    ("no_spike(x, 2, 2s)", [5, 0, 5, 0], -3),
+    ("spike(x, 2, 2s)", [5, 0, 5, 0], 3),
     ("no_spike(x, 2, 1s)", [0, 0, 5, 5, 0], 2),  # wider than 1 s: 5 - max(5, 0) is 2 less than 2
     ("oscillates(x, 0, 1, 2, 9s)", [-2, 2, -2, 2, -2, 0], 0),  # two swings up: 2 - 2
     ("no_oscillation(x, 0, 1, 3, 9s)", [-2, 2, -2, 2, -2, 0], 1),  # 3 - 2
