@@ -16,7 +16,7 @@ import numpy as np
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
-from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, readable
+from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, choices, did_you_mean, readable
 from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.lint import CODES
 from rtamt.language.parsing.lexer import NAME
@@ -205,6 +205,10 @@ def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
     if not os.path.exists(spec) and NAME.fullmatch(spec) and os.path.isfile(f"{spec}.stl"):
         raise CommandError(
             f"there is no file '{spec}'; did you mean {spec}.stl? (if a formula is meant, put it in parentheses)"
+        )
+    if not os.path.exists(spec) and NAME.fullmatch(spec) and did_you_mean(spec, packs()):
+        raise CommandError(
+            f"there is no pack '{spec}'{choices(spec, packs(), 'packs')} (if a formula is meant, put it in parentheses)"
         )
     if os.path.isfile(spec):
         try:

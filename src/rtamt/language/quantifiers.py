@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
+from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
@@ -29,6 +30,8 @@ from rtamt.language.units import rules as unit_rules
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rtamt.errors import StlError
+    from rtamt.language.parsing.lexer import Token
     from rtamt.language.parsing.names import NameParser
     from rtamt.language.parsing.parser import FormulaParser
     from rtamt.language.records import Expansion
@@ -147,21 +150,45 @@ def begins_group(parser: FormulaParser) -> bool:
     return words and ahead[2].text == "=" and ahead[3].kind == "quoted"
 
 
+def unquoted_pattern(parser: FormulaParser) -> Span | None:
+    """Return the pattern in the declaration of a group here, if it lacks its quotes."""
+    skipped = int(parser.token.text in ("input", "output"))
+    ahead = parser.tokens[parser.index + skipped : -1]
+    words = [each.text for each in ahead[:3]]
+    if len(ahead) < 4 or words[::2] != ["group", "="] or ahead[1].kind != "name" or ahead[3].kind == "quoted":
+        return None
+    start, end = ahead[3].start, ahead[3].end
+    for token in ahead[4:]:
+        if token.start != end or token.text in (";", "{"):
+            break
+        end = token.end
+    return Span(start, end)
+
+
 def begins_quantifier(parser: FormulaParser) -> bool:
-    """Return whether a quantifier stands here: a word that is not declared, a name, ``in`` and a name."""
+    """Return whether a quantifier stands here: a word that is not declared, a name, ``in`` and a name.
+
+    Also ``forall v, w in cars``, which no formula begins with either: it is an error with a hint of its own.
+    """
     at = parser.index
     first, variable, word, group, after = (*parser.tokens[at : at + 5], *[parser.tokens[-1]] * 4)[:5]
     if first.text not in QUANTIFIERS or first.kind != "name" or first.text in parser.scope:
         return False
-    if variable.kind != "name" or word.text != "in" or group.kind != "name":
+    if variable.kind != "name" or word.text not in ("in", ",") or group.kind != "name":
         return False
+    if word.text == ",":
+        return after.text in ("in", ",")
     # `forall U in` is a formula, after which no name and no colon can follow.
     return parser.language.infix(variable.text) is None or after.text in (":", "where")
 
 
 def parse_quantifier(parser: FormulaParser) -> Formula:
     """``quantifier = word , word , "in" , group , [ "where" , different ] , ":" , expression``."""
-    first, variable, _, name = (parser.next() for _ in range(4))
+    first, variable, word, name = (parser.next() for _ in range(4))
+    if word.text == ",":
+        ahead = parser.tokens[parser.index : parser.index + 2]
+        of = ahead[1].text if ahead[0].text == "in" and ahead[1].kind == "name" else "cars"
+        raise _several(parser, first.text, (variable, of), (name, of))
     scope = parser.scope
     group = scope.groups.get(name.text)
     if group is None:
@@ -179,6 +206,9 @@ def parse_quantifier(parser: FormulaParser) -> Formula:
     parser.scope = replace(scope, members={**scope.members, variable.text: group})
     apart = _different(parser) if parser.accept("where") else ()
     if not parser.accept(":"):
+        ahead = parser.tokens[parser.index : parser.index + 4]
+        if [each.text for each in ahead[::2]] == [",", "in"] and ahead[1].kind == ahead[3].kind == "name":
+            raise _several(parser, first.text, (variable, group.name), (ahead[1], ahead[3].text))
         expected = "':'" if apart else "':' or 'where'"
         raise parser.error(
             f"expected {expected} after '{first.text} {variable.text} in {group.name}', got {parser.token}",
@@ -191,6 +221,14 @@ def parse_quantifier(parser: FormulaParser) -> Formula:
     made = parser.apply(op, (body,), (Span(start, end),), None, Span(first.start, end))
     parser.scope = scope
     return made
+
+
+def _several(parser: FormulaParser, word: str, one: tuple[Token, str], other: tuple[Token, str]) -> StlError:
+    """Return the error for a quantifier with several variables: tokens and their groups."""
+    nested = ": ".join(f"{word} {token.text} in {group}" for token, group in (one, other))
+    return parser.error(
+        f"'{word}' takes one variable; nest the quantifiers: {nested}: ...", Span(one[0].start, other[0].end)
+    )
 
 
 def _members_given(parser: FormulaParser) -> set[str]:
@@ -206,10 +244,12 @@ def _different(parser: FormulaParser) -> tuple[tuple[str, str], ...]:
         one, sign, other = (parser.next() for _ in range(3))
         span = Span(one.start, other.end)
         newest = list(parser.scope.members)[-1]
+        other_variable = next((name for name in reversed(list(parser.scope.members)) if name != newest), None)
+        example = f"{newest} != {other_variable or ('w' if newest != 'w' else 'v')}"
         if sign.text not in ("!=", "!=="):
             raise parser.error(
                 f"'where' takes two variables of quantifiers that stand for different members, such as "
-                f"where {newest} != w; put any other condition into the formula: {newest} in ...: condition -> ...",
+                f"where {example}; put any other condition into the formula: {newest} in ...: condition -> ...",
                 span,
             )
         for token in (one, other):
@@ -217,13 +257,13 @@ def _different(parser: FormulaParser) -> tuple[tuple[str, str], ...]:
                 raise parser.error(
                     f"'{token.text}' is not the variable of a quantifier"
                     f"{did_you_mean(token.text, parser.scope.members)}; 'where' takes two of them, such as "
-                    f"where {newest} != w",
+                    f"where {example}",
                     token.span,
                 )
         if one.text == other.text or newest not in (one.text, other.text):
             raise parser.error(
                 f"'where' compares '{newest}' with the variable of a quantifier around this one, such as "
-                f"where {newest} != w",
+                f"where {example}",
                 span,
             )
         found.append((one.text, other.text))
@@ -240,9 +280,10 @@ def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
         return None
     known = [each.name for each in group.fields]
     if not path:
-        such = known[0] if known else "x"
+        such = f"{name}.{known[0] if known else 'x'}"
+        such = such if NAME.fullmatch(such) else quoted(such)
         raise parser.error(
-            f"'{name}' is a member of '{group.name}'; name one of its fields, such as {name}.{such}", span
+            f"'{name}' is a member of '{group.name}'; name one of its fields, such as {such}", span
         )
     if known and path not in known:
         raise parser.error(

@@ -124,6 +124,32 @@ WRONG = [
         "other condition into the formula: v in ...: condition -> ...",
     ),
     (
+        "forall w in cars where w == v: w.x > 3",
+        "                       ^^^^^^",
+        ParseError,
+        "'where' takes two variables of quantifiers that stand for different members, such as where w != v; put any "
+        "other condition into the formula: w in ...: condition -> ...",
+    ),
+    (
+        "forall w in cars: forall a in cars where a == w: w.x > 3",
+        "                                         ^^^^^^",
+        ParseError,
+        "'where' takes two variables of quantifiers that stand for different members, such as where a != w; put any "
+        "other condition into the formula: a in ...: condition -> ...",
+    ),
+    (
+        "forall v, w in cars: v.x > w.x",
+        "       ^^^^",
+        ParseError,
+        "'forall' takes one variable; nest the quantifiers: forall v in cars: forall w in cars: ...",
+    ),
+    (
+        "always(exists v in cars, w in cars: v.x > w.x)",
+        "              ^^^^^^^^^^^^",
+        ParseError,
+        "'exists' takes one variable; nest the quantifiers: exists v in cars: exists w in cars: ...",
+    ),
+    (
         "forall v in cars where v != w: v.x > 3",
         "                            ^",
         ParseError,
@@ -162,6 +188,19 @@ DECLARATIONS = [
         'group cars = "car_*" {}; x > 3',
         "the braces of 'cars' are empty; declare its fields, such as { float x [m] }, or leave them out: its fields "
         "are then those that formulas read",
+    ),
+    ("group cars = car_*; x > 3", 'the pattern of a group is written in double quotes: "car_*"'),
+    (
+        "input group cars = car_* { float x } x > 3",
+        'the pattern of a group is written in double quotes: "car_*"',
+    ),
+    (
+        "group cars = status[*].a; x > 3",
+        'the pattern of a group is written in double quotes: "status[*].a"',
+    ),
+    (
+        'group cars = "car_*" { float "the speed" } forall c in cars: c > 3',
+        "'c' is a member of 'cars'; name one of its fields, such as \"c.the speed\"",
     ),
     ('group cars = "car_*" { float x; float x }; x > 3', "'cars' has two fields called 'x'"),
     (

@@ -15,7 +15,7 @@ from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.import_parser import ImportParser
 from rtamt.language.parsing.lexer import Token, quoted
 from rtamt.language.parsing.scope import Scope
-from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier
+from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier, unquoted_pattern
 from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, Enumeration
 
@@ -72,7 +72,13 @@ class DeclarationParser(ImportParser):
 
     def _group(self) -> bool:
         """Take the declaration of a group of signals, if there is one here; see ``groups.py``."""
-        if not begins_group(self) or "group" in self._imports:
+        if "group" in self._imports:
+            return False
+        if not begins_group(self):
+            unquoted = unquoted_pattern(self)
+            if unquoted is not None:
+                written = quoted(self.text[unquoted.start : unquoted.end])
+                raise self.error(f"the pattern of a group is written in double quotes: {written}", unquoted)
             return False
         role = _ROLES.get(self.token.text)
         if role:

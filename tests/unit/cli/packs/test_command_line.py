@@ -186,6 +186,18 @@ def test_an_unknown_pack(run):
     )
 
 
+def test_a_misspelled_pack_is_not_taken_for_a_formula(run, write):
+    write("log.csv", "time,px5\n0,1\n")
+    answer = run("check", "px5", "log.csv")
+    assert answer == (
+        2,
+        "",
+        "rtamt: there is no pack 'px5'; did you mean 'px4'? (packs: px4, driving, mobile_base) "
+        "(if a formula is meant, put it in parentheses)\n",
+    )
+    assert run("check", "(px5)", "log.csv", "--period", "1").code == 0
+
+
 def test_packs_are_listed_and_printed(run, write):
     listing = run("packs").out
     assert [line.split()[0] for line in listing.splitlines()[1:]] == list(packs())
