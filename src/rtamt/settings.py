@@ -176,7 +176,7 @@ def _code(name: str, given: Any, type_: Enumeration) -> float:
     if not is_number(given) or isinstance(given, bool | np.bool_) or type_.member(given) is None:
         raise UsageError(
             f"the parameter '{name}' is {shown(given)}, which is no member of {type_.name}; "
-            f"its members are {type_.listing}"
+            f"its members are {type_.listing()}"
         )
     return float(given)
 

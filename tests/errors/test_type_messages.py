@@ -132,3 +132,20 @@ def test_a_sample_of_another_type_leaves_the_monitor_as_it_was(verdict, time):
         assert str(info.value).endswith(message)
     monitor.update(1, p=1, mode="MANUAL")
     assert monitor.samples == (2 if time == "discrete" else 4)
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("m == A", "'A' is none of its members; write one of them: M.A, B"),
+        ("m == 3", "'3' is none of its members; write one of them: M.A, B"),
+        ("always m", "a formula is expected here; compare it, such as m == M.A"),
+        ("m > 3", "compare it with == or !=, such as m == M.A"),
+    ],
+)
+def test_advice_names_the_type_of_a_member_whose_name_is_a_variable(text, advice):
+    declared = "enum M { A, B }  input M m  input float A\n"
+    with pytest.raises(ParseError) as caught:
+        rtamt.parse(declared + text)
+    assert caught.value.message.endswith(advice)
+    rtamt.parse(declared + "m == M.A and m == B and A > 3")

@@ -6,9 +6,12 @@ A Boolean is 1 or 0 in data, a member of an enumeration is its code; recordings 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 #: Members that a message lists at most.
 _LISTED = 12
@@ -50,12 +53,11 @@ class Enumeration:
         """Return the name of the member with a code; None where there is none."""
         return next((name for name, own in self.members if own == code), None)
 
-    @property
-    def listing(self) -> str:
-        """The names of the members for a message."""
+    def listing(self, written: Callable[[str], str] = str) -> str:
+        """Return the names of the members for a message. ``written``: how a text writes the member of a name."""
         names = self.names
         more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-        return ", ".join(names[:_LISTED]) + more
+        return ", ".join(map(written, names[:_LISTED])) + more
 
     def lacks(self, member: str) -> str:
         """Return the message for a name that is no member."""
@@ -64,7 +66,7 @@ class Enumeration:
     def stranger(self, member: str) -> str:
         """Return the end of the message for a name that is no member."""
         same = next((name for name in self.names if name.lower() == member.lower()), member)
-        hint = did_you_mean(same, self.names) or f"; its members are {self.listing}"
+        hint = did_you_mean(same, self.names) or f"; its members are {self.listing()}"
         return f"no member of {self.name}{hint}"
 
 

@@ -167,9 +167,12 @@ class NameParser:
         """Return a named constant; of an enumeration, under the name of the member."""
         of = self.scope.types.get(name)
         member = of.member(value) if isinstance(of, Enumeration) else None
-        if of is None or member is None:
-            return Const(value, span, name, of)
-        return Const(value, span, f"{of.name}.{member}" if member in self.scope else member, of)
+        named = self.member_text(of, member) if isinstance(of, Enumeration) and member is not None else name
+        return Const(value, span, named, of)
+
+    def member_text(self, of: Enumeration, member: str) -> str:
+        """Return how a member of an enumeration is written here: with its type where its name means something else."""
+        return f"{of.name}.{member}" if member in self.scope else member
 
     @abstractmethod
     def _member(self, name: str, span: Span) -> Const | None:

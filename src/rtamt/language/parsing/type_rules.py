@@ -5,6 +5,7 @@ Numbers and formulas have no type here (None): an operator takes one for the oth
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
     #: The text of an operand, by its number.
     Texts: TypeAlias = Callable[[int], str]
+    #: How the text writes the member of an enumeration.
+    MemberText: TypeAlias = Callable[[Enumeration, str], str]
 
 
 class MistypedError(Exception):
@@ -71,7 +74,9 @@ def as_formula(formula: Formula) -> Formula:
     return Apply(TRUTH, (formula,), None, formula.span)
 
 
-def typed(op: Operator, args: Sequence[Formula], texts: Texts) -> tuple[Operator, tuple[Formula, ...]]:
+def typed(
+    op: Operator, args: Sequence[Formula], texts: Texts, member: MemberText
+) -> tuple[Operator, tuple[Formula, ...]]:
     """Return the operator and the operands that are meant; raise :class:`MistypedError` where a type is wrong.
 
     A Boolean in place of a formula is its truth. Members of enumerations are resolved by the type of the other
@@ -90,15 +95,15 @@ def typed(op: Operator, args: Sequence[Formula], texts: Texts) -> tuple[Operator
         )
     for k in enumerated:
         if op.operands[k] is not Sort.NUMBER:
-            raise MistypedError(no_formula(texts(k), types[k]), k)
+            raise MistypedError(no_formula(texts(k), types[k], member), k)
         if not op.equates and k not in op.keeps:
             raise MistypedError(
                 f"'{texts(k)}' is of the {_named(types[k])}, which has neither arithmetic nor order; "
-                f"compare it with == or !=, such as {_comparison(texts(k), types[k])}",
+                f"compare it with == or !=, such as {_comparison(texts(k), types[k], member)}",
                 k,
             )
     same_type = range(len(args)) if op.equates else [k for k in op.keeps if k < len(args)]
-    one = _one_type([types[k] for k in same_type], [texts(k) for k in same_type], args)
+    one = _one_type([types[k] for k in same_type], [texts(k) for k in same_type], args, member)
     meant = [
         _resolved(operand, one) if k in same_type else as_formula_at(op, k, operand)
         for k, operand in enumerate(args)
@@ -116,7 +121,9 @@ def as_formula_at(op: Operator, k: int, operand: Formula) -> Formula:
     return operand if op.operands[k] is Sort.NUMBER else as_formula(operand)
 
 
-def _one_type(types: Sequence[PartType], texts: Sequence[str], args: Sequence[Formula]) -> Enumeration:
+def _one_type(
+    types: Sequence[PartType], texts: Sequence[str], args: Sequence[Formula], member: MemberText
+) -> Enumeration:
     """Return the enumeration that operands share."""
     known = [each for each in types if isinstance(each, Enumeration)]
     if not known:
@@ -137,7 +144,7 @@ def _one_type(types: Sequence[PartType], texts: Sequence[str], args: Sequence[Fo
                 )
             raise MistypedError(
                 f"'{here}' is of the {_named(one)}, and '{texts[k]}' is none of its members; "
-                f"write one of them: {one.listing}"
+                f"write one of them: {one.listing(partial(member, one))}"
             )
         other = "a Boolean" if each is BOOLEAN else f"of the {_named(each)}"
         raise MistypedError(
@@ -165,11 +172,11 @@ def _refuse_formulas(args: Sequence[Formula], types: Sequence[PartType], texts: 
             )
 
 
-def no_formula(text: str, type_: PartType) -> str:
+def no_formula(text: str, type_: PartType, member: MemberText) -> str:
     """Return the message for a value of an enumeration in place of a formula."""
     return (
         f"'{text}' is of the {_named(type_)}, and a formula is expected here; "
-        f"compare it, such as {_comparison(text, type_)}"
+        f"compare it, such as {_comparison(text, type_, member)}"
     )
 
 
@@ -187,7 +194,7 @@ def _named(type_: PartType) -> str:
     return f"enumeration {type_.name}"
 
 
-def _comparison(text: str, type_: PartType) -> str:
+def _comparison(text: str, type_: PartType, member: MemberText) -> str:
     one = type_.choices[0] if isinstance(type_, Ambiguous) else type_
     assert isinstance(one, Enumeration)
-    return f"{text} == {one.names[0]}"
+    return f"{text} == {member(one, one.names[0])}"

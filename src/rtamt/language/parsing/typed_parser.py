@@ -45,7 +45,7 @@ class TypedParser(NameParser):
             )
         if self.scope.types or self.scope.enumerations or self.scope.arguments or self.scope.members:
             try:
-                op, args = typed(op, args, lambda k: self._written(places[k]))
+                op, args = typed(op, args, lambda k: self._written(places[k]), self.member_text)
             except MistypedError as error:
                 whole = span or Span(places[0].start, places[-1].end)
                 raise self.error(
@@ -70,7 +70,7 @@ class TypedParser(NameParser):
         """Return a formula that is no operand: a Boolean is its truth there. ``named``: it may be one later on."""
         found = type_of(formula)
         if isinstance(found, Enumeration) and not named:
-            raise self.error(no_formula(self._written(span), found), span)
+            raise self.error(no_formula(self._written(span), found, self.member_text), span)
         if isinstance(found, Ambiguous):
             assert isinstance(formula, Const)
             raise self.error(ambiguous(str(formula.name), found), span)
