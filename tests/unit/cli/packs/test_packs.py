@@ -1,10 +1,12 @@
 """What is in the packs: every requirement is satisfied by one made trace and violated by another."""
 
+from math import inf
+
 import pytest
 
 import rtamt
 from rtamt.texts import packs
-from tests.unit.cli.packs.traces import PACKS, PX4, after, made
+from tests.unit.cli.packs.traces import DRIVING, PACKS, PX4, after, made
 
 EACH = [(pack, requirement) for pack, (_, violated) in PACKS.items() for requirement in violated]
 
@@ -80,6 +82,19 @@ def test_unknown_values_of_the_battery_violate_only_the_requirement_that_they_ar
     data = made(PX4, **changed)
     battery = {name: one for name, one in specs["px4"].requirements.items() if name.startswith("BAT")}
     assert [name for name, one in battery.items() if not one.evaluate(data).satisfied] == [visible]
+
+
+def test_a_vehicle_that_cuts_in_may_be_near_for_a_while(specs):
+    rule = specs["driving"].requirements["R_G1"]
+    assert rule.evaluate(made(DRIVING, lead_gap=after(5, 4, inf, 7.9))).satisfied is True
+    assert rule.evaluate(made(DRIVING, lead_gap=after(5, 4, inf, 8.5))).satisfied is False
+
+
+def test_no_vehicle_ahead_is_no_reason_to_be_slow(specs):
+    rule = specs["driving"].requirements["R_G4"]
+    slow = {"ego_speed": 5, "lead_speed": 0}
+    assert rule.evaluate(made(DRIVING, **slow)).satisfied is True
+    assert rule.evaluate(made(DRIVING, **slow, lead_gap=inf)).satisfied is False
 
 
 def test_a_gps_topic_that_stops_does_not_pass(specs):
