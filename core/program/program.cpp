@@ -24,6 +24,10 @@ constexpr std::uint16_t version = 1;
 constexpr std::size_t header_size = 32;
 constexpr std::size_t record_size = 40;
 constexpr std::size_t checksum_size = 4;
+// Every input takes memory when the program runs, whether or not an instruction reads it: the final
+// program of a decomposed requirement has all inputs of the requirement and reads only one result.
+// So the bytes alone do not bound the inputs; this does, at 512 KiB for a sample.
+constexpr std::size_t most_unread_inputs = std::size_t{1} << 16U;
 
 [[noreturn]] void refuse(const std::string& reason) {
     throw std::invalid_argument("This is not a program that can be run: " + reason + ".");
@@ -65,11 +69,9 @@ Header read_header(Reader& reader, std::size_t size) {
         refuse("it has " + std::to_string(size) + " bytes where its header promises " +
                std::to_string(expected));
     }
-    // Every input takes memory when the program runs: a number that nothing stands behind is
-    // refused.
-    if (header.inputs > size) {
-        refuse("it promises " + std::to_string(header.inputs) + " inputs, more than its " +
-               std::to_string(size) + " bytes can name");
+    if (const std::size_t most = std::max(size, most_unread_inputs); header.inputs > most) {
+        refuse("it promises " + std::to_string(header.inputs) + " inputs, more than the " +
+               std::to_string(most) + " that are possible for one of its size");
     }
     return header;
 }

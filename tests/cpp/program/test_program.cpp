@@ -99,6 +99,16 @@ TEST_CASE("no flipped bit is read") {
     CHECK(refusal(damaged) == refused("its checksum does not match, so it was damaged on the way"));
 }
 
+TEST_CASE("inputs that no instruction reads are bounded in number") {
+    Program program = example();
+    program.inputs = 65536;
+    CHECK(Program::parse(bytes_of(program)).inputs == 65536);
+    program.inputs = 65537;
+    CHECK(refusal(bytes_of(program)) ==
+          refused("it promises 65537 inputs, more than the 65536 that are possible for one of its "
+                  "size"));
+}
+
 TEST_CASE("header is checked") {
     const Bytes bytes = bytes_of(example());
     const auto with = [&](std::size_t place, std::uint8_t value) {
