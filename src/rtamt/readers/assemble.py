@@ -314,7 +314,7 @@ def _channels(
                 raise
             left_out.append(field.column)
             continue
-        mine, first_gap = times, None
+        mine, first_gap, table = times, None, None
         if field.skip_nan and np.isnan(numbers).any():
             nan = np.isnan(numbers)
             gaps[name].skip(nan, times, before)
@@ -334,10 +334,10 @@ def _channels(
                     index=row,
                 )
             numbers, mine = numbers[~missing], times[~missing]
-            first_gap = row
+            first_gap, table = row, times
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
         alias = field.alias if name == field.name else ""
-        made[name] = Channel(mine, numbers, unit, field.column, first_gap, alias)
+        made[name] = Channel(mine, numbers, unit, field.column, first_gap, table, alias)
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)
@@ -390,11 +390,13 @@ def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
         raise TraceError(
             f"some signals of {source} have dates for times and others numbers: use one of them for all"
         )
+
+    def exact(times: Any, name: str) -> Any:
+        if times is None or times.dtype.kind != "f":
+            return times
+        return TimeScale(NANOSECOND, "seconds").ticks(times, name).view("m8[ns]")
+
     return {
-        name: c
-        if c.times is None or c.times.dtype.kind != "f"
-        else dataclasses.replace(
-            c, times=TimeScale(NANOSECOND, "seconds").ticks(c.times, name).view("m8[ns]")
-        )
+        name: dataclasses.replace(c, times=exact(c.times, name), table=exact(c.table, name))
         for name, c in channels.items()
     }

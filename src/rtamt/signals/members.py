@@ -145,8 +145,8 @@ def chunk(data: Any, groups: Fields) -> Chunk:
     found = members_of(groups, _names(data), _aliases(data))
     known = _columns(found, groups)
     data = _with_aliases(data, known)
-    if isinstance(data, Clocked):
-        data = data.on_one_clock([name for name in data if name != TIME])  # type: ignore[attr-defined]
+    if isinstance(data, Trace):
+        data = _with_absences(data, [each.column(field) for each in known for field in each.fields])
     made, throughout = _on_one_clock(data, known, ())
     channels = {each.name: channel_of(each.name) for each in known if each.name not in throughout}
     types = {
@@ -373,7 +373,7 @@ def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> 
         if all(channel.first_gap is None and _begins(channel, start) for channel in channels.values()):
             throughout.append(each.name)
             continue
-        recorded = {field: _with_gaps(channel, trace) for field, channel in channels.items()}
+        recorded = {field: _with_gaps(channel) for field, channel in channels.items()}
         times, present, values = _in_steps(recorded, start, each.fields)
         if present is None:
             throughout.append(each.name)
@@ -381,28 +381,38 @@ def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> 
         made[channel_of(each.name)] = Channel(times, present)
         for field, column in values.items():
             full = np.array(column, float)
-            made[each.column(field)] = replace(channels[field], times=times, values=full, first_gap=None)
+            made[each.column(field)] = replace(
+                channels[field], times=times, values=full, first_gap=None, table=None
+            )
     return trace.with_channels(made), throughout
 
 
+def _with_absences(trace: Trace, columns: Collection[str]) -> dict[str, Any]:
+    """Return the samples of a trace on one time base, in which a value of one of the ``columns`` may be None."""
+    made, values = {name: trace.channel(name) for name in trace}, {}
+    for name in columns:
+        if name in made and made[name].table is not None:
+            times, values[name] = _with_gaps(made[name])
+            blank = np.zeros(len(times))
+            made[name] = replace(made[name], times=times, values=blank, first_gap=None, table=None)
+    return trace.with_channels(made).on_one_clock([name for name in made if name != TIME]) | values
+
+
 def _firsts(channels: Iterable[Channel]) -> list[Any]:
-    return [channel.times[0] for channel in channels if channel.times is not None and len(channel.times)]
+    tables = [channel.times if channel.table is None else channel.table for channel in channels]
+    return [times[0] for times in tables if times is not None and len(times)]
 
 
 def _begins(channel: Channel, start: Any) -> bool:
     return channel.times is None or (len(channel.times) > 0 and bool(channel.times[0] <= start))
 
 
-def _with_gaps(channel: Channel, trace: Trace) -> tuple[NDArray[Any], list[Any]]:
+def _with_gaps(channel: Channel) -> tuple[NDArray[Any], list[Any]]:
     """Return the times of a channel's table, and its values there, None where it has none."""
     assert channel.times is not None
-    if channel.first_gap is None:
+    if channel.table is None:
         return channel.times, channel.values.tolist()
-    tables = [other.times for other in map(trace.channel, trace) if other.times is not None]
-    around = [
-        times for times in tables if len(times) > len(channel.times) and np.isin(channel.times, times).all()
-    ]
-    table = min(around, key=len) if around else merged(tables)
+    table = channel.table
     values: list[Any] = [None] * len(table)
     for place, value in zip(table.searchsorted(channel.times).tolist(), channel.values.tolist(), strict=True):
         values[place] = value

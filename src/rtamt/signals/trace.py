@@ -44,7 +44,7 @@ class Channel:
     timedelta64[ns], or datetime64[ns]; None where the source has none. ``values``: n numbers, float64.
     ``unit``: the unit of the values, as the source writes it. ``column``: the name of the signal in the source.
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
-    than those of its table; None where it has all. ``alias``: another name, which listings leave out.
+    than those of its ``table``; both None where it has all. ``alias``: another name, which listings leave out.
     """
 
     times: Times | None
@@ -52,6 +52,7 @@ class Channel:
     unit: str = ""
     column: str = ""
     first_gap: int | None = None
+    table: Times | None = None
     alias: str = ""
 
 
@@ -263,10 +264,11 @@ class Trace(Clocked):
                     f"'{name}' has no timestamps, so that it has no times to slice", variable=name
                 )
             low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
-            inside = np.ones(len(channel.times), dtype=bool)
-            inside &= True if low is None else channel.times >= low
-            inside &= True if high is None else channel.times <= high
-            found[name] = replace(channel, times=channel.times[inside], values=channel.values[inside])
+            inside = _inside(channel.times, low, high)
+            table = None if channel.table is None else channel.table[_inside(channel.table, low, high)]
+            found[name] = replace(
+                channel, times=channel.times[inside], values=channel.values[inside], table=table
+            )
         return self.with_channels(found)
 
     # ---- for the engine --------------------------------------------------------------------------
@@ -351,7 +353,7 @@ class Trace(Clocked):
             assert channel.times is not None
             values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for, step)
             losses += left_out
-            channels[name] = replace(channel, times=grid, values=values, first_gap=None)
+            channels[name] = replace(channel, times=grid, values=values, first_gap=None, table=None)
         return self.with_channels(channels, losses)
 
     # ---- inside ----------------------------------------------------------------------------------
@@ -402,6 +404,13 @@ class Trace(Clocked):
 
     def _repr_html_(self) -> str:
         return html(self)
+
+
+def _inside(times: Times, low: Any, high: Any) -> NDArray[np.bool_]:
+    inside = np.ones(len(times), dtype=bool)
+    inside &= True if low is None else times >= low
+    inside &= True if high is None else times <= high
+    return inside
 
 
 def _bound(end: Any, dtype: np.dtype[Any]) -> Any:

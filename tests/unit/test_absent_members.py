@@ -1,0 +1,82 @@
+"""Samples at which no member of a group is present, however the recording is given."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pandas as pd
+import pytest
+
+import rtamt
+from rtamt.cli import main
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+INF = float("inf")
+GROUP = 'group cars = "car_*" { float x }\n'
+
+
+def given(samples: list[float | None], folder: Path) -> dict[str, object]:
+    times = [float(i) for i in range(len(samples))]
+    file = folder / "drive.csv"
+    cells = ("" if value is None else value for value in samples)
+    file.write_text("time,car_1.x\n" + "".join(f"{i},{cell}\n" for i, cell in enumerate(cells)))
+    frame = pd.DataFrame({"time": times, "car_1.x": pd.array(samples, dtype="Float64")})
+    gaps = pd.DataFrame({"time": times, "car_1.x": pd.Series(samples, dtype="float64")})
+    return {
+        "dict": {"time": times, "car_1.x": samples},
+        "frame": frame,
+        "read frame": rtamt.read(frame),
+        "read NaN": rtamt.read(gaps, skip_nan=["car_1.x"]),
+        "file": rtamt.read(file),
+    }
+
+
+def at_seconds(signal: rtamt.Signal, n: int) -> list[float]:
+    places = signal.times.searchsorted(list(range(n)), "right") - 1
+    return [float(value) for value in signal.values[places]]
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("samples", "forall", "exists"),
+    [
+        ([6.0, None, 3.0], [1, INF, -2], [1, -INF, -2]),
+        ([None, None, 6.0], [INF, INF, 1], [-INF, -INF, 1]),
+        ([6.0, 7.0, None], [1, 2, INF], [1, 2, -INF]),
+        ([None, None], [INF, INF], [-INF, -INF]),
+    ],
+)
+def test_a_row_without_any_member_is_a_sample_without_members(
+    samples: list[float | None], forall: list[float], exists: list[float], time: str, tmp_path: Path
+) -> None:
+    for source, data in given(samples, tmp_path).items():
+        for kind, expected in (("forall", forall), ("exists", exists)):
+            found = rtamt.parse(f"{GROUP}{kind} v in cars: v.x > 5").evaluate(data, time=time)
+            assert at_seconds(found.signal, len(samples)) == expected, (source, kind)
+
+
+def test_a_chunk_of_a_file_may_have_rows_without_any_member(tmp_path: Path) -> None:
+    for source, data in given([6.0, None, 3.0], tmp_path).items():
+        if source != "read NaN":
+            monitor = rtamt.parse(f"{GROUP}forall v in cars: v.x > 5").monitor()
+            assert monitor.update_many(data).values.tolist() == [1, INF, -2], source
+
+
+def test_a_slice_of_a_trace_keeps_rows_without_any_member(tmp_path: Path) -> None:
+    trace = given([6.0, None, None, 3.0], tmp_path)["file"]
+    assert isinstance(trace, rtamt.Trace)
+    part = rtamt.parse(f"{GROUP}forall v in cars: v.x > 5").evaluate(trace[1:2])
+    assert part.signal.times.tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_file_in_which_no_member_is_ever_present_is_no_internal_error(
+    time: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "rule.stl").write_text(f"{GROUP}require A: always exists v in cars: v.x > 5\n")
+    (tmp_path / "never.csv").write_text("time,ego.x,car_1.x\n0,0,\n1,0,\n")
+    arguments = ["check", str(tmp_path / "rule.stl"), str(tmp_path / "never.csv"), "--time", time]
+    assert main(arguments) == 1
+    assert "-inf" in capsys.readouterr().out
