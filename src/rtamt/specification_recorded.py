@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.signals.binding import Binding
+from rtamt.signals.trace import Trace
 from rtamt.specification_text import SpecificationText
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class RecordedSpecification(SpecificationText):
             name for name in self.input_names if name in declared or name.split(".")[0] in declared
         )
 
-    def unchecked(self, names: Collection[str]) -> dict[str, str]:
+    def unchecked(self, names: Collection[str] | Trace) -> dict[str, str]:
         """Return the requirements that cannot be checked on a recording with these signals, each with the reason.
 
         These are the requirements that read an ``optional`` variable of which the recording has no recorded name.
@@ -80,7 +81,7 @@ class RecordedSpecification(SpecificationText):
         >>> spec.unchecked(["z"])
         {'BAT': "no 'battery_status.voltage_v' or 'battery.voltage'"}
         """
-        known = set(names)
+        known = {*names, *(names.aliases if isinstance(names, Trace) else ())}
         lacking = {}
         for name in sorted(self.optional - known):
             columns = self._recorded_names.get(name, (name,))

@@ -34,7 +34,7 @@ def sampled(
     is: its samples are one period apart. Raises :class:`TraceError` for wrong data and values that are too old.
     """
     if isinstance(data, Trace):
-        known = [name for name in names if name in data.names]
+        known = [name for name in names if name in data.names or name in data.aliases]
         if len(known) < len(names) or any(data.channel(name).times is None for name in known):
             return data  # the evaluation reports what is missing
         return _held(data.select(known), rule, period) if known else data

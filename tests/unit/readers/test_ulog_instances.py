@@ -79,6 +79,10 @@ def test_both_names_of_instance_0_read_the_same_samples(flight):
         assert rtamt.parse(text).evaluate(rtamt.read(path, units={"battery.x": "mV"})).robustness == -13.988
         assert main(["check", text, path]) == 1
     trace = rtamt.read(path)
+    held = rtamt.parse('sample 1s hold skip nan; "battery[0].x" > 14')
+    assert held.evaluate(trace).robustness == -2
+    optional = rtamt.parse('optional input float "battery[0].x" require R: always("battery[0].x" > 14)')
+    assert optional.unchecked(trace) == {}
     assert trace["battery[0].x"].values.tolist() == trace["battery.x"].values.tolist()
     assert trace.select(["battery[0].x"]).names == ("battery.x",)
 
