@@ -14,6 +14,7 @@ from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import check_unit
 from rtamt.results import Result, requirements_of
 from rtamt.signals import members
+from rtamt.signals.data_errors import nan_of_members
 from rtamt.signals.inexact import Uncertainty, fill_gaps
 from rtamt.signals.sampling import sampled
 from rtamt.signals.trace import Trace
@@ -93,14 +94,15 @@ class Specification(OnlineSpecification):
         if self.groups:
             query = self._query(time, period, tolerance, resolution, semantics, time_unit)
             spec, data = self._over_data(query, data)
-            return spec.evaluate(
-                data,
-                time=query.domain,
-                semantics=semantics,
-                time_unit=time_unit,
-                uncertainty=uncertainty,
-                ranges=ranges,
-            )
+            with nan_of_members(self.groups):
+                return spec.evaluate(
+                    data,
+                    time=query.domain,
+                    semantics=semantics,
+                    time_unit=time_unit,
+                    uncertainty=uncertainty,
+                    ranges=ranges,
+                )
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
         data = self._sampled(query, self.binding.applied(data))
         recording = self._with_units(self._recorded(query, data, uncertainty, ranges))

@@ -80,3 +80,19 @@ def test_a_file_in_which_no_member_is_ever_present_is_no_internal_error(
     arguments = ["check", str(tmp_path / "rule.stl"), str(tmp_path / "never.csv"), "--time", time]
     assert main(arguments) == 1
     assert "-inf" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_nan_of_pandas_in_a_field_of_a_group_names_how_to_make_the_member_absent(time: str) -> None:
+    frame = pd.DataFrame({"time": [0.0, 1.0], "car_1.x": [6.0, float("nan")]})
+    expected = (
+        "'car_1.x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out; where the member is absent, "
+        "give None, a nullable dtype such as pandas' Float64, or rtamt.read(data, skip_nan=['car_1.x'])"
+    )
+    spec = rtamt.parse(f"{GROUP}forall v in cars: v.x > 5")
+    with pytest.raises(rtamt.TraceError) as info:
+        spec.evaluate(frame, time=time)
+    assert str(info.value) == expected
+    with pytest.raises(rtamt.TraceError) as info:
+        spec.monitor().update_many(frame)
+    assert str(info.value) == expected

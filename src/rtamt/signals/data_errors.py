@@ -2,22 +2,46 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, choices
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterator, Mapping
+
+    from rtamt.language.quantifiers import Group
+
+#: How to mend a NaN in the data.
+NAN_MEND = "fill the gap or leave the sample out"
 
 
 def nan_error(name: str, index: int, time: float) -> TraceError:
     """Return the error for a NaN in the data."""
     return TraceError(
-        f"'{name}' is NaN at sample {index}, time {time:.15g} s: fill the gap or leave the sample out",
+        f"'{name}' is NaN at sample {index}, time {time:.15g} s: {NAN_MEND}",
         variable=name,
         index=index,
         time=time,
     )
+
+
+@contextmanager
+def nan_of_members(groups: Mapping[str, tuple[Group, tuple[str, ...]]]) -> Iterator[None]:
+    """Add to the error for a NaN in a field of a group how to make the member absent there."""
+    try:
+        yield
+    except TraceError as error:
+        text, name = str(error), error.variable or ""
+        if not text.endswith(NAN_MEND) or all(group.member(name) is None for group, _ in groups.values()):
+            raise
+        raise TraceError(
+            f"{text}; where the member is absent, give None, a nullable dtype such as pandas' Float64, or "
+            f"rtamt.read(data, skip_nan=['{name}'])",
+            variable=name,
+            index=error.index,
+            time=error.time,
+        ) from None
 
 
 def unknown_variable(name: str, names: Collection[str]) -> TraceError:

@@ -13,6 +13,7 @@ from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of
+from rtamt.signals.data_errors import NAN_MEND
 from rtamt.signals.regular import merged, never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import sequence_of
@@ -161,8 +162,7 @@ def samples_of(
     if len(values) and isnan(np.minimum.reduce(values)):  # the least of numbers and a NaN is NaN
         i = int(np.isnan(values).argmax())
         raise TraceError(
-            f"'{name}' is NaN at sample {first + i}, time {scale.show(int(ticks[i]))}: "
-            f"fill the gap or leave the sample out",
+            f"'{name}' is NaN at sample {first + i}, time {scale.show(int(ticks[i]))}: {NAN_MEND}",
             variable=name,
             index=first + i,
         )

@@ -18,7 +18,7 @@ from rtamt.language.formula import types_of
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays, members
 from rtamt.signals.binding import Binding
-from rtamt.signals.data_errors import unknown_variable
+from rtamt.signals.data_errors import nan_of_members, unknown_variable
 from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
 
@@ -178,8 +178,9 @@ class MemberMonitor:
             return Signal(np.empty(0), np.empty(0))
         times = np.array(self._next_time() + float(self.period) * np.arange(n), np.float64)
         times = times if timestamps is None else timestamps.seconds
-        for name, column in columns.items():
-            arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
+        with nan_of_members(self._fields):
+            for name, column in columns.items():
+                arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         before = self._state()
         known = _News(self._watched)
         try:
