@@ -20,6 +20,7 @@ from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.truth import with_truths
+from tests.laws.test_pastify_laws import formulas_over_numbers_ahead, of_numbers
 from tests.oracle import dense_grid
 from tests.strategies import dense_chunkings, dense_traces, formulas, traces
 
@@ -263,6 +264,18 @@ def test_the_pastified_formula_says_the_same_one_horizon_later(formula, trace):
     changes = np.union1d(expected.times, got.times[got.times - depth >= expected.times[0]] - depth)
     changes = changes[changes <= last]
     np.testing.assert_array_equal(at(got, changes + depth), at(expected, changes))
+
+
+@given(
+    formulas_over_numbers_ahead(dense_formulas(select=of_numbers, infinite=False, max_depth=2), TICK),
+    dense_traces(),
+)
+def test_a_number_ahead_inside_arithmetic_is_defined_before_the_horizon_too(formula, trace):
+    expected = value(formula, trace)
+    got = evaluate(pastify(formula), trace, TICK)
+    first, last = span(trace)
+    later = np.arange(first, last - int(horizon(formula) / TICK) + 1)
+    np.testing.assert_array_equal(at(got, later + int(horizon(formula) / TICK)), at(expected, later))
 
 
 def grid_alike(node: Formula) -> bool:

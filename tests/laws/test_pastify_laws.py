@@ -11,8 +11,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, postorder
-from rtamt.language.operators import STL, Sort
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, postorder
+from rtamt.language.operators import STL, Operator, Sort, Tense
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.check import has_future
 from rtamt.rewrite.horizon import horizon
@@ -63,6 +64,59 @@ def test_the_pastified_formula_says_the_same_one_horizon_later(
     assume(got is not None)
     assert expected is not None
     np.testing.assert_array_equal(got[delay:], expected[: len(expected) - delay])
+
+
+#: Numbers that have a value whatever finite values their operands have.
+TOTAL = {"add", "sub", "mul", "neg", "abs", "min", "max", "sin", "floor", "clip", "if", "delay", "held"}
+
+
+def of_numbers(op: Operator) -> bool:
+    return op.name in TOTAL or (op.result is Sort.FORMULA and op.tense is Tense.NONE)
+
+
+@st.composite
+def formulas_over_numbers_ahead(draw: Any, formulas: Any, period: Fraction = Fraction(1)) -> Formula:
+    """Draw a formula with variables read ahead; formulas are no operands of arithmetic, for they are infinite early."""
+
+    def ahead(number: Formula, least: int = 0) -> Formula:
+        distance = draw(st.integers(least, 2)) * period
+        return STL["ahead"](number, interval=Interval(distance, distance))
+
+    def step(node: Formula, below: tuple[Formula, ...]) -> Formula:
+        if isinstance(node, Var):
+            return ahead(node)
+        if not isinstance(node, Apply):
+            return node
+        operands = tuple(
+            STL["if"](operand, Const(1.0), Const(2.0))
+            if sort is Sort.NUMBER and not is_number(operand)
+            else operand
+            for sort, operand in zip(node.op.operands, below, strict=False)
+        )
+        return Apply(node.op, operands, node.interval)
+
+    other = draw(st.sampled_from((Const(2.0), Var("y"), STL["sin"](Var("y")))))
+    number = STL[draw(st.sampled_from(("add", "sub", "mul")))](ahead(Var("x"), 1), other)
+    compared = STL[draw(st.sampled_from(("ge", "lt", "eq")))](
+        number, draw(st.sampled_from((Const(1.0), Var("y"))))
+    )
+    return STL["and"](fold(draw(formulas), step), compared)
+
+
+@pytest.mark.parametrize("evaluate", [by_definition, by_engine])
+@given(
+    formula=formulas_over_numbers_ahead(formulas(select=of_numbers, infinite=False)),
+    columns=traces(min_size=4),
+)
+def test_a_number_ahead_inside_arithmetic_is_defined_before_the_horizon_too(
+    evaluate: Any, formula: Formula, columns: dict[str, Any]
+) -> None:
+    expected = by_definition(formula, columns)
+    assume(expected is not None)
+    assert expected is not None
+    got = evaluate(pastify(formula), columns)
+    delay = int(horizon(formula) or 0)
+    np.testing.assert_array_equal(got[delay:], expected[: max(0, len(expected) - delay)])
 
 
 @given(formulas(future=False))

@@ -107,7 +107,15 @@ class _Pastifier:
         self.text = text
         self.unit = unit
         self.has_future: dict[int, bool] = {}
+        self.constant: set[int] = set()  # these have the same value at every instant
         for node in postorder(formula):
+            if isinstance(node, Const) or (
+                isinstance(node, Apply)
+                and node.args
+                and node.op.tense is Tense.NONE
+                and all(id(arg) in self.constant for arg in node.args)
+            ):
+                self.constant.add(id(node))
             below = any(self.has_future[id(arg)] for arg in node.args) if isinstance(node, Apply) else False
             self.has_future[id(node)] = below or (isinstance(node, Apply) and node.op.tense is Tense.FUTURE)
 
@@ -151,8 +159,7 @@ class _Pastifier:
         if not self.has_future[id(node)]:
             return self.shifted(node, delay)
         assert isinstance(node, Apply)
-        if node.op.strict:
-            args = tuple(map(_as_number, node.op.operands, node.args, args))
+        args = tuple(map(self._as_number, node.op.operands, node.args, args))
         if node.op.tense is Tense.FUTURE:
             return _past_twin(node, args, self.text)
         if node.op.tense is Tense.PAST and node.op.pastified is not None:
@@ -170,6 +177,15 @@ class _Pastifier:
         if delay == 0:
             return formula
         return Apply(STL["once"], (formula,), Interval(delay, delay, self.unit, self.unit), formula.span)
+
+    def _as_number(self, sort: Sort, operand: Formula, delayed: Formula) -> Formula:
+        """Return a delayed number as a number: before its first value, ``once`` would make it infinite."""
+        if sort is not Sort.NUMBER or is_number(delayed) or not is_number(operand):
+            return delayed
+        if id(operand) in self.constant:
+            return operand
+        assert isinstance(delayed, Apply)
+        return replace(delayed, op=STL["delay"])
 
     def _by_rule(self, node: Apply, args: tuple[Formula, ...], delay: Fraction) -> Formula:
         if delay == 0:
@@ -192,14 +208,6 @@ class _Pastifier:
 
 #: A number that counts as none, as true and as false.
 _INSTEAD = {"zero": 0.0, "implies": inf, "and": -inf}
-
-
-def _as_number(sort: Sort, operand: Formula, delayed: Formula) -> Formula:
-    """Return a delayed number as a number: ``once`` makes a formula of it."""
-    if sort is not Sort.NUMBER or is_number(delayed) or not is_number(operand):
-        return delayed
-    assert isinstance(delayed, Apply)
-    return replace(delayed, op=STL["delay"])
 
 
 def _unit(formula: Formula) -> str:

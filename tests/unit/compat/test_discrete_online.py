@@ -44,6 +44,21 @@ def test_every_update_gives_a_number_after_pastify():
     assert [spec.update(t, [("x", x)]) for t, x in enumerate([5, 4, 6, 7])] == [5.0, 4.0, 4.0, 4.0]
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ahead[1](x) + 2 > 0", [3.0, 7.0, 4.0]),
+        ("ahead[1](x) + y > 0", [11.0, 15.0, 22.0]),
+        ("ahead[1](x) * 2 > 3", [-1.0, 7.0, 1.0]),
+    ],
+)
+def test_arithmetic_on_a_number_ahead_can_be_updated_after_pastify(text, expected):
+    spec = declared(text)
+    spec.pastify()
+    samples = [(1, 10), (5, 20), (2, 30)]
+    assert [spec.update(t, [("x", x), ("y", y)]) for t, (x, y) in enumerate(samples)] == expected
+
+
 def test_online_violations_are_counted_from_reset_to_reset():
     spec = declared("x")
     for time in (0, 1, 3):

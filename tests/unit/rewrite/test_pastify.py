@@ -20,6 +20,11 @@ from rtamt.rewrite.pastify import pastify
         ("historically(eventually[0:2] x)", "historically(once[2:2] true -> once[0:2] x)"),
         ("x since next(y)", "once[1:1] x since (y and once[1:1] true)"),
         ("always[0:500ms] x", "historically[0:500ms] x"),
+        ("ahead[1](x) + 2 > 0", "x + 2 > 0"),
+        ("ahead[1](x) + y > 2 * 3", "x + delay[1](y) > 2 * 3"),
+        ("ahead[1](x) * sin(y) > 0", "x * delay[1](sin(y)) > 0"),
+        ("(if x > 0 then ahead[1](x) else 1) + 2 > 3", "(if once[1:1](x > 0) then x else 1) + 2 > 3"),
+        ("clip(ahead[1](x), 0, y) > 0", "clip(x, 0, delay[1](y)) > 0"),
         ("x unless[1:2] y", "historically[0:2] x or x precedes[1:2] y"),
     ],
 )
