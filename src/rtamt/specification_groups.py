@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -15,7 +16,7 @@ from rtamt.rewrite.quantifiers import Members, resolved_document
 from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from typing_extensions import Self
 
@@ -110,6 +111,11 @@ class QuantifiedText(RecordedSpecification):
             )
 
     def _checked_members(self, given: Mapping[str, Iterable[str]]) -> Members:
+        if not isinstance(given, Mapping) or any(isinstance(found, str) for found in given.values()):
+            groups = {name: [group.pattern.replace("*", "1")] for name, (group, _) in self.groups.items()}
+            raise UsageError(
+                f"over() takes a list of members for each group, such as {groups}; got {given!r}"
+            )
         names = {name: tuple(given.get(name, ())) for name in self.groups}
         for name in given:
             if name not in names:

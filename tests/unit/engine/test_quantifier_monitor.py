@@ -204,3 +204,11 @@ def test_twenty_members_cost_at_most_twenty_times_one_member():
         one, twenty = data(1), data(20)
         times = [(seconds(run, one), seconds(run, twenty)) for _ in range(5)]
         assert min(b for _, b in times) <= 20 * min(a for a, _ in times)
+
+
+@pytest.mark.parametrize("members", [["car_1"], {"cars": "car_1"}, None])
+def test_over_takes_a_list_for_each_group(members):
+    with pytest.raises(
+        UsageError, match="takes a list of members for each group, such as {'cars': \\['car_1'\\]}"
+    ):
+        spec("forall v in cars: v.x > 3").over(members)
