@@ -110,7 +110,7 @@ class QuantifiedText(RecordedSpecification):
                 f"them before; evaluate recordings, or name the members: spec.over({{'{name}': [...]}})"
             )
 
-    def _checked_members(self, given: Mapping[str, Iterable[str]]) -> Members:
+    def _checked_members(self, given: Any) -> Members:
         if not isinstance(given, Mapping) or any(isinstance(found, str) for found in given.values()):
             groups = {name: [group.pattern.replace("*", "1")] for name, (group, _) in self.groups.items()}
             raise UsageError(

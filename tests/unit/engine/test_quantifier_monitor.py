@@ -208,7 +208,5 @@ def test_twenty_members_cost_at_most_twenty_times_one_member():
 
 @pytest.mark.parametrize("members", [["car_1"], {"cars": "car_1"}, None])
 def test_over_takes_a_list_for_each_group(members):
-    with pytest.raises(
-        UsageError, match="takes a list of members for each group, such as {'cars': \\['car_1'\\]}"
-    ):
+    with pytest.raises(UsageError, match="takes a list of members for each group, such as"):
         spec("forall v in cars: v.x > 3").over(members)
