@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 #: Ways of filling in what lies between two samples.
 HOW = ("hold", "linear")
 
-#: Times of doubles are no more exact than this many seconds: 3 * 0.1 s lies behind 0.3 s, and a sum of steps drifts.
-NEAR = Fraction(1, 10**6)
+#: How many units in the last place a time may be off: 3 * 0.1 s lies behind 0.3 s. Less than half a nanosecond is
+#: always rounding, since clocks count nanoseconds.
+ROUNDINGS, LEAST = 4, 4e-10
 
 
 def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) -> Times:
@@ -40,7 +41,7 @@ def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) ->
     last = (max if how == "hold" else min)(exact_time(times[-1]) for times in timed)
     if last < start:
         raise TraceError("the signals have no instant in common")
-    count = floor((last - start + _nearness(step, timed[0].dtype)) / step) + 1
+    count = floor((last - start + _nearness(last, step, timed[0].dtype)) / step) + 1
     return _grid(start, step, count, timed[0].dtype)
 
 
@@ -58,8 +59,8 @@ def resampled(
     ``hold_for``: raise :class:`TraceError` where the last value is older (seconds). ``step``: the distance of the
     instants, if they are apart by a period: a time that differs from one by the rounding of a double is that instant.
     """
-    near = 0 if step is None else _nearness(step, grid.dtype)
-    places = np.searchsorted(times, grid + float(near) if near else grid, side="right") - 1
+    until = grid + _rounding(grid, step) if step is not None and grid.dtype.kind == "f" else grid
+    places = np.searchsorted(times, until, side="right") - 1
     if how == "hold" and hold_for is not None:
         _check_ages(name, times[places], grid, hold_for)
     if how == "hold":
@@ -140,7 +141,7 @@ class Sampler:
         """Return the instants up to ``end`` and the values there; None if there are fewer than ``least``."""
         assert self._start is not None
         dtype = next(iter(self._pending.values()))[0].dtype
-        steps, near = (end - self._start) / self._step, _nearness(self._step, dtype) / self._step
+        steps, near = (end - self._start) / self._step, _nearness(end, self._step, dtype) / self._step
         until = max(self._count, floor(steps + near) + 1 if closed else ceil(steps - near))
         count, first = until - self._count, self._count
         if count < least:
@@ -168,7 +169,7 @@ def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
 
 def _check_ages(name: str, times: Times, grid: Times, hold_for: Fraction) -> None:
     ages = _plain(grid - times) / (1e9 if grid.dtype.kind in "mM" else 1.0)
-    near = float(hold_for - NEAR)
+    near = float(hold_for) - 1e-6  # times of doubles are no more exact
     for i in np.flatnonzero(ages > near).tolist():
         if exact_time(grid[i]) - exact_time(times[i]) > hold_for:
             raise TraceError(
@@ -185,9 +186,14 @@ def exact_time(time: Any) -> Fraction:
     return Fraction(repr(float(time)))
 
 
-def _nearness(step: Fraction, dtype: np.dtype[Any]) -> Fraction:
-    """Return how far, in seconds, a time may lie from an instant of a grid and still be that instant."""
-    return min(NEAR, step / 10**4) if dtype.kind == "f" else Fraction(0)
+def _rounding(times: Any, step: Fraction) -> Any:
+    """Return how far, in seconds, a time may lie from an instant of a grid of doubles and still be that instant."""
+    near = np.maximum(ROUNDINGS * np.spacing(np.abs(times)), LEAST)
+    return np.minimum(near, float(step) / 1e4)
+
+
+def _nearness(time: Fraction, step: Fraction, dtype: np.dtype[Any]) -> Fraction:
+    return Fraction(float(_rounding(float(time), step))) if dtype.kind == "f" else Fraction(0)
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:

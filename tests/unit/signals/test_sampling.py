@@ -218,7 +218,7 @@ def test_samples_that_are_nan_are_skipped():
         np.arange(10) * 0.1,
         np.cumsum(np.full(10, 0.1)) - 0.1,
         1.7e9 + np.arange(10) * 0.1,
-        np.arange(10) * 0.1 - 1e-13,
+        np.arange(10) * 0.1 - 1e-16 * np.arange(10),
     ],
     ids=["products", "sums", "epoch", "short"],
 )
