@@ -16,7 +16,7 @@ each use the previous one twice has 10¹⁸ nodes. Every traversal must visit ea
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from rtamt.language.value_types import Boolean, Enumeration
@@ -256,6 +256,13 @@ def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
             values[1] = tuple([nodes[place] for place in values[1]])
         nodes.append(kind(*values))
     return nodes[-1]
+
+
+def located(formula: Formula, span: Span | None) -> Formula:
+    """Return the formula with another position in the text."""
+    node: Any = formula  # each of the three types of nodes is a dataclass
+    found: Formula = replace(node, span=span)
+    return found
 
 
 def children(formula: Formula) -> tuple[Formula, ...]:

@@ -17,8 +17,10 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from math import inf
+from operator import add
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
@@ -28,7 +30,7 @@ from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rtamt.errors import StlError
     from rtamt.language.parsing.lexer import Token
@@ -123,6 +125,27 @@ QUANTIFIERS: Mapping[str, Operator] = MappingProxyType({
                    F, F, lambda body, _i: body),
     "count": _row("count", r"\#", "How many of the members that are present satisfy the formula, a number.",
                   C, N, lambda body, _i: operator("if")(body, Const(1.0), Const(0.0))),
+})  # fmt: skip
+
+
+class Join(NamedTuple):
+    """How a quantifier combines its members: formulas, and the numbers that they evaluate to.
+
+    ``guard``: the operator between the presence of a member and the body. ``formulas``: the operator between members.
+    ``numbers``: the same of two numbers. ``none``: the value without members.
+    """
+
+    guard: str
+    formulas: str
+    numbers: Callable[[float, float], float]
+    none: float
+
+
+#: How each quantifier combines its members.
+JOINS: Mapping[str, Join] = MappingProxyType({
+    "forall": Join("implies", "and", min, inf),
+    "exists": Join("and", "or", max, -inf),
+    "count": Join("and", "add", add, 0.0),
 })  # fmt: skip
 
 _QUANTIFIED: dict[tuple[str, Binder], Operator] = {}

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
+from rtamt.language.formula import Apply, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Sort, Tense
 from rtamt.language.records import Bounds
 from rtamt.language.unwritten import COLUMN, PRESENT
@@ -21,7 +20,7 @@ from rtamt.language.value_types import BOOLEAN
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.quantifiers import Members, Scope
+from rtamt.rewrite.quantifiers import Members, Scope, of_one
 from rtamt.rewrite.semantics import boolean
 from rtamt.rewrite.truth import read_as_conditions
 
@@ -39,8 +38,7 @@ class Quantified:
     """A quantifier as monitors run it.
 
     ``formula``: over one member, whose robustness is what the member gives. ``column``: the name of the column of what
-    all give together: the least for ``forall``, the greatest for ``exists``, the sum for ``count``; ``none`` if there
-    is no member. ``lag``: after how many seconds it is known. ``keep``: for how many seconds a member that is gone
+    all give together. ``lag``: after how many seconds it is known. ``keep``: for how many seconds a member that is gone
     still matters to what it gives when it returns; None: for ever. ``inside``: the quantifiers in it.
     """
 
@@ -50,7 +48,6 @@ class Quantified:
     column: str
     lag: Fraction
     keep: Fraction | None
-    none: float
     inside: tuple[Quantified, ...]
 
 
@@ -100,7 +97,7 @@ class _StreamScope(Scope):
             self._with(binder.variable),
             self.splitting,
         )
-        given = _of_one(node, inner.newest(binder), inner.resolved(body))
+        given = of_one(node, inner.newest(binder), inner.resolved(body))
         value = self._column(node, binder, self.splitting.applied(given), inner)
         if node.op.result is Sort.NUMBER:
             return value
@@ -125,10 +122,9 @@ class _StreamScope(Scope):
             check_online(given, self.splitting.text)
             lag = horizon(given, period)
             assert lag is not None
-            none = 0.0 if node.op.result is Sort.NUMBER else inf if node.op.name == "forall" else -inf
             name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"
             keep = _past(desugar(given), period)
-            known = Quantified(binder, node.op.name, given, name, lag, keep, none, tuple(inner.found))
+            known = Quantified(binder, node.op.name, given, name, lag, keep, tuple(inner.found))
             self.found.append(known)
         column = Var(known.column, node.span)
         if not known.lag:
@@ -147,15 +143,6 @@ class _StreamScope(Scope):
     def absent(self) -> set[str | None]:
         """Return the variables whose members may be absent; None: everything, after the end of the stream."""
         return set(self.bound) or {None}
-
-
-def _of_one(node: Apply, present: Formula, body: Formula) -> Formula:
-    """Return what one member gives."""
-    if node.op.result is Sort.NUMBER:
-        both = STL["and"](present, body)
-        return STL["if"](both, Const(1.0), Const(0.0))
-    op = STL["implies"] if node.op.name == "forall" else STL["and"]
-    return Apply(op, (present, body), None, node.span)
 
 
 def _past(core: Formula, period: Fraction) -> Fraction | None:

@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, located
 from rtamt.language.operators import STL, Operator, Sort, Tense, builtin
-from rtamt.language.quantifiers import FieldOf
+from rtamt.language.quantifiers import JOINS, FieldOf
 from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.language.unwritten import PRESENT, WHERE_PRESENT
@@ -144,18 +144,10 @@ class Scope(Known):
         (body,) = node.args
         inside = [self._inside(binder, member) for member in self.members.names[binder.group.name]]
         scopes = [scope for scope in inside if scope.keeps_apart(binder)]
-        pairs = [(scope.newest(binder), scope.resolved(body)) for scope in scopes]
-        if node.op.result is Sort.NUMBER:
-            one, none = Const(1.0, node.span), Const(0.0, node.span)
-            parts: list[Formula] = [STL["if"](_both(present, part), one, none) for present, part in pairs]
-            total: Formula = reduce(STL["add"], parts) if parts else none
-        elif node.op.name == "forall":
-            parts = [_implies(present, part) for present, part in pairs]
-            total = reduce(STL["and"], parts) if parts else Const(inf, node.span)
-        else:
-            parts = [_both(present, part) for present, part in pairs]
-            total = reduce(STL["or"], parts) if parts else Const(-inf, node.span)
-        return replace(total, span=node.span)  # type: ignore[type-var]
+        parts = [of_one(node, scope.newest(binder), scope.resolved(body)) for scope in scopes]
+        join = JOINS[node.op.name]
+        total = reduce(STL[join.formulas], parts) if parts else Const(join.none)
+        return located(total, node.span)
 
     def _inside(self, binder: Binder, member: str) -> Scope:
         here = None if member in self.bound.values() else self._present(member)
@@ -188,7 +180,7 @@ class Scope(Known):
             cut = [self._counted(*each, node) for each in zip(args, rules, op.operands, strict=True)]
             return Apply(op, tuple(cut), node.interval, node.span)
         if op.pastified is not None:
-            return replace(op.pastified(args, node.interval, self), span=node.span)  # type: ignore[type-var]
+            return located(op.pastified(args, node.interval, self), node.span)
         if op.expansion is not None:
             return self._expanded(node, args)
         raise UsageError(
@@ -262,6 +254,14 @@ def _known(operand: Formula, absent: str | None) -> float | None:
 def present_of(member: str) -> Formula:
     """Return the formula that is +inf where a member is present, else -inf."""
     return PRESENT(Var(channel_of(member), None, BOOLEAN))
+
+
+def of_one(node: Apply, present: Formula | None, body: Formula) -> Formula:
+    """Return what one member gives to a quantifier; ``present``: where it is present, None if throughout."""
+    guard = STL[JOINS[node.op.name].guard]
+    guarded = body if present is None else Apply(guard, (present, body), None, body.span)
+    assert node.op.expansion is not None
+    return node.op.expansion(guarded, None)
 
 
 def _both(present: Formula | None, formula: Formula) -> Formula:

@@ -14,13 +14,13 @@ predicates.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
 from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
-from rtamt.language.formula import Apply, Const, Formula, variables
+from rtamt.language.formula import Apply, Const, Formula, located, variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
@@ -174,7 +174,7 @@ def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles
         )
     if applied is predicate:
         return predicate
-    holding = replace(truth(predicate), span=predicate.span)  # type: ignore[type-var]
+    holding = located(truth(predicate), predicate.span)
     if applied == holding:
         return holding
     known = set(variables(predicate))

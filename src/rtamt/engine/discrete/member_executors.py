@@ -6,27 +6,21 @@ state; one that is gone runs on, as absent, until what it had can no longer matt
 
 from __future__ import annotations
 
-import operator
 from copy import copy
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import Monitor
+from rtamt.language.quantifiers import JOINS
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals import members
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.members import Fields
-
-#: How quantifiers combine what their members give.
-_COMBINED: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
-    {"forall": min, "exists": max, "count": operator.add}
-)
 
 #: A member's fields at a sample, by name.
 Sample = dict[str, float]
@@ -156,10 +150,10 @@ class Plan:
         assert domain.period is not None
         self.variable, self.group = of.binder.variable, of.binder.group.name
         self.apart = of.binder.apart
-        self.column, self.none = of.column, of.none
+        self.column, join = of.column, JOINS[of.kind]
+        self.none, self.combined = join.none, join.numbers
         self.lag = int(of.lag / domain.period)
         self.keep = None if of.keep is None else int(of.keep / domain.period) + self.lag + 1
-        self.combined: Callable[[float, float], float] = _COMBINED[of.kind]
         group, names = fields[self.group]
         self.fields = {name: f"{self.variable}.{name}" for name in names}
         self.fillers = {name: members.filler(group.values(name)) for name in names}

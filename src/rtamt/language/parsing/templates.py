@@ -21,7 +21,7 @@ from math import isinf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
 from rtamt.language.parsing.lexer import Token
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
@@ -330,7 +330,7 @@ def all_placed(
             if id(node) in borrowed:
                 made[id(node)] = node
             elif not isinstance(node, Apply):
-                made[id(node)] = replace(node, span=span)  # type: ignore[type-var]
+                made[id(node)] = located(node, span)
             elif ready:
                 args = tuple([made[id(operand)] for operand in node.args])
                 interval = None if node.interval is None else replace(node.interval, span=span)
