@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import TimeDomain
-    from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_causation import DenseCausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
+    from rtamt.verdicts.discrete_causation import DiscreteCausationMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.interval import IntervalMonitor
 
@@ -99,7 +99,7 @@ class OnlineSpecification(QuantifiedText):
         time: Literal["discrete"] | Discrete | None = None,
         verdict: Literal["causation"],
         **settings: Unpack[DiscreteSettings],
-    ) -> CausationMonitor: ...
+    ) -> DiscreteCausationMonitor: ...
 
     @overload
     def monitor(

@@ -210,7 +210,8 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         (
             "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
             "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
-            "rtamt.verdicts.causation.CausationMonitor", "rtamt.verdicts.dense_causation.DenseCausationMonitor",
+            "rtamt.verdicts.discrete_causation.DiscreteCausationMonitor",
+            "rtamt.verdicts.dense_causation.DenseCausationMonitor",
             "Causation", "CausationRun", "Cause", "calibrate",
         ),
     ),

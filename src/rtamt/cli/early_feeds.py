@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import Causation, Cause, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
-    from rtamt.verdicts.dense_causation import DenseCausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
@@ -191,7 +190,7 @@ class IntervalFeed:
 class CausationFeed:
     """Prints the causation of each sample at the start of the trace."""
 
-    def __init__(self, monitor: CausationMonitor | DenseCausationMonitor) -> None:
+    def __init__(self, monitor: CausationMonitor) -> None:
         self.monitor = monitor
 
     def take(self, stamp: Any, values: dict[str, float], line: int) -> str:

@@ -37,7 +37,6 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.causation import CausationMonitor
-from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
@@ -235,7 +234,7 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
         )
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
     monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
-    if isinstance(monitor, CausationMonitor | DenseCausationMonitor):
+    if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)
     return (
         IntervalFeed(monitor, live)

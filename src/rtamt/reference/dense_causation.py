@@ -123,10 +123,7 @@ def _sides(
             good, bad = (_Side(_where(limit, lambda t, _: new.at(t) > 0, new), limit) for limit in limits)
             return good, bad
         was = _limits(bounds(node, _unseen(now) if before is None else before, tick))
-        good, bad = (
-            _Side(_where(limit, lambda t, value, old=old: value > old.at(t), old), limit)  # type: ignore[misc]
-            for limit, old in zip(limits, was, strict=True)
-        )
+        good, bad = (_Side(_grown(limit, old), limit) for limit, old in zip(limits, was, strict=True))
         return good, bad
     if isinstance(node.op.kernel, Pointwise) and node.op.kernel.opcode == "neg":
         return operands[0][1], operands[0][0]
@@ -168,6 +165,11 @@ def _where(limit: Steps, moved: Callable[[int, float], bool], *others: Steps) ->
     """Return a bound where the event has a part in it, and nothing elsewhere."""
     times = sorted({t for steps in (limit, *others) for t in steps.times})
     return merged(times, [limit.at(t) if moved(t, limit.at(t)) else NOTHING for t in times])
+
+
+def _grown(limit: Steps, before: Steps) -> Steps:
+    """Return a bound where the event has raised it, and nothing elsewhere."""
+    return _where(limit, lambda t, value: value > before.at(t), before)
 
 
 def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:

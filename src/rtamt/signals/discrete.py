@@ -56,7 +56,7 @@ class Discrete(TimeDomain):
         "stream": "rtamt.verdicts.streaming:DiscreteStream",
         "eager": "rtamt.verdicts.eager:EagerMonitor",
         "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",
-        "causation": "rtamt.verdicts.causation:CausationMonitor",
+        "causation": "rtamt.verdicts.discrete_causation:DiscreteCausationMonitor",
         "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
         "ros_groups": "rtamt.ros.groups:sampled",

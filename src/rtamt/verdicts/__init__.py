@@ -19,8 +19,9 @@ dense_early           what those of dense time share, and the monitor of such ve
 interval              bounds of the robustness: late samples and corrections
 discrete_interval     the monitor of bounds in discrete time
 dense_interval        the monitor of bounds in dense time
-causation             the monitor of what each sample alone causes, in discrete time
-dense_causation       the same in dense time
+causation             what each sample alone causes: what its monitors share
+discrete_causation    the monitor of causation in discrete time
+dense_causation       the monitor of causation in dense time
 prediction            predictions of later samples, and the radius of their errors
 caller_clock          times of early monitors in the format of the caller
 early_check           whether a recording can no longer change a verdict (``rtamt check --early``)

@@ -5,28 +5,24 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.compiler.causation import compile_causes
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
-from rtamt.rewrite.check import unbounded_future
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Causation, CausationRun
-from rtamt.verdicts.causation import START_ONLY, check_causation, not_exact
+from rtamt.verdicts.causation import CausationMonitor, not_exact
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
-    from rtamt.compiler.graph import Graph
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.ticks import TimeScale
 
 
-class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
+class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBase):
     """Reports by how much each sample, watermark and the end of the trace alone violate or satisfy a formula.
 
     Built by ``Specification.monitor(verdict="causation", time="dense")``. A sample makes known its own tick, and
@@ -41,19 +37,8 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
     """
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale")
-    _verdict = None
     # Variables become known at different instants, and with them the predicates that read them.
     _apart = True
-
-    def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
-        check_causation(formula, settings.get("text"), settings.get("watch", ()))
-        self._bounded = unbounded_future(formula) is None
-        super().__init__(formula, domain, start=True, every=self._bounded, **settings)
-        self._forget()
-        self._prepare()
-
-    def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
-        self._causes = compile_causes(graph, outputs)
 
     if TYPE_CHECKING:  # by the base
 
@@ -127,7 +112,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             self._finished = True
         return self.causation()
 
-    # ---- answers ---------------------------------------------------------------------------------
+    # ---- results ---------------------------------------------------------------------------------
 
     def causation(self, time: Any = None) -> Causation:
         """Return what the last call caused at an instant, by default at the start of the trace.
@@ -136,7 +121,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         """
         if time is None:
             return Causation(*self._backend.causation_at_start())
-        self._check_bounded()
+        self._require_bounded()
         scale = self._scale_of(time)
         tick = int(scale.ticks([time], arrays.TIME)[0])
         found = self._backend.causation(0, tick)
@@ -148,7 +133,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
 
     def runs(self) -> list[CausationRun]:
         """Return the runs of instants for which the last call caused something, also later than the newest sample."""
-        self._check_bounded()
+        self._require_bounded()
         rows = self._backend.caused(0)
         begins = self._times([row[0] for row in rows])
         ends = self._times([row[1] for row in rows if row[1] < FOREVER])
@@ -156,10 +141,6 @@ class DenseCausationMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         return [
             CausationRun(begin, end, *row[2:]) for begin, end, row in zip(begins, ends, rows, strict=True)
         ]
-
-    def _check_bounded(self) -> None:
-        if not self._bounded:
-            raise UsageError(START_ONLY)
 
     def __getitem__(self, name: str | Formula) -> Causation:
         """Return what the last call caused for a formula that is watched, at the start of the trace."""

@@ -26,7 +26,6 @@ from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from rtamt.compiler.causation import Causes
     from rtamt.engine.dense.early_python_backend import Output
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
@@ -37,8 +36,6 @@ class DenseEarlyMonitor(EarlyMonitor):
     """What the monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
 
     _base = EarlyMonitorBase
-    #: What each sample causes is reported, too.
-    _causes: Causes | None = None
 
     def __init__(
         self,

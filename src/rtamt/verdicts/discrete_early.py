@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.compiler.causation import Causes
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -34,8 +33,6 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     """What the monitors of discrete time share. Not instantiated by users."""
 
     _clock: CallerClock
-    #: What each sample causes is reported, too.
-    _causes: Causes | None = None
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock", "_evidence")
     _base = EarlyMonitorBase

@@ -29,6 +29,7 @@ from rtamt.verdicts.evidence import Evidence, span_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
+    from rtamt.compiler.causation import Causes
     from rtamt.compiler.graph import Graph
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
@@ -124,6 +125,8 @@ class EarlyMonitor(OnlineMonitor):
     def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
         """Add what a monitor needs besides the core formulas of its outputs."""
 
+    #: Of monitors of causation: the parts of the formulas that causes are computed of.
+    _causes: Causes | None = None
     #: Whether each predicate is a node of the graph.
     _apart = False
     #: By how many steps at most a sample may be late; None where all come in order.

@@ -13,10 +13,10 @@ from rtamt import Causation, Interval, Verdict, VerdictRun
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.discrete import DISCRETE
-from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.dense_interval import DenseIntervalMonitor
+from rtamt.verdicts.discrete_causation import DiscreteCausationMonitor
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 from rtamt.verdicts.eager import EagerMonitor
 
@@ -87,12 +87,12 @@ class _Settled:
         return self._samples(self._monitor.finish())
 
 
-def _causes(formula: Formula) -> CausationMonitor:
-    return CausationMonitor(formula, DISCRETE.online)
+def _causes(formula: Formula) -> DiscreteCausationMonitor:
+    return DiscreteCausationMonitor(formula, DISCRETE.online)
 
 
-def _causes_by_python(formula: Formula) -> CausationMonitor:
-    return CausationMonitor(formula, DISCRETE.online, backend="python")
+def _causes_by_python(formula: Formula) -> DiscreteCausationMonitor:
+    return DiscreteCausationMonitor(formula, DISCRETE.online, backend="python")
 
 
 class _DenseKept:
