@@ -16,7 +16,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.language.units.library import parsed, registry, same_text
+from rtamt.language.units.library import in_unit, parsed, registry, same_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
@@ -94,11 +94,11 @@ def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
 def _conversion(recorded: str, declared: str) -> Conversion | None:
     """Return the conversion between two known units; None where there is none."""
     units, first, second = registry(), parsed(recorded), parsed(declared)
-    try:
-        if units.get_root_units(first)[1] != units.get_root_units(second)[1]:
-            return None
-        at = [Fraction(units.Quantity(Fraction(i), first).to(second).magnitude) for i in range(3)]
-    except Exception:  # noqa: BLE001 - a library's own: logarithmic units, offsets inside a product
+    if units.get_root_units(first)[1] != units.get_root_units(second)[1]:
         return None
+    found = [in_unit(Fraction(i), first, second) for i in range(3)]
+    if None in found:
+        return None
+    at = [Fraction(value) for value in found]
     scale = at[1] - at[0]
     return Conversion(scale, at[0]) if at[2] - at[1] == scale else None

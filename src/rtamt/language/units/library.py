@@ -81,9 +81,11 @@ def parsed(unit: str) -> Any:
     if len(text) > _LONGEST or (text and _TEXT.fullmatch(text) is None):
         return None
     try:
-        return units.parse_units(text)
-    except Exception:  # noqa: BLE001 - a library's own: undefined units, syntax, tokens
+        unit = units.parse_units(text)
+        units.get_root_units(unit)  # a product with decibels is parsed, but its unit is undefined
+    except Exception:  # noqa: BLE001 - pint asserts, and raises errors of Python's tokenizer and of arithmetic
         return None
+    return unit
 
 
 def product(powers: Powers) -> Any:
@@ -109,17 +111,27 @@ def resolved(powers: Powers) -> Resolved:
     try:
         factor, root = registry().get_root_units(unit)
         scale = float(factor)
-    except OverflowError:
+    except (OverflowError, TypeError):  # TypeError: the root of a negative constant is complex
         scale = inf
     if not 0 < scale < inf:
         raise UnknownUnitError("*".join(text for text, _ in powers))
     bases = _exponents(root)
     angle = bases.pop("radian", Fraction(0))
-    try:
-        offset = float(registry().Quantity(Fraction(0), unit).to_root_units().magnitude)
-    except Exception:  # noqa: BLE001 - a library's own: logarithmic units, offsets inside a product
-        offset = None
+    zero = in_unit(Fraction(0), unit, root)
+    offset = None if zero is None else float(zero)
     return Resolved(frozenset(bases.items()), angle, scale, offset, _exponents(unit))
+
+
+def in_unit(value: Fraction, unit: Any, to: Any) -> Any:
+    """Return a value in another unit of the library; None where that is undefined.
+
+    That is so of different quantities, logarithms and, inside a product, of a temperature that is no difference.
+    """
+    units = registry()
+    try:
+        return units.Quantity(value, unit).to(to).magnitude
+    except (library("pint", "converting units", "units").PintError, TypeError):
+        return None
 
 
 def unit_text(powers: Powers) -> str:

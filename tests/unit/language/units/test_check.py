@@ -217,7 +217,8 @@ def test_without_the_library_equal_units_are_known_and_the_others_named(monkeypa
 
 
 @pytest.mark.parametrize(
-    "unit", ["{0}", "9**9**9**9", "m**99999999", "m" * 10**4, "exit()", "Ym^9", "m*" * 29, "%s", "dB", "°"]
+    "unit",
+    ["{0}", "9**9**9**9", "m**99999999", "m" * 10**4, "exit()", "Ym^9", "m*" * 29, "%s", "dB", "°", "dBm*m"],
 )
 def test_a_hostile_unit_does_no_harm(unit):
     text = f"input float v [{unit}]  input float x [km]  "
@@ -225,6 +226,13 @@ def test_a_hostile_unit_does_no_harm(unit):
     products = " * ".join(["v", "x"] * 200)
     warnings = rtamt.parse(f"{text} {powers} and {products} > x and v < x and sin(v) < 0").warnings
     assert {each.code for each in warnings} <= {"RT301", "RT302", "RT303"}
+
+
+@pytest.mark.parametrize("formula", ["v < x", "sqrt(g) < x"])
+def test_units_whose_base_unit_is_undefined_were_an_internal_error(formula):
+    text = "input float v [dBm*m]  input float g [g_e]  input float x [m]  "
+    (finding,) = rtamt.parse(text + formula).warnings
+    assert (finding.code, finding.severity) == ("RT303", "note")
 
 
 def test_units_of_imported_declarations_are_checked(tmp_path):
