@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 import rtamt
-from tests.integration.examples.requirement_traces import TRACES, step
+from tests.integration.examples.requirements import TRACES
+from tests.integration.examples.requirements.traces import step
 
 FOLDER = Path(__file__).parents[3] / "examples" / "requirements"
 EACH = [(file, requirement) for file, traces in TRACES.items() for requirement in traces.cases]
