@@ -44,7 +44,7 @@ class Node:
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
         self.outbox = Publisher(monitor.binding, MessageType.load, stamp)
-        self.heard = monitor.wanted = set()  # topics that somebody listens to: nothing is made for the others
+        self.heard = monitor.wanted = set()  # topics with subscribers; the others get no messages
         self.publishers = {topic: self.publisher(topic, cls) for topic, cls in self.outbox.topics.items()}
         self.diagnostics = self.on_diagnostics()
         self.due = 0.0
@@ -52,7 +52,7 @@ class Node:
             rospy.Subscriber(topic, self.outbox.classes[kind], self.receive, topic, tcp_nodelay=True)
 
     def publisher(self, topic, cls):
-        """Return the publisher of a topic, which says when somebody listens."""
+        """Return the publisher of a topic, which keeps track of its subscribers."""
         audience = Audience(topic, self.heard)
         return rospy.Publisher(topic, cls, audience, tcp_nodelay=True, queue_size=QUEUE)
 
@@ -97,7 +97,7 @@ class Node:
         """Sample and publish what is due, then sleep."""
         with self.lock:
             now = rospy.Time.now().to_nsec()
-            if now:  # simulated time is 0 until somebody publishes it
+            if now:  # simulated time is 0 until a node publishes it
                 self.publish(self.monitor.tick(now))
             notices = self.monitor.notices()
             conditions = self.conditions(now, notices)
@@ -126,7 +126,7 @@ class Node:
             self.diagnostics.publish(self.outbox.diagnostics(conditions, rospy.get_name(), now))
 
     def conditions(self, now, notices):
-        """Return the conditions once a second, and when something happened; none where nobody listens."""
+        """Return the conditions once a second, and after events; none without subscribers."""
         if DIAGNOSTICS not in self.heard or not (notices or time.monotonic() >= self.due):
             return []
         self.due = time.monotonic() + DIAGNOSTICS_EVERY
@@ -134,7 +134,7 @@ class Node:
 
 
 class Audience(rospy.SubscribeListener):
-    """Keeps a topic in a set as long as somebody listens to it."""
+    """Keeps a topic in a set while it has subscribers."""
 
     def __init__(self, topic, heard):
         super().__init__()
@@ -142,11 +142,11 @@ class Audience(rospy.SubscribeListener):
         self.heard = heard
 
     def peer_subscribe(self, _name, _to_all, _to_peer):
-        """Hear that somebody listens."""
+        """Note a new subscriber."""
         self.heard.add(self.topic)
 
     def peer_unsubscribe(self, _name, peers):
-        """Hear that somebody listens no longer."""
+        """Note that a subscriber has left."""
         if not peers:
             self.heard.discard(self.topic)
 

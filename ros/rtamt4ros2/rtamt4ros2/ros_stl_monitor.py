@@ -92,7 +92,7 @@ class Monitor(Node):
     def look(self):
         """Look at the clock; say what there is to say."""
         now = self.now()
-        if now:  # simulated time is 0 until somebody publishes it
+        if now:  # simulated time is 0 until a node publishes it
             self.publish(self.monitor.tick(now))
         notices = self.monitor.notices()
         for notice in notices:

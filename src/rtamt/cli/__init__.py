@@ -84,21 +84,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sys.stderr is None:  # closed: what would be said there goes nowhere
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
     if sys.stdout is None:
-        say("rtamt: stdout is closed, so that nobody would see the output; use > /dev/null", file=sys.stderr)
+        say("rtamt: stdout is closed, so that the output would be lost; use > /dev/null", file=sys.stderr)
         return ERROR
     try:
-        return _answer(list(sys.argv[1:] if argv is None else argv))
+        return _exit_code(list(sys.argv[1:] if argv is None else argv))
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        _forget_output()  # nobody reads on, which is no news to them
+        _forget_output()  # the reader has closed the pipe on purpose
     except OSError as error:
         _forget_output()
         complain(f"cannot write the output: {error.strerror}")
     return ERROR
 
 
-def _answer(argv: list[str]) -> int:
+def _exit_code(argv: list[str]) -> int:
     try:
         code = _dispatch(argv)
     except StlError as error:

@@ -285,7 +285,7 @@ class Output:
 class SampleFeed:
     """A monitor with the timestamps of the samples whose robustness is not known yet.
 
-    ``assumed``: whether nobody said how long the period is. A file is read with the period that its timestamps
+    ``assumed``: whether the period is assumed, not set. A file is read with the period that its timestamps
     have, which a stream shows too late: the timestamps must then be what is assumed, and not merely near it.
     """
 

@@ -147,7 +147,7 @@ class StlDenseTimeOfflineSpecification(ExplainedSpecification, DenseTimeSpecific
             return None, []
         recording = record_dense(held, read, NANOSECOND, scale=scale)
         whole = all(all_integers(times) for times, _ in held.values())
-        return recording, points_of(signal(self._worth(part), recording), whole)
+        return recording, points_of(signal(self._under_semantics(part), recording), whole)
 
 
 class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecification):
@@ -291,7 +291,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
                 f"'{canonical(part, limit=EXCERPT)}' is no part of what is watched: the result, and past "
                 f"assertions that read no other variables; evaluate the finished signals offline"
             )
-        return points_of(part_of(self._require_monitor(), self._worth(part)), self._whole)
+        return points_of(part_of(self._require_monitor(), self._under_semantics(part)), self._whole)
 
     def _start_over(self, formulas: dict[str, Formula]) -> None:
         super()._start_over(formulas)

@@ -128,7 +128,7 @@ class StlDiscreteTimeOfflineSpecification(ExplainedSpecification, DiscreteTimeSp
         return result
 
     def _values_over(self, trace: DiscreteTrace, part: Formula) -> list[float]:
-        values: list[float] = signal(self._worth(part), trace).values.tolist()
+        values: list[float] = signal(self._under_semantics(part), trace).values.tolist()
         return values
 
     def _trace(self, dataset: Any) -> tuple[arrays.FloatArray, DiscreteTrace]:

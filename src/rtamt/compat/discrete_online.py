@@ -209,7 +209,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         return self._shared and self._objects[name] is not self._seen.get(name)
 
     def _latest(self, part: Formula) -> float:
-        return self._require_stream().latest(self._worth(part))
+        return self._require_stream().latest(self._under_semantics(part))
 
     def _collect(self) -> None:
         """Bring var_object_dict up to date with the updates on the fast path."""

@@ -120,7 +120,7 @@ class Formulas(Declarations):
         """Return the formula whose robustness is the value of ``formula`` under the semantics."""
         return apply_semantics(formula, semantics_of(self._semantics), self.var_io_dict)
 
-    def _worth(self, part: Formula) -> Formula:
+    def _under_semantics(self, part: Formula) -> Formula:
         """Return the formula whose robustness is the value of a part of the specification.
 
         Numbers have their ordinary value under every semantics, and conditions are true or false.

@@ -50,7 +50,7 @@ def _open(url: str, query: str) -> Source:
         stack.callback(engine.dispose)
         connection = stack.enter_context(engine.connect())
         streaming = connection.execution_options(stream_results=True, yield_per=CHUNK)
-        # What looks like a parameter (:name) is part of the query: nobody gives values for it.
+        # What looks like a parameter (:name) is part of the query, and has no value.
         result = streaming.execute(sqlalchemy.text(query.replace(":", r"\:")))
         if not result.returns_rows:
             raise TraceError(f"the query on '{shown(url)}' returns no rows; give a SELECT")

@@ -33,7 +33,7 @@ CATCH_UP = 10_000
 SKEW = 10**9
 #: The longest pause between two reads of the clock in seconds; bounds the delay until silence is noticed.
 PAUSE = 0.1
-_NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
+_NO_CLOCK = "simulated time has not begun: no node publishes /clock"
 
 
 class RosMonitor:

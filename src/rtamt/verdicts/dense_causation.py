@@ -55,7 +55,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
-            scale, tick, known = self._lessons(time, values)
+            scale, tick, known = self._observed(time, values)
             self._check_in_order(tick, scale, known)
             if tick <= self._backend.closed:
                 final = f"what was up to {scale.show(self._backend.closed)} is final"
@@ -67,8 +67,8 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
                 )
             return self._event(lambda: self._backend.learn(tick, self._row_of(known), self.samples), scale)
 
-    def _lessons(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
-        scale, tick, known = super()._lessons(time, values)
+    def _observed(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
+        scale, tick, known = super()._observed(time, values)
         for name, bounds in known.items():
             if bounds is None or bounds[0] != bounds[1]:
                 count = self._backend.counts[self._inputs.index(name)]

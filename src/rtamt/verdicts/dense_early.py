@@ -148,7 +148,7 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     # ---- samples ---------------------------------------------------------------------------------
 
-    def _lessons(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
+    def _observed(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
         """Return a checked sample: the time scale after it, its tick, and what is known of some variables."""
         flat = self._read_by_formula(values)
         if self._finished:
@@ -234,7 +234,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
-            scale, tick, known = self._lessons(time, values)
+            scale, tick, known = self._observed(time, values)
             self._check_in_order(tick, scale, known)
             try:
                 self._backend.learn(tick, self._row_of(known), self.samples)

@@ -107,7 +107,7 @@ class _Ticks(Watch):
         push_tick(self._verdicts, position, mine)
         if len(self._firsts) < len(self.names):
             return False
-        return self._look(self._runs(i, self.start) for i in range(len(self._parts)))
+        return self._update(self._runs(i, self.start) for i in range(len(self._parts)))
 
     def _runs(self, output: int, start: int) -> Iterator[tuple[int, int, bool]]:
         for begin, end, satisfied, _ in decided_ticks(self._verdicts, output):

@@ -58,7 +58,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         self._ended: tuple[tuple[Run, ...], ...] = ()
 
     def _take(self, time: Any, values: dict[str, Any]) -> None:
-        scale, tick, known = self._lessons(time, values)
+        scale, tick, known = self._observed(time, values)
         if self._late is None:
             self._check_in_order(tick, scale, known)
         self._check_open(tick, scale)

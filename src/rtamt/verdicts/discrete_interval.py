@@ -75,14 +75,14 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 continue
             ahead = max(place - backend.newest, 0)
             time = backend.time(place - ahead) + ahead * float(self._step)
-            lessons = tuple((k, 0.0, 0.0) for k in open_here)
-            backend.learn(time, list(lessons), backend.samples)
+            observations = tuple((k, 0.0, 0.0) for k in open_here)
+            backend.learn(time, list(observations), backend.samples)
             self._filled += 1
             for output in range(len(self._outputs)):
                 changed = (*self._noted.get(output, ()), *backend.changes(output))
                 self._noted = {**self._noted, output: changed}
             if self._replays:
-                self._events = (*self._events, (time, place, lessons))
+                self._events = (*self._events, (time, place, observations))
 
     @property
     def _count(self) -> int:

@@ -240,7 +240,7 @@ class Watch(ABC):
     def _interval(self) -> Interval:
         """Return the bounds of the robustness at the start."""
 
-    def _look(self, runs: Iterable[Iterable[tuple[int, int, bool]]]) -> bool:
+    def _update(self, runs: Iterable[Iterable[tuple[int, int, bool]]]) -> bool:
         """Take what was decided of each part; return whether everything is, and where it is violated first."""
         for part, each in zip(self._parts, runs, strict=True):
             part.take(each)
@@ -269,7 +269,7 @@ class _Samples(Watch):
         self._bounds.update(time, **mine)
         found = [self._verdicts.update(time, **mine)]
         found += [self._verdicts[watched.name] for watched in self._watched]
-        return self._look(map(self._runs, found))
+        return self._update(map(self._runs, found))
 
     def _runs(self, verdicts: Iterable[Verdict]) -> Iterator[tuple[int, int, bool]]:
         for verdict in verdicts:

@@ -134,14 +134,14 @@ class IntervalMonitor(EarlyMonitor):
     def _learn(self, time: float, known: Mapping[str, tuple[float, float] | None]) -> None:
         """Take a sample in whatever order; replay the trace from before where it corrects an earlier one."""
         place = self._backend.place(time)
-        lessons, wrong = [], []
+        observations, wrong = [], []
         for name, bounds in known.items():
             if bounds is None:
                 continue
             number = self._inputs.index(name)
             low, high = self._backend.known(number, place)
             if low <= bounds[0] and bounds[1] <= high:
-                lessons.append((number, *bounds))
+                observations.append((number, *bounds))
             elif bounds[0] <= low and high <= bounds[1] and (low, high) != self._known_ranges()[number]:
                 continue  # less precise than what is known
             else:
@@ -155,14 +155,14 @@ class IntervalMonitor(EarlyMonitor):
                     )
         self._settle_presence(place)
         if wrong:
-            self._replay(time, place, [*lessons, *wrong])
+            self._replay(time, place, [*observations, *wrong])
             return
         if self._replays:
             self._keep_snapshot()
-        self._backend.learn(time, lessons, self._backend.samples)
+        self._backend.learn(time, observations, self._backend.samples)
         self._retracted = None
         if self._replays:
-            self._events = (*self._events, (time, place, tuple(lessons)))
+            self._events = (*self._events, (time, place, tuple(observations)))
 
     def _settle_presence(self, place: int) -> None:
         """Before a sample makes others final: variables without a sample there have none."""
@@ -179,16 +179,16 @@ class IntervalMonitor(EarlyMonitor):
         self._events = self._events[first:]
         self._snapshots = tuple((newest, count - first, state) for newest, count, state in kept)
 
-    def _replay(self, time: float, place: int, lessons: list[tuple[int, float, float]]) -> None:
+    def _replay(self, time: float, place: int, observations: list[tuple[int, float, float]]) -> None:
         before = self._backend
-        corrected = {number for number, _, _ in lessons}
+        corrected = {number for number, _, _ in observations}
         usable = [each for each in self._snapshots if each[0] < place]
         _, first, state = usable[-1]
         events = list(self._events[:first])
         for then, there, taken in self._events[first:]:
             kept = tuple(lesson for lesson in taken if there != place or lesson[0] not in corrected)
             events.append((then, there, kept))
-        events.append((time, place, tuple(lessons)))
+        events.append((time, place, tuple(observations)))
         backend = self._session.open()
         backend.restore(state)
         for then, _, taken in events[first:]:

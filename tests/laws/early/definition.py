@@ -101,13 +101,13 @@ class _Intervals(_Discrete):
 class _Eager(_Discrete):
     def update(self, t: int, **values: Any) -> list[Verdict]:
         self._take(t, values)
-        return self._told()
+        return self._reported()
 
     def finish(self) -> list[Verdict]:
         self._finished = True
-        return self._told()
+        return self._reported()
 
-    def _told(self) -> list[Verdict]:
+    def _reported(self) -> list[Verdict]:
         return [Verdict(*each) for each in earliest.verdicts(self._formula, self.known, PERIOD)[-1]]
 
 
@@ -215,17 +215,17 @@ class _DenseIntervals(_Dense):
 class _DenseEager(_Dense):
     def update(self, t: int, **values: Any) -> list[VerdictRun]:
         self._take(t, values)
-        return self._told()
+        return self._reported()
 
     def finish(self) -> list[VerdictRun]:
         self._finished = True
-        return self._told()
+        return self._reported()
 
-    def _told(self) -> list[VerdictRun]:
-        told = earliest.dense_verdicts(
+    def _reported(self) -> list[VerdictRun]:
+        found = earliest.dense_verdicts(
             self._formula, self._updates, self._names, TICK, self._ranges, finished=self._finished
         )
-        return [VerdictRun(*run) for run in earliest.runs(told[-1])]
+        return [VerdictRun(*run) for run in earliest.runs(found[-1])]
 
 
 class _DenseCauses(_DenseIntervals):
@@ -235,17 +235,17 @@ class _DenseCauses(_DenseIntervals):
         super().__init__(formula, variables(formula), {})
         self._last: list[Causation] | None = None
 
-    def update(self, t: int, **values: Any) -> Causation:  # type: ignore[override]
+    def update(self, t: int, **values: Any) -> Causation:
         before = self._known
         self._take(t, values)
         return self._look(before)
 
-    def watermark(self, t: int) -> Causation:  # type: ignore[override]
+    def watermark(self, t: int) -> Causation:
         before = self._known
         self._mark = t if self._mark is None else max(t, self._mark)
         return self._look(before)
 
-    def finish(self) -> Causation:  # type: ignore[override]
+    def finish(self) -> Causation:
         before = self._known
         self._finished = True
         return self._look(before)

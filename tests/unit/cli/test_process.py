@@ -88,7 +88,7 @@ def shell(command, folder):
     return [int(code) for code in codes.read_text().split()], done.stdout, done.stderr
 
 
-CLOSED = b"rtamt: stdout is closed, so that nobody would see the output; use > /dev/null\n"
+CLOSED = b"rtamt: stdout is closed, so that the output would be lost; use > /dev/null\n"
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from rtamt.ros import Robustness, RosMonitor, bind
 
 SECOND = 10**9
 #: What is said of messages that arrive at 0, which is a simulated clock that nobody has set.
-NO_CLOCK = "simulated time has not begun: nobody publishes /clock"
+NO_CLOCK = "simulated time has not begun: no node publishes /clock"
 HEAD = """
 from rtamt_msgs.msg import FloatStamped
 input FloatStamped req  output FloatStamped gnt  output FloatStamped rob  output FloatStamped all

@@ -52,7 +52,7 @@ class PythonEarlyMonitor:
         self._reported: list[dict[int, Any]] = [{} for _ in self._outputs]
         # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
         self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
-        self._news: list[list[Any]] = [[] for _ in self._outputs]
+        self._reports: list[list[Any]] = [[] for _ in self._outputs]
 
     @property
     def state_bytes(self) -> int:
@@ -81,8 +81,8 @@ class PythonEarlyMonitor:
         late = 0 if self._lateness is None else self._lateness + 1
         self.closed = max(self.closed, self.newest - late)
         try:
-            self._look()
-            return self._answer()
+            self._compute()
+            return self._result()
         except BaseException:
             self.restore(before)
             raise
@@ -100,12 +100,12 @@ class PythonEarlyMonitor:
         start = self._times[0] if self._times else 0.0
         return bounds(formula, self._knowledge(), self._period, start)
 
-    def _look(self) -> None:
-        """See what the last sample has made known of each output, up to the newest sample."""
+    def _compute(self) -> None:
+        """Compute what the last sample made known of each output, up to the newest sample."""
         self._found = [self._bounds(formula) for formula in self._outputs]
         if self._start not in self._outputs:
             self._bounds(self._start)  # which fails where an operation has no value
-        self._news = [
+        self._reports = [
             self._verdicts(i) if self._verdict else self._changes(i) for i in range(len(self._outputs))
         ]
 
@@ -145,7 +145,7 @@ class PythonEarlyMonitor:
                 news.append((sample, sample, *pair))
         return news
 
-    def _answer(self) -> Any:
+    def _result(self) -> Any:
         if self._causes:
             return Causation(*self.causation_at_start())
         return self.verdicts(0) if self._verdict else None
@@ -174,8 +174,8 @@ class PythonEarlyMonitor:
         """End the trace; return what that makes known."""
         self.finished = True
         if self._verdict:
-            self._look()
-            return self._answer()
+            self._compute()
+            return self._result()
         rest = []
         for formula in self._outputs:
             found = self._bounds(formula)
@@ -186,7 +186,7 @@ class PythonEarlyMonitor:
     def verdicts(self, output: int) -> list[Any]:
         """The verdicts of an output that the last call decided."""
         assert self._verdict is not None
-        return [self._verdict(self.time(t), holds, self.time(at)) for t, holds, at in self._news[output]]
+        return [self._verdict(self.time(t), holds, self.time(at)) for t, holds, at in self._reports[output]]
 
     def origin(self) -> Pair:
         """The bounds at the start of the trace."""
@@ -221,7 +221,7 @@ class PythonEarlyMonitor:
 
     def changes(self, output: int) -> list[Any]:
         """Runs (first, last, lower, upper) that the last call changed."""
-        return self._news[output]
+        return self._reports[output]
 
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""
@@ -261,7 +261,7 @@ class PythonEarlyMonitor:
             "finished",
             "_reported",
             "_decided",
-            "_news",
+            "_reports",
         )
         return pickle.dumps({name: getattr(self, name) for name in kept})
 

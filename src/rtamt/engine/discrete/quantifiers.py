@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _REMEMBER = 64
 
 
-class _News:
+class _NewValues:
     """What several samples make known of each formula: of the result (None), and of those that are watched."""
 
     def __init__(self, names: Sequence[Any]) -> None:
@@ -182,7 +182,7 @@ class MemberMonitor:
             for name, column in columns.items():
                 arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         before = self._state()
-        known = _News(self._watched)
+        known = _NewValues(self._watched)
         try:
             for i in range(n):
                 numbers = {name: float(columns[name][i]) for name in self.input_names}
@@ -200,10 +200,10 @@ class MemberMonitor:
             return Signal(np.empty(0), np.empty(0))
         samples = self.samples
         numbers = dict.fromkeys(self.input_names, 1.0)
-        known = _News(self._watched)
-        nobody: dict[str, dict[str, Sample]] = {name: {} for name in self._fields}
+        known = _NewValues(self._watched)
+        absent: dict[str, dict[str, Sample]] = {name: {} for name in self._fields}
         for _ in range(self._late if samples else 0):
-            known.note(self._advance(self._next_time(), numbers, nobody, running=0.0), self._outer)
+            known.note(self._advance(self._next_time(), numbers, absent, running=0.0), self._outer)
         last = self._outer._recent(self._late + 1)[0] if samples else None
         known.end(self._outer.finish(), self._outer)
         self._finished = True
