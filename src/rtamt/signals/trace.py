@@ -317,8 +317,8 @@ class Trace(Clocked):
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
         earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
-        left out and listed in :attr:`losses`. ``hold_for``: the maximum age of a held value; an older one is an
-        error.
+        left out and listed in :attr:`losses`. A time that the rounding of a double puts just behind an instant, such
+        as 3 * 0.1 s, counts as that instant. ``hold_for``: the maximum age of a held value; an older one is an error.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
