@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -88,6 +88,10 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/early.py 100000 dense
 	$(RUN) benchmarks/stream.py
 	$(RUN) benchmarks/packs.py
+	$(RUN) benchmarks/instructions.py
+
+budget: $(VENV)/.core ## record the instructions of the hot paths, which a test compares: benchmarks/budget.toml
+	$(RUN) benchmarks/instructions.py --renew
 
 peers: $(VENV)/.made ## install the tools that we are compared with, each into an environment of its own
 	@tools/apt-packages flex bison libfl-dev || echo "A tool whose build needs them is left out."
@@ -142,6 +146,8 @@ PACKAGES := postgresql chromium zsh fish pkg-config
 # ROS 1: master, rospy, bags, and what builds the workspace in ros/.
 PACKAGES += ros-core catkin rosbash python3-rosbag python3-rospkg python3-genpy ros-message-generation
 PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-geometry-msgs python3-diagnostic-msgs
+# The hot paths' instructions are counted.
+PACKAGES += valgrind
 # Octave, in which the block for Simulink runs, and what builds its gateway.
 PACKAGES += octave octave-dev
 $(VENV)/.apt: Makefile tools/apt-packages $(VENV)/.made

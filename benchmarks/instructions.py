@@ -1,0 +1,412 @@
+"""Instructions of the hot paths, counted by callgrind, beside those that benchmarks/budget.toml grants.
+
+    python benchmarks/instructions.py            # print the table; exit code 1 where a path exceeds its budget
+    python benchmarks/instructions.py --renew    # `make budget`: write the budget for this compiler and this Python
+
+Counts depend neither on the machine nor on its load, since valgrind presents the same processor everywhere. They depend
+on the compiler and on Python: the file has a table for each pair. Each path runs with N and with 2N repetitions in one
+process; the difference is what N of them need, without start-up. The libraries of C and of numpy are left out: their
+versions are not ours to choose, and what the allocator does depends on the length of the environment.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import gc
+import json
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import rtamt
+from rtamt.compiler.plan import compile_program
+from rtamt.engine.native import core
+from rtamt.language.parsing.parser import parse_formula
+from rtamt.rewrite.desugar import desugar
+from rtamt.signals.dense import Dense
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+HERE = Path(__file__).parent
+BUDGET = HERE / "budget.toml"
+#: What a path may need beyond its budget.
+ALLOWANCE = 0.05
+#: Programs that counting needs.
+TOOLS = ("valgrind", "cc")
+#: Libraries whose instructions are not counted, by a part of their paths.
+FOREIGN = ("/numpy/", "/numpy.libs/", "/libc.so", "/libm.so", "/ld-linux")
+
+TWO = "always[0:1000](a + b >= -2)"
+#: 900 characters, as a requirement of a large project may have.
+LONG = " and ".join(["always[0:5]((req >= 3) -> eventually[0:5](gnt >= 3))"] * 16)
+
+
+def noise(n: int, names: str = "ab") -> dict[str, np.ndarray]:
+    """Return n samples of each signal, the same in every run."""
+    random = np.random.default_rng(1)
+    return {name: random.normal(size=n) for name in names}
+
+
+# ---- paths: each is prepared once and returns a function that repeats it n times ---------------
+
+
+def keyword_update() -> Callable[[int], None]:
+    """``monitor.update(t, a=x, b=y)``."""
+    update = rtamt.parse(TWO).monitor().update
+    time = iter(range(10**9))
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            update(next(time), a=1.0, b=2.0)
+
+    return run
+
+
+def typed_update() -> Callable[[int], None]:
+    """``monitor.update(t, mode="AUTO", p=True)``."""
+    text = "enum Mode { MANUAL, AUTO = 4 } input Mode mode input bool p always[0:10](p -> mode == AUTO)"
+    update = rtamt.parse(text).monitor().update
+    time = iter(range(10**9))
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            update(next(time), mode="AUTO", p=True)
+
+    return run
+
+
+def step() -> Callable[[int], None]:
+    """``monitor.step(x, y)``."""
+    method = rtamt.parse(TWO).monitor().step
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            method(1.0, 2.0)
+
+    return run
+
+
+def paper_update() -> Callable[[int], None]:
+    """``update(t, [('a', x), ('b', y)])`` of the class of RTAMT's API."""
+    spec = rtamt.StlDiscreteTimeOnlineSpecification()
+    spec.declare_var("a", "float")
+    spec.declare_var("b", "float")
+    spec.spec = TWO
+    spec.parse()
+    spec.pastify()
+    update = spec.update
+    time = iter(range(10**9))
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            update(next(time), [("a", 1.0), ("b", 2.0)])
+
+    return run
+
+
+def watched_update(**settings: str) -> Callable[[], Callable[[int], None]]:
+    """``update(t, x=v)`` of a mode or time domain, over noise."""
+
+    def prepare() -> Callable[[int], None]:
+        update = rtamt.parse("always[0:100](x >= 2 -> eventually[0:100](x >= 1))").monitor(**settings).update
+        samples = enumerate(np.tile(noise(2000, "x")["x"], 10).tolist())
+
+        def run(n: int) -> None:
+            for _ in range(n):
+                time, value = next(samples)
+                update(time, x=value)
+
+        return run
+
+    return prepare
+
+
+def update_many() -> Callable[[int], None]:
+    """``monitor.update_many`` of chunks of 100 samples."""
+    method = rtamt.parse(TWO).monitor().update_many
+    data = noise(100)
+    time = iter(range(0, 10**9, 100))
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            first = next(time)
+            method({**data, "time": np.arange(first, first + 100.0)})
+
+    return run
+
+
+def evaluate(samples: int) -> Callable[[], Callable[[int], None]]:
+    """``spec.evaluate`` of arrays."""
+
+    def prepare() -> Callable[[int], None]:
+        spec, data = rtamt.parse(TWO), noise(samples)
+
+        def run(n: int) -> None:
+            for _ in range(n):
+                spec.evaluate(data)
+
+        return run
+
+    return prepare
+
+
+def evaluate_batch() -> Callable[[int], None]:
+    """``rtamt.evaluate_batch`` of 100 traces of 100 samples, a trace."""
+    spec, traces = rtamt.parse(TWO), [noise(100)] * 100
+
+    def run(n: int) -> None:
+        for _ in range(n // 100):
+            rtamt.evaluate_batch(spec, traces, workers=1)
+
+    return run
+
+
+def parse_and_monitor() -> Callable[[int], None]:
+    """``rtamt.parse(text).monitor()``."""
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            rtamt.parse(TWO).monitor()
+
+    return run
+
+
+def parse() -> Callable[[int], None]:
+    """Parse a formula of 900 characters."""
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            parse_formula(LONG)
+
+    return run
+
+
+def offline(text: str) -> Callable[[], Callable[[int], None]]:
+    """Evaluate a formula in the core over n samples: a sample."""
+
+    def prepare() -> Callable[[int], None]:
+        data = noise(10_000)
+        program = compile_program((desugar(parse_formula(text)),), Fraction(1), clip=10_000)
+        code, inputs = program.to_bytes(), [data[name] for name in program.inputs]
+        call = core().evaluate
+
+        def run(n: int) -> None:
+            for _ in range(n // 10_000):
+                call(code, inputs, 10_000)
+
+        return run
+
+    return prepare
+
+
+def dense_offline(text: str) -> Callable[[], Callable[[int], None]]:
+    """Evaluate a formula in dense time in the core over n events a variable: an event of all variables."""
+
+    def prepare() -> Callable[[int], None]:
+        random = np.random.default_rng(1)
+        program = compile_program((desugar(parse_formula(text)),), Fraction(1, 10**9), domain=Dense)
+        code = program.to_bytes()
+        columns = [
+            (np.cumsum(random.integers(1, 2 * 10**8, size=10_000)), random.normal(size=10_000))
+            for _ in program.inputs
+        ]
+        call = core().dense_evaluate
+
+        def run(n: int) -> None:
+            for _ in range(n // 10_000):
+                call(code, columns)
+
+        return run
+
+    return prepare
+
+
+#: Each path by its name: how many repetitions are counted, and what prepares it.
+PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
+    "update(t, a=x, b=y)": (400, keyword_update),
+    "update(t, mode='AUTO', p=True)": (400, typed_update),
+    "step(x, y)": (400, step),
+    "update(t, pairs), paper's API": (400, paper_update),
+    "update(t, x=v), dense time": (400, watched_update(time="dense")),
+    "update(t, x=v), eager": (400, watched_update(verdict="eager")),
+    "update(t, x=v), interval at start": (400, watched_update(verdict="interval", at="start")),
+    "update(t, x=v), interval at every sample": (400, watched_update(verdict="interval", at="every")),
+    "update_many, 100 samples": (20, update_many),
+    "evaluate, 100 samples": (20, evaluate(100)),
+    "evaluate, 10000 samples": (4, evaluate(10_000)),
+    "evaluate_batch, a trace of 100 samples": (100, evaluate_batch),
+    "parse and monitor": (4, parse_and_monitor),
+    "parse 900 characters": (2, parse),
+    **{
+        f"core, a sample: {text}": (10_000, offline(text))
+        for text in (
+            "a + b >= -2 and a - b <= 3",
+            "always[0:10](a + b >= -2)",
+            "always[0:1000](a + b >= -2)",
+            "a until[0:100] b",
+            "a since[1:100] b",
+            "sum[0:100](a) >= b",
+        )
+    },
+    **{
+        f"core, dense, an event: {text}": (10_000, dense_offline(text))
+        for text in ("a >= 0", "always[0:5](a >= 0)", "a since[0:100] b", "a until[0:100] b")
+    },
+}
+
+
+# ---- counting: this file runs itself below valgrind --------------------------------------------
+
+
+def run_paths(library: str) -> None:
+    """Run each path with N and with 2N repetitions; each ends with a dump of counts."""
+    marks = ctypes.CDLL(library)
+    gc.disable()  # what a collection visits depends on all that was done before
+    for repetitions, prepare in PATHS.values():
+        run = prepare()
+        run(repetitions)
+        marks.start_counting()
+        for factor in (1, 2):
+            marks.forget()
+            run(factor * repetitions)
+            marks.write_counts(str(factor).encode())
+        marks.stop_counting()
+
+
+def count() -> dict[str, float]:
+    """Return the instructions of one repetition of each path."""
+    valgrind, cc = map(shutil.which, TOOLS)
+    if valgrind is None or cc is None:
+        raise SystemExit(
+            f"error: {' or '.join(TOOLS)} was not found; as root on Debian: apt-get install valgrind gcc"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        library = f"{folder}/callgrind.so"
+        subprocess.run([cc, "-O2", "-shared", "-fPIC", "-o", library, str(HERE / "callgrind.c")], check=True)
+        subprocess.run(
+            [
+                *(valgrind, "--quiet", "--tool=callgrind", "--instr-atstart=no", "--compress-strings=no"),
+                f"--callgrind-out-file={folder}/counts",
+                *(sys.executable, __file__, "--below-valgrind", library),
+            ],
+            check=True,
+            env={**os.environ, "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"},
+        )
+        found = {}
+        for number, (name, (repetitions, _)) in enumerate(PATHS.items()):
+            once, twice = (counted(Path(f"{folder}/counts.{2 * number + dump}")) for dump in (1, 2))
+            found[name] = (twice - once) / repetitions
+    return found
+
+
+def counted(dump: Path) -> int:
+    """Return the instructions of a dump, without those of foreign libraries."""
+    total = 0
+    ours = called = False
+    for line in dump.read_text().splitlines():
+        if line.startswith("ob="):
+            ours = not any(part in line for part in FOREIGN)
+        elif line.startswith("calls="):
+            called = True  # the next line repeats what is counted where it was executed
+        elif line[:1] in "0123456789+-*":
+            cost = line.split()[1:]
+            if cost and ours and not called:
+                total += int(cost[0])
+            called = False
+    return total
+
+
+# ---- the budget ----------------------------------------------------------------------------------
+
+
+def environment() -> str:
+    """Return what the counts depend on: the compiler of the core, and Python."""
+    compiler = re.search(
+        rb"(GCC): [^\0]*?([\d.]+)\0|(clang) version ([\d.]+)", Path(core().__file__).read_bytes()
+    )
+    named = b" ".join(filter(None, compiler.groups())).decode() if compiler else "unknown compiler"
+    return f"{named}, {platform.python_implementation()} {platform.python_version()}"
+
+
+def budgets() -> dict[str, dict[str, float]]:
+    """Return the budgets of each environment."""
+    return tomllib.loads(BUDGET.read_text(encoding="utf-8")) if BUDGET.exists() else {}
+
+
+def renew(found: Mapping[str, float]) -> None:
+    """Write what was counted as the budget of this environment."""
+    tables = {**budgets(), environment(): found}
+    lines = [
+        "# Instructions of one repetition of each hot path, by compiler and Python. Renewed by `make budget`.",
+        f"# A path that needs {ALLOWANCE:.0%} more fails tests/unit/test_instruction_budget.py.",
+    ]
+    for name in sorted(tables):
+        lines += ["", f"[{json.dumps(name)}]"]
+        lines += [f"{json.dumps(path)} = {counted_as(value)}" for path, value in tables[name].items()]
+    BUDGET.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def counted_as(value: float) -> str:
+    """Write a count with as many digits as can be compared."""
+    return f"{value:.1f}" if value < 1000 else f"{value:.0f}"
+
+
+def over_budget(found: Mapping[str, float], budget: Mapping[str, float]) -> list[str]:
+    """Return a sentence for each path that exceeds its budget or has none."""
+    faults = [
+        f"{path}: {counted_as(value)} instructions, {value / budget[path] - 1:.1%} over its budget of {budget[path]}"
+        for path, value in found.items()
+        if path in budget and value > (1 + ALLOWANCE) * budget[path]
+    ]
+    if set(found) != set(budget):
+        changed = ", ".join(sorted(set(found) ^ set(budget)))
+        faults.append(f"the measured paths and those of the budget differ: {changed}")
+    return faults
+
+
+def main() -> int:
+    """Count, print and compare; return the exit code."""
+    parser = argparse.ArgumentParser(description="instructions of the hot paths beside their budgets")
+    parser.add_argument("--renew", action="store_true", help="write the budget of this compiler and Python")
+    parser.add_argument("--below-valgrind", metavar="LIBRARY", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.below_valgrind:
+        run_paths(options.below_valgrind)
+        return 0
+    found = count()
+    budget = budgets().get(environment(), {})
+    print(f"{environment():50} {'instructions':>12} {'budget':>10} {'of it':>6}")
+    for path, value in found.items():
+        granted = budget.get(path)
+        ratio = f"{granted:>10} {value / granted:6.3f}" if granted else ""
+        print(f"{path:50} {counted_as(value):>12} {ratio}".rstrip())
+    if options.renew:
+        renew(found)
+        return 0
+    faults = over_budget(found, budget)
+    if faults:
+        print(
+            f"error: {'; '.join(faults)}. Make the path cheaper, or justify the cost and run `make budget`.",
+            file=sys.stderr,
+        )
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
