@@ -11,6 +11,8 @@ from typing import Any
 
 FOLDER = Path(__file__).parent / "corpus"
 FILES = ("corners.jsonl", "discrete.jsonl", "dense.jsonl")
+#: Cases of groups, whose members appear and disappear.
+QUANTIFIED = "quantified.jsonl"
 
 SEMANTICS = (
     "standard",

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 import rtamt
-from conformance import cases, corners, early
+from conformance import cases, corners, early, quantified
 from conformance.cases import SEMANTICS, Case
 from conformance.trees import in_steps, table_of, tree
 from rtamt.errors import EvaluationError
@@ -186,10 +186,11 @@ def answered(case: Case, backend: str = "python") -> Case:
 
 def known_until(case: Case, now: int, depth: int) -> int | None:
     """Return up to when the answer is known once all samples up to ``now`` have come."""
-    firsts = [samples[0][0] for samples in case.signals.values()]
+    signals = [samples for name, samples in case.signals.items() if "." not in name]  # members move nothing
+    firsts = [samples[0][0] for samples in signals]
     if max(firsts) > now:
         return None
-    until = min(max(t for t, _ in samples if t <= now) for samples in case.signals.values()) - depth
+    until = min(max(t for t, _ in samples if t <= now) for samples in signals) - depth
     return until if until >= max(firsts) else None
 
 
@@ -271,6 +272,7 @@ def main() -> None:
                 sys.stderr.write(f"\r{time}: {k} of {len(todo)} cases")
         sys.stderr.write(f"\r{time}: {len(todo)} cases       \n")
         cases.write(f"{time}.jsonl", made)
+    cases.write(cases.QUANTIFIED, list(quantified.cases(Drawing, answered, STEPS, SEED)))
     early.write(list(early.cases(Drawing, STEPS, SEED)))
 
 

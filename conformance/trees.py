@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold
+from rtamt.language.quantifiers import FieldOf
 from rtamt.language.shares import Share, ShareKind
 from rtamt.language.tables import Table
 from rtamt.rewrite.ground import ground
@@ -46,6 +47,8 @@ def table_of(op: Operator) -> Table | None:
 
 
 def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
+    if isinstance(node, FieldOf):
+        return {"field": node.field, "of": node.variable}
     if isinstance(node, Var):
         return {"var": node.name}
     if isinstance(node, Const):
@@ -55,6 +58,13 @@ def _node(node: Formula, args: tuple[Any, ...]) -> dict[str, Any]:
     ends = None if bounds is None else [int(bounds.begin), None if bounds.end is None else int(bounds.end)]
     table = table_of(node.op)
     whole = {"op": node.op.name if table is None else "table", "args": list(args), "interval": ends}
+    if node.op.binder is not None:
+        binder = node.op.binder
+        whole |= {
+            "member": binder.variable,
+            "group": binder.group.name,
+            "apart": list(map(list, binder.apart)),
+        }
     if table is not None:
         whole["points"] = [list(point) for point in zip(table.xs, table.ys, strict=True)]
     if bounds is not None and bounds.share is not None:

@@ -240,12 +240,21 @@ class SpecificationText:
     @cached_property
     def input_names(self) -> tuple[str, ...]:
         """The variables that the formula (or any of several requirements) reads, in order of appearance."""
-        return variables(self.formula)
+        names = variables(self.formula)
+        if self.resolved is None:
+            return names
+        # Over few members, no pair of them may be left to read what starts and ends the trace.
+        names = tuple(dict.fromkeys((*names, *self.resolved[0].input_names)))
+        return names or tuple(each.name for each in self.document.declarations if each.kind == "var")
 
     @cached_property
     def types(self) -> Mapping[str, ValueType]:
         """The types of those variables of the formula that are Booleans or enumerations."""
-        return MappingProxyType(types_of(self.formula))
+        found = types_of(self.formula)
+        if self.resolved is not None:
+            declared = self.document.types
+            found |= {name: declared[name] for name in self.input_names if name in declared}
+        return MappingProxyType(found)
 
     @property
     def horizon(self) -> float:

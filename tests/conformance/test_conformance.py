@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 from conformance import cases
 from conformance.generate import ALONE, data_of, ticks_of
+from conformance.quantified import CARS
 from conformance.trees import table_of
 
 import rtamt
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity
 from rtamt.language.parsing import parser
+from rtamt.language.quantifiers import Binder, FieldOf, quantified
 from rtamt.language.shares import Share, ShareKind
 from rtamt.language.tables import Table, table_operator
 from rtamt.language.unwritten import UNWRITTEN
@@ -181,10 +183,9 @@ def test_online_sample_by_sample(part: int, backend: str) -> None:
 
 def one_after_another(case: Case, monitor: Any, data: dict[str, Any]) -> None:
     assert case.known is not None
-    names = monitor.input_names
     values = []
     for i, time in enumerate(data["time"]):
-        value = monitor.update(time, **{name: data[name][i] for name in names})
+        value = monitor.update(time, **{name: data[name][i] for name in case.signals})
         assert (value is not None) == (i in case.known), f"{case.id}: sample {i}"
         values += [] if value is None else [value]
     values += monitor.finish().values.tolist()
@@ -247,6 +248,9 @@ def formula_of(tree: dict[str, Any], step: Fraction) -> Formula:
         return Var(tree["var"])
     if "const" in tree:
         return Const(tree["const"])
+    if "field" in tree:
+        variable, field = tree["of"], tree["field"]
+        return FieldOf(f"{variable}.{field}", None, None, variable, field, CARS)
     interval = None
     if tree["interval"] is not None:
         begin, end = tree["interval"]
@@ -255,6 +259,9 @@ def formula_of(tree: dict[str, Any], step: Fraction) -> Formula:
             kind, amount = ShareKind(tree["share"][0]), Fraction(tree["share"][1])
             share = Share(amount * step if kind is ShareKind.DURATION else amount, kind)
         interval = Interval(begin * step, None if end is None else end * step, share=share)
+    if "member" in tree:
+        binder = Binder(tree["member"], CARS, tuple(map(tuple, tree["apart"])))
+        return quantified(tree["op"], binder)(formula_of(tree["args"][0], step))
     if "points" in tree:
         xs, ys = zip(*tree["points"], strict=True)
         op = table_operator("curve", Table(xs, ys))

@@ -229,3 +229,11 @@ def test_rtamts_classes_reject_groups():
     spec.spec = 'group cars = "car_*"; out = forall v in cars: v.x > 3'
     with pytest.raises(Exception, match="RTAMT's classes have no groups such as 'cars'"):
         spec.parse()
+
+
+def test_the_only_member_of_a_group_has_no_pair_and_still_has_a_trace_in_dense_time():
+    apart = 'group cars = "car_*"; forall v in cars: forall w in cars where v != w: abs(v.x - w.x) > '
+    alone = {"car_1.x": [(0, 1.0), (2, 3.0)]}
+    assert rtamt.parse(apart + "1", time="dense").evaluate(alone).signal.points() == [(0, inf), (2, inf)]
+    to_y = rtamt.parse(apart + "y", time="dense").evaluate({"y": [(1, 1.0), (5, 1.0)], **alone})
+    assert to_y.signal.points() == [(1, inf), (5, inf)]

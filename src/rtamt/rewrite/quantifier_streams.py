@@ -98,10 +98,9 @@ class _StreamScope(Scope):
             self.splitting,
         )
         given = of_one(node, inner.newest(binder), inner.resolved(body))
-        value = self._column(node, binder, self.splitting.applied(given), inner)
-        if node.op.result is Sort.NUMBER:
-            return value
-        holds = value
+        if node.op.result is Sort.NUMBER:  # its condition is read as true or false under every semantics
+            return self._column(node, binder, given, inner)
+        value = holds = self._column(node, binder, self.splitting.applied(given), inner)
         if self.splitting.reads_truth(node):
             holds = self._column(node, binder, boolean(given), inner)
         return COLUMN(value, holds)

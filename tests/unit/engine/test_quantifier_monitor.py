@@ -210,3 +210,9 @@ def test_twenty_members_cost_at_most_twenty_times_one_member():
 def test_over_takes_a_list_for_each_group(members):
     with pytest.raises(UsageError, match="takes a list of members for each group, such as"):
         spec("forall v in cars: v.x > 3").over(members)
+
+
+def test_a_count_of_two_members_under_boolean_semantics_is_no_nan():
+    data = {"car_1.x": [1.0, None], "car_2.x": [0.0, 2.0]}
+    parsed = spec("(count v in cars: v.x > 0) >= 1", semantics="boolean")
+    assert parsed.monitor().update_many(data).values.tolist() == parsed.evaluate(data).signal.values.tolist()
