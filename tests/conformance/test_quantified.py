@@ -34,7 +34,7 @@ BOUNDED = {
     *("minimum", "maximum", "sum", "mean", "duration", "count"),
 }
 PARTS = 4
-AFTER = 60  # cells after the end of a dense trace, by which all has settled
+AFTER = 30  # cells after the end of a dense trace, by which all has settled
 
 parts = pytest.mark.parametrize("part", range(PARTS))
 
