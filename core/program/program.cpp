@@ -35,6 +35,7 @@ constexpr std::size_t most_unread_inputs = std::size_t{1} << 16U;
 
 struct Header {
     std::uint8_t domain = 0;
+    std::uint8_t without = 0;
     std::uint32_t instructions = 0;
     std::uint32_t inputs = 0;
     std::uint32_t outputs = 0;
@@ -55,13 +56,14 @@ Header read_header(Reader& reader, std::size_t size) {
     }
     Header header;
     header.domain = reader.take<std::uint8_t>();
-    const auto reserved = reader.take<std::uint8_t>();
+    header.without = reader.take<std::uint8_t>();
     header.instructions = reader.take<std::uint32_t>();
     header.inputs = reader.take<std::uint32_t>();
     header.outputs = reader.take<std::uint32_t>();
     header.note = reader.take<std::uint32_t>();
-    if (reserved != 0 || reader.take<std::uint32_t>() != 0) {
-        refuse("a reserved byte of its header is not zero");
+    if (reader.take<std::uint32_t>() != 0) refuse("a reserved byte of its header is not zero");
+    if (header.without >= 4) {
+        refuse("it leaves out unknown passes (" + std::to_string(header.without) + ")");
     }
     const std::uint64_t expected = header_size + std::uint64_t{record_size} * header.instructions +
                                    std::uint64_t{4} * header.outputs + header.note + checksum_size;
@@ -262,6 +264,7 @@ Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain,
 
     Program program;
     program.domain = domain;
+    program.without = header.without;
     program.calls = std::move(calls);
     program.inputs = header.inputs;
     program.instructions.reserve(header.instructions);

@@ -6,7 +6,7 @@
 //          0  8 B    magic "RTAMTPRG"
 //          8  u16    version = 1
 //         10  u8     time domain: 0 discrete, 1 dense
-//         11  u8     0
+//         11  u8     passes to leave out, a bit each: 1 fuse, 2 reuse
 //         12  u32    number of instructions
 //         16  u32    number of inputs
 //         20  u32    number of outputs
@@ -42,6 +42,12 @@ inline constexpr std::int64_t longest_dense = 4'611'686'018'427'387'904; // 2^62
 
 enum class Domain : std::uint8_t { discrete, dense };
 
+// What is done with a program when it is loaded; none changes a bit of a result.
+enum class Pass : std::uint8_t {
+    fuse = 1,  // fusion.hpp
+    reuse = 2, // liveness.hpp
+};
+
 struct Instruction {
     Opcode opcode{};
     std::uint32_t a = no_operand;
@@ -66,6 +72,11 @@ struct Program {
     std::uint32_t inputs = 0;
     std::string note;
     Domain domain = Domain::discrete;
+    std::uint8_t without = 0; // passes to leave out
+
+    [[nodiscard]] bool applies(Pass pass) const noexcept {
+        return (without & static_cast<std::uint8_t>(pass)) == 0;
+    }
 
     // Reads and checks a serialised program for this time domain, and the calls that come with it;
     // throws std::invalid_argument with one sentence.

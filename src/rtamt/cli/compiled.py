@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
+from rtamt.compiler.passes import PASSES
 from rtamt.compiler.program import MAGIC, Program
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
@@ -51,6 +52,14 @@ def listing(program: Program) -> Iterator[str]:
     yield f"outputs    {', '.join(metadata.outputs)}"
     yield f"{program.domain.unit.step:<10} {format_duration(program.period)}, {program.domain.name} time"
     yield f"horizon    {format_duration(max(program.lags) * program.period)}"
+    yield "program"
+    for line in program.disassemble().splitlines():
+        yield f"  {line}"
+
+
+def after_passes(program: Program) -> Iterator[str]:
+    """Return the instructions of a program as it is run, and the passes that it went through, line by line."""
+    yield f"passes     {', '.join(name for name in PASSES if name not in program.without)}"
     yield "program"
     for line in program.disassemble().splitlines():
         yield f"  {line}"

@@ -14,7 +14,7 @@ from rtamt.cli.command import (
     json_text,
     read_specification,
 )
-from rtamt.cli.compiled import compiled, listing
+from rtamt.cli.compiled import after_passes, compiled, listing
 from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
@@ -70,7 +70,8 @@ examples:
   rtamt info flight.ulg battery gps
   rtamt info "always[0:10]((req >= 3) -> eventually[0:500ms](gnt >= 3))" --period 100ms
   rtamt info "always(alarm -> eventually[0:70ms](stop))" --time dense
-  rtamt info "x >= 3 until[0:5] y >= 3" --latex"""
+  rtamt info "x >= 3 until[0:5] y >= 3" --latex
+  rtamt info "a + b >= -2 and a - b <= 3" --program"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +102,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--latex", action="store_true", help="print only the formula, as LaTeX")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument(
+        "--program", action="store_true", help="print only the program, and what the passes have made of it"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -114,6 +118,8 @@ def run(args: argparse.Namespace) -> int:
         return OK
     if args.spec is None:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
+    if args.program and (args.latex or args.json):
+        raise UsageError("--program prints the program alone: leave out --latex and --json")
     if args.signals:
         raise CommandError(f"'{args.signals[0]}' chooses signals of a recording, and '{args.spec}' is none")
     _refuse_reading_options(args)
@@ -123,13 +129,20 @@ def run(args: argparse.Namespace) -> int:
             raise CommandError(f"'{args.spec}' is a program: --set is for requirements")
         if args.latex or args.json:
             raise UsageError(f"'{args.spec}' is a program: --latex and --json are for requirements")
-        say("\n".join(listing(program)))
+        say("\n".join(after_passes(program) if args.program else listing(program)))
         return OK
     spec = read_specification(args, args.time)
     if args.latex:
         say(spec.formula.latex())
         return OK
     facts = gather(spec)
+    if args.program:
+        if facts.program is None:
+            raise UsageError(
+                facts.offline_only or "a specification with quantifiers has one program for each of them"
+            )
+        say("\n".join(after_passes(facts.program)))
+        return OK
     say(_as_json(facts) if args.json else "\n".join(_lines(facts)))
     return OK
 

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.lower import lowering_of
+from rtamt.compiler.passes import passed
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
 from rtamt.language.operators import STL, Until, Window
 from rtamt.language.parameters import with_values
@@ -19,7 +20,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from rtamt.compiler.program import Program
     from rtamt.signals.domain_interface import TimeDomain
@@ -75,13 +76,14 @@ def compile_program(
     inputs: tuple[str, ...] | None = None,
     clip: int | None = None,
     domain: type[TimeDomain] = Discrete,
+    without: Collection[str] = (),
 ) -> Program:
     """Compile core formulas (see ``desugar``) with bounded future to one program.
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
     of samples of a finished trace: longer bounds are clipped to it, which
-    changes no value and saves memory.
+    changes no value and saves memory. ``without``: the passes to leave out, of those in ``passes.PASSES``.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parsing.parser import parse_formula
@@ -100,7 +102,7 @@ def compile_program(
             index if depth is None else lowering.late(index, int(depth / period))
             for index, depth in zip(indices, depths, strict=True)
         ]
-    return lowering.program(tuple(indices))
+    return passed(lowering.program(tuple(indices)), without)
 
 
 def compile_plan(

@@ -21,6 +21,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
+from rtamt.compiler.passes import bits_of, without_of
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
@@ -142,6 +143,8 @@ class Program:
     metadata: Metadata | None = None
     #: The values that :meth:`with_parameters` has put in; ``value_of`` and ``origins`` have others.
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    #: Passes of the core that are left out (``passes.py``).
+    without: frozenset[str] = frozenset()
 
     @property
     def lags(self) -> tuple[int, ...]:
@@ -187,7 +190,7 @@ class Program:
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = _DOMAINS.index(self.domain)
         counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
-        parts = [_HEADER.pack(MAGIC, _VERSION, domain, 0, *counts)]
+        parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
         for ins in self.instructions:
             a = NO_OPERAND if ins.a is None else ins.a
             b = NO_OPERAND if ins.b is None else ins.b
@@ -213,7 +216,7 @@ class Program:
         code = bytes(code)
         if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(MAGIC):
             raise damaged(f"it does not begin with '{MAGIC.decode()}'")
-        _, version, domain, _, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
+        _, version, domain, bits, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
         if version != _VERSION:
             raise damaged(f"its format has version {version}, and this is for version {_VERSION}")
         expected = _HEADER.size + _RECORD.size * size + 4 * outputs + length + _CHECKSUM
@@ -224,6 +227,9 @@ class Program:
             raise damaged("its checksum does not match, so it was damaged on the way")
         if length == 0 or domain >= len(_DOMAINS):
             raise damaged("it has no metadata" if length == 0 else f"its time domain is {domain}")
+        without = without_of(bits)
+        if without is None:
+            raise damaged(f"it leaves out unknown passes ({bits})")
         records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
         instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
         end = len(body) - length
@@ -231,7 +237,9 @@ class Program:
         if any(place >= size for place in places):
             raise damaged("it has an output that is no instruction")
         metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
-        return Program(instructions, names, places, period, domain=_DOMAINS[domain], metadata=metadata)
+        return Program(
+            instructions, names, places, period, domain=_DOMAINS[domain], metadata=metadata, without=without
+        )
 
     def disassemble(self) -> str:
         """Return a listing: index, lag in samples, instruction.

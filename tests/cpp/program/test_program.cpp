@@ -120,7 +120,7 @@ TEST_CASE("header is checked") {
     CHECK(with(8, 2) == refused("its format has version 2, this core reads version 1"));
     CHECK(with(10, 1) == refused("it is for dense time, and discrete time is wanted here"));
     CHECK(with(10, 7) == refused("it is for the unknown time domain 7"));
-    CHECK(with(11, 1) == refused("a reserved byte of its header is not zero"));
+    CHECK(with(11, 4) == refused("it leaves out unknown passes (4)"));
     CHECK(with(28, 1) == refused("a reserved byte of its header is not zero"));
     CHECK(with(15, 255).starts_with(refused("").substr(0, 39) + "it has "));
     CHECK(with(33, 1) == refused("a reserved byte of instruction 0 is not zero"));

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from rtamt.compiler.passes import PASSES
 from rtamt.engine import _core
 
 
@@ -240,3 +241,10 @@ def test_what_bounds_and_early_verdicts_are_worth_is_reported(run):
     assert wide in answer.out
     cut = "early      verdicts may change at the end of the trace, which cuts the windows of 'eventually'\n"
     assert cut in answer.out
+
+
+def test_info_lists_the_passes_and_the_program(run):
+    lines = run("info", "x >= 3", "--program").out.splitlines()
+    assert lines[0] == f"passes     {', '.join(PASSES)}"
+    assert lines[1] == "program"
+    assert lines[2].startswith("  %0   lag 0    input x")
