@@ -6,6 +6,7 @@ module      purpose
 read        ``rtamt.read`` and ``rtamt.scan``
 formats     the list of file formats
 source      the interface that every reader implements
+ahead       chunks read in a thread while others are evaluated
 assemble    a source to a trace: columns, names, time base
 timestamps  the time column, its unit and its values
 dates       dates as text or objects to numpy dates

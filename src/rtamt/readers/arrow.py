@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.readers.ahead import ahead
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Source, Table, library
@@ -19,13 +20,16 @@ if TYPE_CHECKING:
 
 #: Rows that are examined to distinguish dates from other texts.
 _SAMPLE = 100
+#: Bytes of a column in a Parquet file that are read at a time.
+_BUFFER = 2**20
 
 
 def open_parquet(path: str) -> Source:
     """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
     parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
-    file = parquet.ParquetFile(path)
-    schema = file.schema_arrow.empty_table().flatten().schema
+    # A buffer for each column: the file is neither read ahead, in memory for ever, nor a row group at once.
+    file = parquet.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER)
+    schema = _flat(file.schema_arrow, arrow)
     texts = _texts(schema, arrow)
     first = next(file.iter_batches(_SAMPLE, columns=texts), None) if texts else None
     fields = _fields(schema, arrow, _dated(first, texts, arrow))
@@ -34,7 +38,8 @@ def open_parquet(path: str) -> Source:
         return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
-        yield from _of_batches(file.iter_batches(CHUNK, columns=_columns(wanted)), wanted, arrow)
+        batches = file.iter_batches(CHUNK, columns=_columns(wanted))
+        yield from ahead(_of_batches(batches, wanted, arrow))
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
 
@@ -51,7 +56,7 @@ def open_arrow(path: str) -> Source:
         reader = ipc.open_stream(file)
         batches = iter(reader)
     batches = map(_valid, batches)
-    schema = reader.schema.empty_table().flatten().schema
+    schema = _flat(reader.schema, arrow)
     first = next(batches, None)
     batches = chain(() if first is None else (first,), batches)
     fields = _fields(schema, arrow, _dated(first, _texts(schema, arrow), arrow))
@@ -64,6 +69,11 @@ def open_arrow(path: str) -> Source:
         return _raws(whole.flatten(), wanted)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
+
+
+def _flat(schema: Any, arrow: Any) -> Any:
+    """Return a schema with a column for each field of a struct; an ``empty_table`` of pyarrow imports pandas first."""
+    return arrow.Table.from_batches([], schema).flatten().schema
 
 
 def _valid(batch: Any) -> Any:
@@ -136,6 +146,8 @@ def _raw(column: Any) -> Raw:
     kind = str(column.type)
     if kind.startswith("decimal"):
         column = column.cast("float64")
+    if not column.null_count and kind in _NUMBERS:
+        return values_of(column)
     missing = column.is_null().to_numpy() if column.null_count else None
     if kind.startswith(("timestamp", "date", "duration")):
         return column.to_numpy()  # type: ignore[no-any-return]
@@ -146,6 +158,25 @@ def _raw(column: Any) -> Raw:
     if missing is None:
         return column.to_numpy()  # type: ignore[no-any-return]
     return np.ma.masked_array(column.fill_null(0).to_numpy(), missing)
+
+
+#: Types of columns whose memory is that of an array of numpy.
+_NUMBERS = {"float": "f4", "double": "f8"} | {
+    f"{sign}int{bits}": f"{sign or 'i'}{bits // 8}" for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
+
+
+def values_of(column: Any) -> Raw:
+    """Return a column of numbers without missing ones; ``to_numpy`` of pyarrow imports pandas first."""
+    dtype = np.dtype(_NUMBERS[str(column.type)])
+    parts = [
+        np.frombuffer(chunk.buffers()[1], dtype, len(chunk), chunk.offset * dtype.itemsize)
+        for chunk in column.chunks
+        if len(chunk)
+    ]
+    if len(parts) == 1:
+        return parts[0]
+    return np.concatenate(parts) if parts else np.empty(0, dtype)
 
 
 def _is_plain(column: Any) -> bool:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rtamt.readers.ahead import ahead
+from rtamt.readers.arrow import values_of
 from rtamt.readers.csv_cells import LARGEST
 
 if TYPE_CHECKING:
@@ -40,8 +42,11 @@ class Block(NamedTuple):
 def plain_blocks(path: str, header: Header, columns: Sequence[Column]) -> Iterator[Block]:
     """Yield the rows after the header as long as all of their cells are plain decimal numbers."""
     arrow = _arrow() if columns and os.path.getsize(path) >= _WORTH else None
-    if arrow is None:
-        return
+    if arrow is not None:
+        yield from ahead(_blocks(arrow, path, header, columns))
+
+
+def _blocks(arrow: Any, path: str, header: Header, columns: Sequence[Column]) -> Iterator[Block]:
     with open(path, "rb") as file:
         head = [file.readline() for _ in range(header.line)]
         if any(b"\r" in line.rstrip(b"\r\n") for line in head):  # these would be counted as lines
@@ -78,7 +83,7 @@ def _numbers(arrow: Any, text: bytes, header: Header, columns: Sequence[Column])
         ValueError
     ):  # ArrowInvalid: a cell that is empty or no number, an empty line, a row of another width
         return None
-    values = [table.column(name).to_numpy() for name in wanted]
+    values = [values_of(table.column(name)) for name in wanted]
     if any(np.abs(column).max(initial=0) >= LARGEST for column in values):
         return None
     return values

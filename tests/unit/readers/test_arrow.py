@@ -1,5 +1,6 @@
 """Parquet and Arrow files."""
 
+import subprocess
 import sys
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from pyarrow import feather, parquet
 
 import rtamt
+from rtamt.readers import arrow
 
 TABLE = pa.table(
     {
@@ -112,3 +114,37 @@ def test_a_table_of_arrow_that_was_not_read_raised_key_error(time):
         with pytest.raises(rtamt.TraceError, match=r"got an Arrow Table; write rtamt\.read\(table\)"):
             entry(table)
     assert spec.evaluate(rtamt.read(table)).robustness == 1
+
+
+def test_reading_parquet_in_chunks_kept_the_whole_file_in_memory(tmp_path):
+    path = tmp_path / "long.parquet"
+    random = np.random.default_rng(1)
+    columns = {name: random.normal(size=2**21) for name in "ab"}
+    parquet.write_table(pa.table(columns), path, row_group_size=2**19)  # 32 MB, in four groups
+    del columns
+    before = pa.total_allocated_bytes()
+    most, rows = 0, 0
+    for chunk in rtamt.scan(path):
+        rows += len(chunk["a"].values)
+        most = max(most, pa.total_allocated_bytes() - before)
+    assert rows == 2**21
+    assert most < 16 * 2**20
+
+
+def test_reading_numbers_of_arrow_imported_pandas(tmp_path):
+    path = tmp_path / "log.parquet"
+    parquet.write_table(pa.table({"time": [0.0, 1.0], "x": [1, 2]}), path)
+    code = f"import sys, rtamt; rtamt.read({str(path)!r}); sys.exit('pandas' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    "kind", ["float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint64"]
+)
+def test_numbers_of_arrow_are_those_of_its_own_conversion(kind):
+    parts = [np.arange(n, dtype=kind) for n in (5, 0, 3)]
+    column = pa.chunked_array([pa.array(part) for part in parts], pa.from_numpy_dtype(kind))
+    for some in (column, column.slice(2, 4), column.slice(6), column.slice(0, 0)):
+        found = arrow.values_of(some)
+        assert found.dtype == kind
+        np.testing.assert_array_equal(found, some.to_numpy())
