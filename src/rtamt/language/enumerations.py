@@ -24,7 +24,7 @@ _LARGEST_CODE = 2**53
 
 def begins_enumeration(parser: NameParser) -> bool:
     """Return whether an enumeration is declared here: ``enum``, a name and a brace, which no formula begins with."""
-    if parser.token.text != "enum":
+    if parser.texts[parser.index] != "enum":
         return False
     first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
     return first.kind == "name" and first.text == "enum" and second.kind == "name" and third.text == "{"

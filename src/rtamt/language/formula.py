@@ -151,7 +151,7 @@ class Var(Formula):
     type: PartType = field(default=None, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, init=False)
 class Apply(Formula):
     """An operator applied to formulas, with an interval where the operator takes one."""
 
@@ -159,23 +159,33 @@ class Apply(Formula):
     args: tuple[Formula, ...]
     interval: Interval | None = None
     span: Span | None = field(default=None, repr=False)
+    # What follows is found on first use, as most formulas are made of others, used once, and forgotten.
     _hash: int = field(init=False, repr=False)
     _size: int = field(init=False, repr=False)
     #: The class of nodes that were found equal to this one.
-    _class: _Class | None = field(init=False, repr=False, default=None)
-    #: The nodes below in postorder, cached on first use: a formula is walked many times.
-    _below: tuple[Formula, ...] | None = field(init=False, repr=False, default=None)
+    _class: _Class = field(init=False, repr=False)
+    #: The nodes below in postorder: a formula is walked many times.
+    _below: tuple[Formula, ...] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        # Children carry their own hash and size, so that this takes O(1) per node and needs no recursion.
-        object.__setattr__(self, "_hash", hash((self.op, self.args, self.interval)))
-        count = 1
-        for operand in self.args:
-            count += operand._size if isinstance(operand, Apply) else 1
-        object.__setattr__(self, "_size", count if count < COUNTLESS else COUNTLESS)
+    def __init__(
+        self,
+        op: Operator,
+        args: tuple[Formula, ...],
+        interval: Interval | None = None,
+        span: Span | None = None,
+    ) -> None:
+        _store_op(self, op)
+        _store_args(self, args)
+        _store_interval(self, interval)
+        _store_span(self, span)
 
     def __hash__(self) -> int:
-        return self._hash
+        try:
+            return self._hash
+        except AttributeError:
+            for node in _lacking(self, "_hash"):
+                _store_hash(node, hash((node.op, node.args, node.interval)))
+            return self._hash
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Apply):
@@ -189,7 +199,7 @@ class Apply(Formula):
                 continue
             if isinstance(a, Apply) and isinstance(b, Apply):
                 if (
-                    a._hash != b._hash
+                    hash(a) != hash(b)
                     or a.op is not b.op
                     or a.interval != b.interval
                     or len(a.args) != len(b.args)
@@ -208,6 +218,25 @@ class Apply(Formula):
         return True
 
 
+# A third of the time of ``object.__setattr__``, with which frozen classes store otherwise.
+_store_op, _store_args, _store_interval, _store_span, _store_hash, _store_size, _store_class, _store_below = (
+    vars(Apply)[name].__set__
+    for name in ("op", "args", "interval", "span", "_hash", "_size", "_class", "_below")
+)
+
+
+def _lacking(formula: Apply, name: str) -> Iterator[Apply]:
+    """Yield the nodes of a formula that do not have a value yet, operands first; the caller stores it."""
+    stack = [formula]
+    while stack:
+        node = stack[-1]
+        below = [arg for arg in node.args if isinstance(arg, Apply) and not hasattr(arg, name)]
+        if below:
+            stack += below
+        else:
+            yield stack.pop()
+
+
 class _Class:
     """A class of nodes that were found equal; a union-find in which ``joined`` points to the parent class.
 
@@ -222,18 +251,20 @@ class _Class:
 
 def _class_of(node: Apply, assumed: Mapping[_Class, _Class]) -> _Class:
     """Return the class of a node, by known and by assumed equalities."""
-    if node._class is None:
-        object.__setattr__(node, "_class", _Class())
-    found = _last(node._class)
-    if found is not node._class:
-        object.__setattr__(node, "_class", found)
+    try:
+        known = node._class
+    except AttributeError:
+        known = _Class()
+        _store_class(node, known)
+    found = _last(known)
+    if found is not known:
+        _store_class(node, found)
     while (other := assumed.get(found)) is not None:
         found = _last(other)
     return found
 
 
-def _last(found: _Class | None) -> _Class:
-    assert found is not None
+def _last(found: _Class) -> _Class:
     while (above := found.joined) is not None:
         if above.joined is not None:
             found.joined = above.joined  # path halving
@@ -280,11 +311,12 @@ def postorder(*formulas: Formula) -> Iterator[Formula]:
         return
     (formula,) = formulas
     if isinstance(formula, Apply):
-        below = formula._below
-        if below is None:
+        try:
+            below = formula._below
+        except AttributeError:
             below = _distinct(formula.args)
-            if formula._size <= _KEPT:
-                object.__setattr__(formula, "_below", below)
+            if len(below) <= _KEPT:
+                _store_below(formula, below)
         yield from below
     yield formula
 
@@ -356,7 +388,15 @@ def size(formula: Formula) -> int:
     >>> size(STL["and"](x, x))
     3
     """
-    return formula._size if isinstance(formula, Apply) else 1
+    if not isinstance(formula, Apply):
+        return 1
+    try:
+        return formula._size
+    except AttributeError:
+        for node in _lacking(formula, "_size"):
+            count = sum(operand._size if isinstance(operand, Apply) else 1 for operand in node.args)
+            _store_size(node, min(count + 1, COUNTLESS))
+        return formula._size
 
 
 def types_of(*formulas: Formula) -> dict[str, ValueType]:

@@ -166,26 +166,25 @@ def quantified(word: str, binder: Binder) -> Operator:
 
 def begins_group(parser: FormulaParser) -> bool:
     """Return whether a group is declared here: ``group``, a name, ``=`` and a text, which no formula begins with."""
-    ahead = parser.tokens[parser.index : parser.index + 5]
-    if ahead and ahead[0].text in ("input", "output"):
-        ahead = ahead[1:]
-    words = len(ahead) > 3 and ahead[0].text == "group" and ahead[1].kind == "name"
-    return words and ahead[2].text == "=" and ahead[3].kind == "quoted"
+    at = parser.index + (parser.texts[parser.index] in ("input", "output"))
+    if parser.texts[at : at + 3 : 2] != ["group", "="]:
+        return False
+    return parser.tokens[at + 1].kind == "name" and parser.tokens[at + 3].kind == "quoted"
 
 
 def unquoted_pattern(parser: FormulaParser) -> Span | None:
     """Return the pattern in the declaration of a group here, if it lacks its quotes."""
-    skipped = int(parser.token.text in ("input", "output"))
-    ahead = parser.tokens[parser.index + skipped : -1]
-    words = [each.text for each in ahead[:3]]
-    if len(ahead) < 4 or words[::2] != ["group", "="] or ahead[1].kind != "name" or ahead[3].kind == "quoted":
+    texts, starts, ends = parser.texts, parser.starts, parser.ends
+    at = parser.index + (parser.texts[parser.index] in ("input", "output"))
+    if texts[at : at + 3 : 2] != ["group", "="]:
         return None
-    start, end = ahead[3].start, ahead[3].end
-    for token in ahead[4:]:
-        if token.start != end or token.text in (";", "{"):
-            break
-        end = token.end
-    return Span(start, end)
+    _, name, _, first, *_ = parser.tokens[at : at + 4]
+    if name.kind != "name" or first.kind in ("quoted", "end"):
+        return None
+    last = at + 3
+    while starts[last + 1] == ends[last] and texts[last + 1] not in ("", ";", "{"):
+        last += 1
+    return Span(first.start, ends[last])
 
 
 def begins_quantifier(parser: FormulaParser) -> bool:
@@ -194,8 +193,10 @@ def begins_quantifier(parser: FormulaParser) -> bool:
     Also ``forall v, w in cars``, which no formula begins with either: it is an error with a hint of its own.
     """
     at = parser.index
+    if parser.texts[at] not in QUANTIFIERS:
+        return False
     first, variable, word, group, after = (*parser.tokens[at : at + 5], *[parser.tokens[-1]] * 4)[:5]
-    if first.text not in QUANTIFIERS or first.kind != "name" or first.text in parser.scope:
+    if first.text in parser.scope:
         return False
     if variable.kind != "name" or word.text not in ("in", ",") or group.kind != "name":
         return False

@@ -322,12 +322,12 @@ class Language:
     """An immutable set of operators."""
 
     operators: tuple[Operator, ...]
-    #: Every spelling of every operator.
-    spellings: tuple[str, ...]
+    #: Every spelling of every operator, separated by spaces: a key whose hash is computed once.
+    spellings: str
     _by_name: Mapping[str, Operator]
     #: By their spellings: operators at the begin of an operand, and after one.
-    _opening: Mapping[str, Operator]
-    _infix: Mapping[str, Operator]
+    openings: Mapping[str, Operator]
+    infixes: Mapping[str, Operator]
 
     @classmethod
     def of(cls, operators: Iterable[Operator]) -> Language:
@@ -348,7 +348,7 @@ class Language:
                 if spelling in spelled:
                     raise UsageError(f"'{spelling}' spells both '{spelled[spelling].name}' and '{op.name}'")
                 spelled[spelling] = op
-        words = (*opening, *infix)
+        words = " ".join((*opening, *infix))
         return cls(table, words, *map(MappingProxyType, (names, opening, infix)))
 
     def extend(self, *operators: Operator) -> Language:
@@ -374,11 +374,11 @@ class Language:
 
     def opening(self, spelling: str) -> Operator | None:
         """Return the operator that ``spelling`` means where an operand can begin."""
-        return self._opening.get(spelling)
+        return self.openings.get(spelling)
 
     def infix(self, spelling: str) -> Operator | None:
         """Return the operator that ``spelling`` means after an operand."""
-        return self._infix.get(spelling)
+        return self.infixes.get(spelling)
 
     def __iter__(self) -> Iterator[Operator]:
         return iter(self.operators)

@@ -113,7 +113,7 @@ def table_operator(name: str, table: Table) -> Operator:
 
 def begins_table(parser: NameParser) -> bool:
     """Return whether a table is declared here: ``table``, a name, ``=`` and a brace, which no formula begins with."""
-    if parser.token.text != "table":
+    if parser.texts[parser.index] != "table":
         return False
     first, second, *rest = (*parser.tokens[parser.index : parser.index + 4], *[parser.tokens[-1]] * 3)[:4]
     named = first.kind == "name" and first.text == "table" and second.kind in ("name", "quoted")

@@ -13,7 +13,7 @@ from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
 from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.import_parser import ImportParser
-from rtamt.language.parsing.lexer import Token, quoted
+from rtamt.language.parsing.lexer import Token, is_name, quoted
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier, unquoted_pattern
 from rtamt.language.tables import begins_table, parse_table
@@ -367,15 +367,17 @@ class DeclarationParser(ImportParser):
 
     def _declares(self) -> bool:
         """Return whether a declaration begins here, of a known or unknown type."""
+        if not is_name(self.texts[self.index]):
+            return False
         first = self.token
-        if first.kind != "name" or self._requires() or self._imports_file() or begins_quantifier(self):
+        if self._requires() or self._imports_file() or begins_quantifier(self):
             return False
         if self._is_optional() or ((first.text in _ROLES or first.text in _KINDS) and self._plain_type(1)):
             return True
         if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")
         # Two names in a row are a declaration of unknown type if no formula could continue after them.
-        if self.language.opening(first.text) is not None or not (self._plain_name(0) and self._plain_name(1)):
+        if self._opening(first.text) is not None or not (self._plain_name(1) and self._plain_name(0)):
             return False
         third = self._at(2)
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)

@@ -10,6 +10,7 @@ from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Interval, Span
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.parsing.grammar import INFINITY
+from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.templates import bound, constants_of
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import BOOLEAN
@@ -20,68 +21,83 @@ if TYPE_CHECKING:
     from rtamt.language.parsing.lexer import Token
     from rtamt.language.parsing.parser import FormulaParser
 
-    #: A number of units (None: infinite), the unit as written, and the place.
-    Bound = tuple[Fraction | None, str, Span]
+    #: A number of units (None: infinite), the unit as written, and the indices of its tokens.
+    Bound = tuple[Fraction | None, str, tuple[int, int]]
+
+_UNTIMED, _LASTING, _REQUIRED = Bounds.NONE, Bounds.DURATION, Bounds.REQUIRED
+_NAMED = frozenset(("name", "quoted"))
+_SEPARATORS = frozenset(":,")
+#: What follows a bound.
+_AFTER = frozenset(":,])")
 
 
-def parse_interval(parser: FormulaParser, op: Operator, token: Token) -> Interval | None:
+def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | None:
     """``interval = ( "[" | "(" ) , bound , [ ( ":" | "," ) , bound ] , ( "]" | ")" )``: read one after ``op``.
 
-    ``token``: the operator as it is written. A bound without a unit has the default unit of the parser; a lower
+    ``at``: the operator's token. A bound without a unit has the default unit of the parser; a lower
     bound without a unit has that of the upper bound, as in RTAMT. A parenthesis excludes the bound beside it.
     Returns None if there is no interval and the operator does not require one.
     """
-    opening = parser.token
-    if opening.text != "[" and not (opening.text == "(" and _begins_open(parser, op)):
-        if op.bounds is Bounds.REQUIRED:
-            raise _unbounded(parser, token, token.span)
+    texts, first = parser.texts, parser.index
+    opening = texts[first]
+    if opening != "[" and not (opening == "(" and _begins_open(parser, op)):
+        if op.bounds is _REQUIRED:
+            raise _unbounded(parser, at, at, at)
         return None
-    if op.bounds is Bounds.NONE:
-        raise parser.error(f"'{token.text}' takes no interval", opening.span)
-    parser.next()
-    first = parser.index
-    begin, begin_unit, begin_span = _bound(parser)
-    separator = parser.token
-    end, end_unit, end_span = begin, begin_unit, begin_span
-    if op.bounds is not Bounds.DURATION:
-        if not parser.accept(":") and not parser.accept(","):
-            raise parser.error(f"expected ':' or ',' and an upper bound, got {separator}", separator.span)
-        end, end_unit, end_span = _bound(parser)
-    elif separator.text in (":", ","):
+    if op.bounds is _UNTIMED:
+        raise parser.error(f"'{texts[at]}' takes no interval", _span(parser, first, first))
+    parser.index = first + 1
+    begin, begin_unit, begin_tokens = _bound(parser)
+    end, end_unit, end_tokens = begin, begin_unit, begin_tokens
+    separator = texts[parser.index]
+    if op.bounds is not _LASTING:
+        if separator not in _SEPARATORS:
+            raise parser.error(
+                f"expected ':' or ',' and an upper bound, got {parser.token}", parser.token.span
+            )
+        parser.index += 1
+        end, end_unit, end_tokens = _bound(parser)
+    elif separator in _SEPARATORS:
         raise parser.error(
-            f"'{token.text}' takes one duration, such as {token.text}[5], got {separator}", separator.span
+            f"'{texts[at]}' takes one duration, such as {texts[at]}[5], got {parser.token}", parser.token.span
         )
-    closing = parser.token
-    if not parser.accept("]") and (op.bounds is Bounds.DURATION or not parser.accept(")")):
-        raise parser.error(f"expected ']' after the bounds, got {closing}", closing.span)
-    begin_open, end_open = opening.text == "(", closing.text == ")"
-    span = Span(opening.start, closing.end)
+    last = parser.index
+    closing = texts[last]
+    if closing != "]" and (op.bounds is _LASTING or closing != ")"):
+        raise parser.error(f"expected ']' after the bounds, got {parser.token}", parser.token.span)
+    parser.index = last + 1
+    begin_open, end_open = opening == "(", closing == ")"
     if begin is None:
-        what = "a duration" if op.bounds is Bounds.DURATION else "the lower bound of an interval"
-        raise parser.error(f"{what} may not be infinite", begin_span, BoundError)
+        what = "a duration" if op.bounds is _LASTING else "the lower bound of an interval"
+        raise parser.error(f"{what} may not be infinite", _span(parser, *begin_tokens), BoundError)
     if op.positive and not begin:
         raise parser.error(
-            f"'{token.text}' divides by its duration, which may not be 0; write one such as {token.text}[1]",
-            begin_span,
+            f"'{texts[at]}' divides by its duration, which may not be 0; write one such as {texts[at]}[1]",
+            _span(parser, *begin_tokens),
             BoundError,
         )
-    if end is None and op.bounds is Bounds.REQUIRED:
-        raise _unbounded(parser, token, end_span)
+    if end is None and op.bounds is _REQUIRED:
+        raise _unbounded(parser, at, *end_tokens)
     default = "" if parser.unit == "s" else parser.unit
     begin_unit, end_unit = begin_unit or end_unit or default, end_unit or default
     if begin_unit:
         begin *= UNITS[begin_unit]
-    if end is not None:
+    if end is None:
+        end_unit = ""
+    else:
         if end_unit:
             end *= UNITS[end_unit]
         if end <= begin and (end < begin or begin_open or end_open):
-            raise _nothing_between(parser, span, reverse=end < begin)
-    read = parser.tokens[first : parser.index]
-    names = tuple(token.name for token in read if token.kind in ("name", "quoted"))
+            raise _nothing_between(parser, _span(parser, first, last), reverse=end < begin)
+    names = [parser.tokens[k].name for k in range(first, last) if is_name(texts[k]) or is_quoted(texts[k])]
     constants = constants_of(parser, names) if names else ()
-    return Interval(
-        begin, end, begin_unit, "" if end is None else end_unit, span, constants, begin_open, end_open
-    )
+    span = _span(parser, first, last)
+    return Interval(begin, end, begin_unit, end_unit, span, constants, begin_open, end_open)
+
+
+def _span(parser: FormulaParser, first: int, last: int) -> Span:
+    """Return the position of the tokens from ``first`` to ``last``."""
+    return Span(parser.starts[first], parser.ends[last])
 
 
 def _nothing_between(parser: FormulaParser, span: Span, *, reverse: bool) -> SpecificationError:
@@ -98,16 +114,19 @@ def _begins_open(parser: FormulaParser, op: Operator) -> bool:
 
     Otherwise it begins an operand: ``always(x)``. What is taken for an interval here has no other reading.
     """
-    if op.bounds in (Bounds.NONE, Bounds.DURATION):
+    if op.bounds is _UNTIMED or op.bounds is _LASTING:
+        return False
+    near = parser.texts[parser.index + 2 : parser.index + 7]
+    if ":" not in near and "," not in near:
         return False
     separator = _behind_bound(parser, parser.index + 1)
-    if separator is None or parser.tokens[separator].text not in (",", ":"):
+    if separator is None or parser.texts[separator] not in (",", ":"):
         return False
     closing = _behind_bound(parser, separator + 1)
-    if closing is None or parser.tokens[closing].text != ")":
-        return closing is not None and parser.tokens[closing].text == "]"
+    if closing is None or parser.texts[closing] != ")":
+        return closing is not None and parser.texts[closing] == "]"
     if op.fixity is Fixity.FUNCTION:
-        return parser.tokens[closing + 1].text == "("
+        return parser.texts[closing + 1] == "("
     return parser.opens(closing + 1)
 
 
@@ -123,33 +142,38 @@ def _behind_bound(parser: FormulaParser, at: int) -> int | None:
     return at + 1 if tokens[at].text in UNITS else at
 
 
-def _unbounded(parser: FormulaParser, token: Token, span: Span) -> SpecificationError:
+def _unbounded(parser: FormulaParser, at: int, first: int, last: int) -> SpecificationError:
+    name = parser.texts[at]
     return parser.error(
-        f"'{token.text}' needs an interval with an upper bound, such as {token.text}[0:5]", span, BoundError
+        f"'{name}' needs an interval with an upper bound, such as {name}[0:5]",
+        _span(parser, first, last),
+        BoundError,
     )
 
 
 def _bound(parser: FormulaParser) -> Bound:
     """``bound = ( number , [ "/" , number ] | constant ) , [ unit ] | "inf"``."""
-    first = token = parser.next()
-    negative = first.text == "-"
-    if negative:
-        token = parser.next()
+    texts, first = parser.texts, parser.index
+    at = first
+    negative = texts[at] == "-"
+    at += negative
     value: Fraction | None
     unit = ""
-    if token.kind == "number":
-        value = _literal(parser, token)
+    parser.index = at + 1 if texts[at] else at  # the end is never consumed
+    if is_numeral(texts[at]):
+        value = _literal(parser, at)
         if parser.accept("/"):
             below = parser.next()
             if below.kind != "number":
                 raise parser.error(f"expected a number after '/', got {below}", below.span)
-            divisor = _literal(parser, below)
+            divisor = _literal(parser, parser.index - 1)
             if divisor == 0:
                 raise parser.error(
-                    "a bound may not be divided by zero", Span(token.start, below.end), BoundError
+                    "a bound may not be divided by zero", _span(parser, at, parser.index - 1), BoundError
                 )
             value /= divisor
-    elif token.kind in ("name", "quoted"):
+    elif parser.tokens[at].kind in _NAMED:
+        token = parser.tokens[at]
         stands_for = bound(parser, token.name, token.span)
         value, unit = stands_for or (_constant(parser, token), parser.scope.units.get(token.name, ""))
         if unit and unit not in UNITS:
@@ -161,10 +185,17 @@ def _bound(parser: FormulaParser) -> Bound:
                 BoundError,
             )
     else:
+        token = parser.tokens[at]
         raise parser.error(f"expected a bound (a number or a constant), got {token}", token.span)
-    span = Span(first.start, parser.tokens[parser.index - 1].end)
+    tokens = first, parser.index - 1
     if negative or (value is not None and value.numerator < 0):
-        raise parser.error("a bound may not be negative; for the past use a past operator", span, BoundError)
+        raise parser.error(
+            "a bound may not be negative; for the past use a past operator",
+            _span(parser, *tokens),
+            BoundError,
+        )
+    if texts[parser.index] in _AFTER:
+        return value, unit, tokens
     name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
     if name.text in UNITS and unit:
         raise parser.error(
@@ -172,18 +203,19 @@ def _bound(parser: FormulaParser) -> Bound:
         )
     if name.text in UNITS and value is not None:
         unit = parser.next().text
-    elif name.kind == "name" and after.text in (":", ",", "]", ")"):
+    elif name.kind == "name" and after.text in _AFTER:
         raise parser.error(
             f"'{name.text}' is not a unit of time{choices(name.text, UNITS, 'units')}", name.span
         )
-    return value, unit, span
+    return value, unit, tokens
 
 
-def _literal(parser: FormulaParser, token: Token) -> Fraction:
+def _literal(parser: FormulaParser, at: int) -> Fraction:
     try:
-        return exact(token.text)
+        return exact(parser.texts[at])
     except ValueError:
-        raise parser.error("the bound is beyond the range of a double", token.span, BoundError) from None
+        span = _span(parser, at, at)
+        raise parser.error("the bound is beyond the range of a double", span, BoundError) from None
 
 
 def _constant(parser: FormulaParser, token: Token) -> Fraction | None:

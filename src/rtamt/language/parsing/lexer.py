@@ -16,16 +16,16 @@ end        after the last token
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import accumulate
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import NUMBER
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from rtamt.language.operators import Language
 
 #: Not an operator, but one token, so that ``gap => 5`` gets a message of its own.
@@ -35,12 +35,16 @@ PUNCTUATION = [*"( ) [ ] , : ; = @ %".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
 _NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"
-_SKIP = r"\s*(?:(?://[^\n\r]*|/\*[\s\S]*?\*/)\s*)*"
+_COMMENT = r"//[^\n\r]*|/\*[\s\S]*?\*/"
+_QUOTED = r'"(?:[^"]|"")*"'
 
 #: A name that needs no quotes: a word, or words joined by dots.
 NAME = re.compile(_NAME)
 #: A topic such as ``/ns/req``, which is also a name where an operand can begin.
 TOPIC = re.compile(rf"(?:/{_NAME})+")
+#: What a comment or quoted name begins with.
+_OPENINGS = ("/*", '"')
+_DIGITS, _OTHER_LETTERS = frozenset("0123456789"), frozenset("_$")
 
 
 class Token(NamedTuple):
@@ -65,6 +69,48 @@ class Token(NamedTuple):
         return "the end of the text" if self.kind == "end" else f"'{self.text}'"
 
 
+class Tokens(Sequence[Token]):
+    """The tokens of a text, the last one of kind ``end``: columns, and a :class:`Token` where one is asked for.
+
+    Most tokens are read once, by their characters alone.
+    """
+
+    __slots__ = ("_made", "_symbols", "ends", "starts", "texts")
+
+    def __init__(
+        self, texts: list[str], starts: list[int], ends: list[int], symbols: Collection[str]
+    ) -> None:
+        self.texts = texts
+        self.starts = starts
+        self.ends = ends
+        self._symbols = symbols
+        self._made: list[Token | None] = [None] * len(texts)
+
+    def __len__(self) -> int:
+        return len(self.texts)
+
+    @overload
+    def __getitem__(self, at: int) -> Token: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Token]: ...
+
+    def __getitem__(self, at: int | slice) -> Token | list[Token]:
+        if isinstance(at, slice):
+            return [self[i] for i in range(*at.indices(len(self.texts)))]
+        token = self._made[at]
+        if token is None:
+            text = self.texts[at]
+            token = self._made[at] = Token(kind_of(text, self._symbols), text, self.starts[at], self.ends[at])
+        return token
+
+    def between(self, first: int, last: int) -> Tokens:
+        """Return the tokens from ``first`` to the one before ``last``, and an end."""
+        end = self.ends[last - 1]
+        texts, starts, ends = (column[first:last] for column in (self.texts, self.starts, self.ends))
+        return Tokens([*texts, ""], [*starts, end], [*ends, end], self._symbols)
+
+
 def is_word(spelling: str) -> bool:
     """Return whether an operator is spelled like a name, so that only its position distinguishes them.
 
@@ -75,18 +121,17 @@ def is_word(spelling: str) -> bool:
 
 
 @lru_cache(maxsize=32)  # keyed by text, so that no custom operator is kept alive
-def _pattern(spellings: tuple[str, ...]) -> re.Pattern[str]:
-    symbols = {s for s in spellings if not is_word(s)}.union(PUNCTUATION)
+def _lexicon(spellings: str) -> tuple[re.Pattern[str], Collection[str]]:
+    """Return the expression of one token, and the symbols."""
+    symbols = {s for s in spellings.split(" ") if not is_word(s)}.union(PUNCTUATION)
     symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
-    # Some alternative always matches after the skipped part, so the expression never backtracks into a comment.
-    return re.compile(
-        rf"{_SKIP}(?:(?P<name>{_NAME})|(?P<number>{NUMBER})"
-        rf'|(?P<quoted>"(?:[^"]|"")*")|(?P<unclosed>/\*|")'
-        rf"|(?P<symbol>{symbol})|(?P<end>\Z)|(?P<unknown>[\s\S]))"
-    )
+    # Every character that is not white space begins some alternative, so the expression never backtracks into a
+    # comment. An opening without an end takes the rest: else further ones would each be searched to the end.
+    token = rf'({_COMMENT}|{_NAME}|{NUMBER}|{_QUOTED}|(?:/\*|")[\s\S]*|{symbol}|\S)'
+    return re.compile(token), frozenset(symbols)
 
 
-def tokenize(text: str, language: Language) -> Sequence[Token]:
+def tokenize(text: str, language: Language) -> Tokens:
     r"""Split a text into tokens; the last one is of kind ``end``.
 
     A comment that begins with ``//`` ends at the end of its line: at ``\n``, ``\r\n`` or ``\r``, and at no other
@@ -99,20 +144,62 @@ def tokenize(text: str, language: Language) -> Sequence[Token]:
     """
     if not isinstance(text, str):
         raise UsageError(f"a formula is text, got {type(text).__name__}")
-    tokens: list[Token] = []
-    new, add = tuple.__new__, tokens.append  # half the cost of calling Token
-    for match in _pattern(language.spellings).finditer(text):
-        kind, group = match.lastgroup, match.lastindex
-        if kind is None or group is None or kind == "end":
-            break
-        start, end = match.span(group)
-        add(new(Token, (kind, text[start:end], start, end)))
-        if kind == "unclosed":
-            break  # nothing can follow; further openings would each be searched to the end of the text
+    pattern, symbols = _lexicon(language.spellings)
+    pieces = pattern.split(text)  # space, token, space, token, ..., space
+    places = list(accumulate(map(len, pieces)))
+    texts, starts, ends = pieces[1::2], places[::2], places[1::2]
+    if "/" in text and any(map(_is_comment, texts)):
+        kept = [at for at, piece in enumerate(texts) if not _is_comment(piece)]
+        texts, ends = [texts[at] for at in kept], [ends[at] for at in kept]
+        starts = [*(starts[at] for at in kept), len(text)]
+    if texts and _is_unclosed(texts[-1]):
+        texts[-1] = "/*" if texts[-1][0] == "/" else '"'
+        ends[-1] = starts[len(texts) - 1] + len(texts[-1])
     # The end is placed after the last token: a caret under a blank line would not help.
-    last = tokens[-1].end if tokens else 0
-    tokens.append(Token("end", "", last, last))
-    return tokens
+    starts[-1] = ends[-1] if ends else 0
+    texts.append("")
+    ends.append(starts[-1])
+    return Tokens(texts, starts, ends, symbols)
+
+
+def _is_comment(piece: str) -> bool:
+    return piece.startswith("//") or (piece.startswith("/*") and piece.endswith("*/") and len(piece) > 3)
+
+
+def _is_unclosed(piece: str) -> bool:
+    """Return whether a piece other than a comment begins a comment or quoted name that does not end."""
+    return piece.startswith("/*") or (piece.startswith('"') and '"' not in piece[1:])
+
+
+def kind_of(text: str, symbols: Collection[str]) -> str:
+    """Return the kind of a token from its characters; ``symbols``: those of the language."""
+    if text in symbols:
+        return "symbol"
+    if text in ("", *_OPENINGS):
+        return "unclosed" if text else "end"
+    if is_name(text):
+        return "name"
+    if is_quoted(text):
+        return "quoted"
+    return "number" if is_numeral(text) else "unknown"
+
+
+def is_name(text: str) -> bool:
+    """Return whether a token is a name without quotes."""
+    first = text[:1]
+    # As in NAME, where \d are the decimal digits of all scripts.
+    return (first.isalnum() and not first.isdecimal()) or first in _OTHER_LETTERS
+
+
+def is_quoted(text: str) -> bool:
+    """Return whether a token is a name in quotes."""
+    return len(text) > 1 and text[0] == '"'
+
+
+def is_numeral(text: str) -> bool:
+    """Return whether a token is a number."""
+    first = text[:1]
+    return first in _DIGITS or (first == "." and text[1:2] in _DIGITS)
 
 
 def quoted(name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from rtamt.language.formula import Const, Formula, Parameter, Span, Var
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import INFINITY, sign
-from rtamt.language.parsing.lexer import Token, quoted, tokenize, unquoted
+from rtamt.language.parsing.lexer import Token, Tokens, quoted, tokenize, unquoted
 from rtamt.language.parsing.templates import Use, Uses, meaning
 from rtamt.language.quantifiers import field_of
 from rtamt.language.units.durations import check_unit
@@ -29,21 +30,30 @@ class NameParser:
         self.language = language
         self.unit = check_unit(unit)
         self.scope = scope
-        self.tokens = tokenize(text, language)
-        self.index = 0
+        self.read(tokenize(text, language))
         #: The texts of all tokens: most texts have no definitions, no templates and no slashes.
-        self.words = {token.text for token in self.tokens}
+        self.words = set(self.texts)
         #: The names of the definitions that have been used so far.
         self.used: set[str] = set()
         self._depth = 0
+        self._opening, self._infix = language.openings.get, language.infixes.get
         self._sign = sign(language)
         self._slashes = scope.slashes if "/" in self.words else 0  # as many as any declared name has
-        #: The uses of templates so far.
-        self.uses = Uses()
         #: Where the template is used whose formula is being read; None outside templates.
         self.use: Use | None = None
         #: The IDs of the formulas that names have stood for.
         self.borrowed: set[int] = set()
+
+    @cached_property
+    def uses(self) -> Uses:
+        """The uses of templates so far."""
+        return Uses()
+
+    def read(self, tokens: Tokens) -> None:
+        """Continue at the first of these tokens."""
+        self.tokens = tokens
+        self.texts, self.starts, self.ends = tokens.texts, tokens.starts, tokens.ends
+        self.index = 0
 
     @property
     def token(self) -> Token:
@@ -59,7 +69,7 @@ class NameParser:
 
     def accept(self, symbol: str) -> bool:
         """Consume the next token if it is this symbol."""
-        if self.tokens[self.index].text == symbol:
+        if self.texts[self.index] == symbol:
             self.index += 1
             return True
         return False
@@ -76,16 +86,16 @@ class NameParser:
 
     def name(self) -> Formula:
         """``name = word , { "." , word } | topic | '"' , characters , '"'``."""
-        first = self.tokens[self.index]
-        if first.kind == "quoted":
+        first = last = self.index
+        text = self.texts[first]
+        if text[0] == '"':
             self.index += 1
-            return self._meaning(unquoted(first.text), first.span, plain=False)
-        last = self.index
-        if first.text == "/" or self.tokens[last + 1].text == "/":
+            return self._meaning(unquoted(text), Span(self.starts[first], self.ends[first]), plain=False)
+        if text == "/" or self.texts[last + 1] == "/":
             last = self._last_of_path()
+            text = self.text[self.starts[first] : self.ends[last]]
         self.index = last + 1
-        span = Span(first.start, self.tokens[last].end)
-        return self._meaning(self.text[span.start : span.end], span)
+        return self._meaning(text, Span(self.starts[first], self.ends[last]))
 
     def _last_of_path(self) -> int:
         """Return the index of the last token of the name here: ``a/b`` is a name only if it is declared."""
@@ -107,15 +117,19 @@ class NameParser:
 
     def _after_slash(self, at: int) -> int:
         """Return the index of the word after a slash at ``at`` if there is no space around it, else 0."""
-        slash, word = self.tokens[at], self.tokens[min(at + 1, len(self.tokens) - 1)]
+        if self.texts[at] != "/":
+            return 0
+        slash, word = self.tokens[at], self.tokens[at + 1]
         glued = at == self.index or self.tokens[at - 1].end == slash.start
-        found = slash.text == "/" and glued and word.kind == "name" and word.start == slash.end
+        found = glued and word.kind == "name" and word.start == slash.end
         return at + 1 if found else 0
 
     def _begins_topic(self, at: int) -> bool:
         """Return whether a topic such as ``/ns/req`` begins here: a slash after a space and before a word."""
+        if self.texts[at] != "/":
+            return False
         slash = self.tokens[at]
-        if slash.text != "/" or self.tokens[at + 1].kind != "name" or self.tokens[at + 1].start != slash.end:
+        if self.tokens[at + 1].kind != "name" or self.tokens[at + 1].start != slash.end:
             return False
         before = self.tokens[at - 1] if at else None
         return before is None or before.kind == "symbol" or before.end < slash.start
@@ -123,6 +137,8 @@ class NameParser:
     def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
         """Return the formula that a name stands for."""
         scope = self.scope
+        if scope.free:
+            return self._undefined(name, span, plain=plain)
         if scope.groups and (found := field_of(self, name, span)) is not None:
             return found
         argument = meaning(self, name, span) if scope.arguments else None
@@ -149,13 +165,15 @@ class NameParser:
         if scope.variables is not None and name in scope:
             return self.signal(name, span)
         member = self._member(name, span) if scope.enumerations else None
-        if member is not None:
-            return member
-        if name == INFINITY and plain:
-            return Const(inf, span)
+        return member or self._undefined(name, span, plain=plain)
+
+    def _undefined(self, name: str, span: Span, *, plain: bool) -> Formula:
+        """Return what a name stands for that is not defined: a variable, if these need no declaration."""
         if plain:
+            if name == INFINITY:
+                return Const(inf, span)
             self._not_an_operator(name, span)
-        if scope.variables is None:
+        if self.scope.variables is None:
             return Var(name, span)
         raise self._undeclared(name, span)
 
@@ -187,7 +205,7 @@ class NameParser:
 
         ``G`` may be a variable, and so may ``next`` in ``next >= 3``; ``next`` with nothing after it may not.
         """
-        opening, infix = self.language.opening(name), self.language.infix(name) is not None and len(name) > 1
+        opening, infix = self._opening(name), self._infix(name) is not None and len(name) > 1
         prefix = opening is not None and opening.fixity is Fixity.PREFIX and len(name) > 2
         if not (prefix or infix):
             return

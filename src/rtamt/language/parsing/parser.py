@@ -24,7 +24,7 @@ is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` 
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import islice, pairwise
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
@@ -43,10 +43,11 @@ from rtamt.language.parsing.grammar import (
     passes_on,
 )
 from rtamt.language.parsing.intervals import parse_interval
+from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.templates import Template, parse_use
 from rtamt.language.parsing.typed_parser import TypedParser
-from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
+from rtamt.language.quantifiers import begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
 
 if TYPE_CHECKING:
@@ -54,8 +55,14 @@ if TYPE_CHECKING:
 
     from rtamt.errors import SpecificationError
     from rtamt.language.parsing.lexer import Token
+    from rtamt.language.parsing.typed_parser import Place
     from rtamt.language.quantifiers import Group
     from rtamt.language.value_types import Enumeration, ValueType
+
+
+_UNTIMED = Bounds.NONE
+#: What follows an operator, a function, a table or the use of a template.
+_OPENING = frozenset("([")
 
 
 class FormulaParser(TypedParser):
@@ -83,36 +90,37 @@ class FormulaParser(TypedParser):
         if self._depth >= MAX_DEPTH:
             raise self._too_deep()
         self._depth += 1
-        start = self.tokens[self.index].start
+        texts, starts, ends = self.texts, self.starts, self.ends
+        start = starts[self.index]
         left = self.operand(power, under)
-        last: tuple[Operator, Formula, Span] | None = None
+        last: tuple[Operator, Formula, Place] | None = None
         while True:
-            token = self.tokens[self.index]
-            op = self.language.infix(token.text)
-            if op is None and token.text == "in" and self._begins_set(power):
-                left = self.membership(left, Span(start, self.tokens[self.index - 1].end))
+            at = self.index
+            op = self._infix(texts[at])
+            if op is None and texts[at] == "in" and self._begins_set(power):
+                left = self.membership(left, Span(start, ends[at - 1]))
                 last = None
                 continue
             if op is None or op.power < power:
                 break
-            left_place = Span(start, self.tokens[self.index - 1].end)
-            self.index += 1
-            timed = op.bounds is not Bounds.NONE or self.tokens[self.index].text == "["
-            interval = parse_interval(self, op, token) if timed else None
-            right_start = self.tokens[self.index].start
+            left_end = ends[at - 1]
+            self.index = at + 1
+            timed = op.bounds is not _UNTIMED or texts[at + 1] == "["
+            interval = parse_interval(self, op, at) if timed else None
+            right_start = starts[self.index]
             right = self.compared(op, left) if self.scope.enumerations else self._right(op)
-            end = self.tokens[self.index - 1].end
-            place = Span(right_start, end)
+            end = ends[self.index - 1]
+            place = right_start, end
             if last is not None and is_predicate(op) and is_predicate(last[0]):
-                _, middle, span = last
+                _, middle, between = last
                 both = self.language.get("and")
                 if both is None or not chains(last[0], op):
-                    whole, link = Span(start, end), Span(token.start, token.end)
-                    raise self.error(diagnostics.no_chain(self.text, whole, span, link), whole)
-                comparison = self.apply(op, (middle, right), (span, place))
+                    whole, link = Span(start, end), Span(starts[at], ends[at])
+                    raise self.error(diagnostics.no_chain(self.text, whole, Span(*between), link), whole)
+                comparison = self.apply(op, (middle, right), (between, place))
                 left = Apply(both, (left, comparison), None, Span(start, end))
             else:
-                left = self.apply(op, (left, right), (left_place, place), interval)
+                left = self.apply(op, (left, right), ((start, left_end), place), interval)
             last = (op, right, place)
         self._depth -= 1
         return left
@@ -123,75 +131,88 @@ class FormulaParser(TypedParser):
 
     def operand(self, power: int, under: Operator | None) -> Formula:
         """``operand = number | name | atom | group | call | prefix | choice``."""
-        token = self.tokens[self.index]
-        if token.kind == "number":
+        at = self.index
+        text = self.texts[at]
+        if is_numeral(text):
             return self.number()
-        if token.text in QUANTIFIERS and begins_quantifier(self):
+        if begins_quantifier(self):
             return parse_quantifier(self)
-        op = self.language.opening(token.text)
+        after = self.texts[at + 1] if text else ""
+        op = self._opening(text)
         if op is not None:
-            if op.fixity is Fixity.PREFIX and (token.kind != "name" or self._applies(self.index)):
+            if op.fixity is Fixity.PREFIX and (after in _OPENING or not is_name(text) or self._applies(at)):
                 return self.prefix(op, power, under)
-            if op.fixity is Fixity.FUNCTION and self.tokens[self.index + 1].text in ("(", "["):
+            if op.fixity is Fixity.FUNCTION and after in _OPENING:
                 return self.call(op)
             if op.fixity is Fixity.ATOM:
                 self.index += 1
-                return Apply(op, (), None, token.span)
-            if op.fixity is Fixity.CONDITIONAL and self._begins_choice(self.index):
+                return Apply(op, (), None, Span(self.starts[at], self.ends[at]))
+            if op.fixity is Fixity.CONDITIONAL and self._begins_choice(at):
                 return self.choice(op, power, under)
-        table = self.scope.tables.get(token.name) if token.kind in ("name", "quoted") else None
-        if table is not None and self.tokens[self.index + 1].text in ("(", "["):
-            return self.call(table)
-        if token.kind == "name" and self.tokens[self.index + 1].text == "(":
-            template = self.scope.templates.get(token.text)
-            if template is not None:
-                return parse_use(self, template)
-            hint = did_you_mean(token.text, (*self.scope.templates, *self.scope.tables))
-            if hint or token.text in self.scope.pending:
-                message = self.scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
-                raise self.error(message, token.span, NameInFormulaError)
-        if token.kind in ("name", "quoted"):
-            return self.name()
-        if token.text == "(":
+        if text == "(":
             return self.group()
-        if self._begins_topic(self.index):
+        if is_name(text) or is_quoted(text):
+            return (self._applied(at) if after in _OPENING else None) or self.name()
+        if self._begins_topic(at):
             return self.name()
-        raise self.error(*diagnostics.no_operand(self.tokens, self.index))
+        raise self.error(*diagnostics.no_operand(self.tokens, at))
+
+    def _applied(self, at: int) -> Formula | None:
+        """Parse what a bracket or parenthesis follows: a table, or the use of a template."""
+        token, scope = self.tokens[at], self.scope
+        table = scope.tables.get(token.name)
+        if table is not None:
+            return self.call(table)
+        if token.kind == "quoted" or self.texts[at + 1] != "(":
+            return None
+        template = scope.templates.get(token.text)
+        if template is not None:
+            return parse_use(self, template)
+        hint = did_you_mean(token.text, (*scope.templates, *scope.tables))
+        if hint or token.text in scope.pending:
+            message = scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
+            raise self.error(message, token.span, NameInFormulaError)
+        return None
 
     def number(self) -> Const:
         """``number = decimal literal``."""
-        token = self.next()
-        value = float(token.text)
+        at = self.index
+        self.index += 1
+        value = float(self.texts[at])
+        span = Span(self.starts[at], self.ends[at])
         if isinf(value):
             raise self.error(
-                f"{token.text} is larger than every double; for infinity write {INFINITY}", token.span
+                f"{self.texts[at]} is larger than every double; for infinity write {INFINITY}", span
             )
-        return Const(value, token.span)
+        return Const(value, span)
 
     def group(self) -> Formula:
         """``group = "(" , expression , ")"``."""
-        opening = self.next()
+        opening = self.index
+        self.index += 1
         inner = self.expression()
         if not self.accept(")"):
-            raise self.error(*diagnostics.no_close(self.language, self.tokens, self.index, opening))
+            raise self.error(
+                *diagnostics.no_close(self.language, self.tokens, self.index, self.tokens[opening])
+            )
         return inner
 
     def call(self, op: Operator) -> Formula:
         """``call = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"``."""
         name = self.next()
-        interval = parse_interval(self, op, name)
+        interval = parse_interval(self, op, self.index - 1)
         opening = self.token
         if not self.accept("("):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
         if op.share:
             assert interval is not None
             interval = replace(interval, share=parse_share(self, name.text))
-        starts, operands = [self.token.start], [self.argument(op, 0)]
-        ends = [self.tokens[self.index - 1].end]
-        while self.accept(","):
-            starts.append(self.token.start)
+        operands: list[Formula] = []
+        places: list[Place] = []
+        while not operands or self.accept(","):
+            start = self.starts[self.index]
             operands.append(self.argument(op, len(operands)))
-            ends.append(self.tokens[self.index - 1].end)
+            places.append((start, self.ends[self.index - 1]))
         if not self.accept(")"):
             raise self.error(
                 *diagnostics.no_close(self.language, self.tokens, self.index, opening, "',' or ')'")
@@ -203,7 +224,6 @@ class FormulaParser(TypedParser):
             number = f"{least} or {count}" if op.optional else f"{count} or more" if op.folds else str(count)
             noun = "operand" if number == "1" else "operands"
             raise self.error(f"'{name.text}' takes {number} {noun}, got {len(operands)}", span)
-        places = list(map(Span, starts, ends))
         result = self.apply(op, tuple(operands[:count]), places[:count], interval, span)
         for operand, place in zip(operands[count:], places[count:], strict=True):
             result = self.apply(op, (result, operand), (span, place), interval, span)
@@ -211,7 +231,7 @@ class FormulaParser(TypedParser):
 
     def argument(self, op: Operator, position: int, power: int = 0) -> Formula:
         """Parse an operand of an operator; strict ones take no formula for a number."""
-        start = self.token.start
+        start = self.starts[self.index]
         operand = self.expression(power)
         sort = op.operands[min(position, len(op.operands) - 1)]
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
@@ -248,19 +268,21 @@ class FormulaParser(TypedParser):
 
     def prefix(self, op: Operator, power: int, under: Operator | None) -> Formula:
         """``prefix = prefix operator , [ interval ] , expression``; a minus before a number is its sign."""
-        token = self.next()
+        at = self.index
+        self.index += 1
+        starts, ends = self.starts, self.ends
         if op is self._sign:
             value = self._signed(op)
             if value is not None:
-                return Const(-value, Span(token.start, self.tokens[self.index - 1].end))
-        interval = parse_interval(self, op, token)
+                return Const(-value, Span(starts[at], ends[self.index - 1]))
+        interval = parse_interval(self, op, at)
         # Under `not`, which binds tighter, `always` extends no further than `not` itself would.
-        start = self.token.start
+        start = starts[self.index]
         operand = self.expression(max(power, op.power), op)
-        end = self.tokens[self.index - 1].end
+        end = ends[self.index - 1]
         if op.power < power and not (under is not None and passes_on(under)):
-            self._one_reading(op, token, under)
-        return self.apply(op, (operand,), (Span(start, end),), interval, Span(token.start, end))
+            self._one_reading(op, self.tokens[at], under)
+        return self.apply(op, (operand,), ((start, end),), interval, (starts[at], end))
 
     def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:
         """Reject an operand whose extent is ambiguous: a weaker prefix operator after a stronger operator.
@@ -320,11 +342,11 @@ class FormulaParser(TypedParser):
             return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
         # `if - x then` has no other reading, for two operands are adjacent.
         depth = 0
-        for before, token in pairwise(self.tokens[at + 1 :]):
-            depth += (before.text in ("(", "[")) - (before.text in (")", "]"))
-            if depth < 0 or before.text in (";", "="):
+        for place, (before, text) in enumerate(pairwise(islice(self.texts, at + 1, None)), at + 1):
+            depth += (before in ("(", "[")) - (before in (")", "]"))
+            if depth < 0 or before in (";", "="):
                 return False
-            if depth == 0 and token.text == THEN and self._ends_operand(before):
+            if depth == 0 and text == THEN and self._ends_operand(self.tokens[place]):
                 return True
         return False
 

@@ -126,7 +126,7 @@ class RequirementParser(FormulaParser):
         return self._at(ahead).text == ":"
 
     def _word(self, word: str) -> bool:
-        return self.token.kind == "name" and self.token.text == word
+        return self.texts[self.index] == word
 
     def _at(self, ahead: int) -> Token:
         return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
@@ -134,7 +134,7 @@ class RequirementParser(FormulaParser):
     def _plain_name(self, ahead: int) -> bool:
         """Return whether the token that far ahead is a name that cannot be an infix operator."""
         token = self._at(ahead)
-        return token.kind in ("name", "quoted") and self.language.infix(token.text) is None
+        return self._infix(token.text) is None and token.kind in ("name", "quoted")
 
     # ---- errors ----------------------------------------------------------------------------------
 

@@ -49,7 +49,7 @@ def _written(seconds: Fraction) -> str:
 
 def begins_sampling(parser: RequirementParser) -> bool:
     """Return whether a sampling rule begins here: ``sample`` and a number, which no formula begins with."""
-    if parser.token.text != "sample":
+    if parser.texts[parser.index] != "sample":
         return False
     first, second = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
     return first.kind == "name" and first.text == "sample" and second.kind == "number"

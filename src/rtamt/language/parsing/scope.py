@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from rtamt.language.value_types import Enumeration, ValueType
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)  # not frozen, which would take thrice as long to make: nothing changes it
 class Scope:
     """The meaning of names; with ``variables=None``, every other name is a variable.
 
@@ -53,6 +54,17 @@ class Scope:
             return True
         declared = self.variables or ()
         return name in declared or name.split(".", 1)[0] in declared
+
+    @cached_property
+    def free(self) -> bool:
+        """Whether no name has a meaning here, so that every one is a variable."""
+        meant = self.constants or self.definitions or self.pending or self.templates or self.arguments
+        return self.variables is None and not (meant or self.enumerations or self.tables or self.groups)
+
+    @cached_property
+    def typed(self) -> bool:
+        """Whether operands may be anything but numbers and formulas; what a template is applied to may be anything."""
+        return bool(self.types or self.enumerations or self.arguments or self.members)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -31,7 +31,7 @@ that no other assertion uses; if there are none of these either, the last assert
 
 from __future__ import annotations
 
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -149,7 +149,7 @@ class _DocumentParser(DeclarationParser):
         names = dict.fromkeys(variables) or None  # a dict for fast lookup
         self._slashes = self._scope(names).slashes if "/" in self.words else 0
         found: list[Assertion] = []
-        while self.token.kind != "end":
+        while self.texts[self.index]:
             required = self._requires()
             if self._imports_file():
                 raise self.error("imports stand at the beginning, before declarations", self.token.span)
@@ -167,12 +167,12 @@ class _DocumentParser(DeclarationParser):
                 name = known.name
                 found.append(Assertion(name, known.formula, known.span))
             else:
-                start, token, name = self.token.start, self.token, self._assertion_name()
+                first, name = self.index, self._assertion_name()
                 if name is not None:
-                    self._check_new(name, token)
+                    self._check_new(name, self.tokens[first])
                     pending[name] = f"'{name}' is used in its own definition"
                 formula = self.formula()
-                whole = Span(start, self.tokens[self.index - 1].end)
+                whole = Span(self.starts[first], self.ends[self.index - 1])
                 # A name stands for what it was given, a Boolean for a number too.
                 found.append(
                     Assertion(name, self.standing_alone(formula, whole, named=name is not None), whole)
@@ -182,7 +182,7 @@ class _DocumentParser(DeclarationParser):
                     self._definitions[name] = formula
                     self._slashes = max(self._slashes, name.count("/"))
             # A formula without a name may continue on the next line, so it needs a semicolon.
-            if self.token.kind != "end" and not (
+            if self.texts[self.index] and not (
                 self.accept(";")
                 or (self._begins_a_line(self.index) and (name or self._requires() or begins_template(self)))
             ):
@@ -218,7 +218,7 @@ class _DocumentParser(DeclarationParser):
     def _begins_declaration(self) -> bool:
         """Return whether a declaration or annotation begins here."""
         return (
-            self.token.text == "@"
+            self.texts[self.index] == "@"
             or self._declares()
             or begins_enumeration(self)
             or begins_table(self)
@@ -227,17 +227,18 @@ class _DocumentParser(DeclarationParser):
         )
 
     def _begins_a_line(self, at: int) -> bool:
-        between = self.text[self.tokens[at - 1].end : self.tokens[at].start]
+        between = self.text[self.ends[at - 1] : self.starts[at]]
         return "\n" in between or "\r" in between
 
     def _assertion_name(self) -> str | None:
         """``[ name , "=" ]``."""
-        token, last = self.token, self.index
-        if token.kind not in ("name", "quoted"):
+        last = self.index
+        if "=" not in self.words or self.token.kind not in ("name", "quoted"):
             return None
+        token = self.token
         while (after := self._after_slash(last + 1)) > 0:
             last = after
-        if self.tokens[last + 1].text != "=":
+        if self.texts[last + 1] != "=":
             return None
         self._check_nameable(token)
         self.index = last + 2
@@ -248,15 +249,15 @@ class _DocumentParser(DeclarationParser):
         if "=" not in self.words:
             return {}
         # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3), or names an argument.
-        depth = accumulate((token.text == "(") - (token.text == ")") for token in self.tokens)
+        depth = accumulate((text == "(") - (text == ")") for text in self.texts)
         names = [
-            token.name
-            for at, (inside, (token, after)) in enumerate(zip(depth, pairwise(self.tokens), strict=False))
-            if at >= self.index
+            self.tokens[at].name
+            for at, (inside, after) in enumerate(zip(depth, self.texts[1:], strict=False))
+            if after == "="
+            and at >= self.index
             and inside <= 0
-            and token.kind in ("name", "quoted")
-            and after.text == "="
-            and (at == self.index or self.tokens[at - 1].text == ";" or self._begins_a_line(at))
+            and self.tokens[at].kind in ("name", "quoted")
+            and (at == self.index or self.texts[at - 1] == ";" or self._begins_a_line(at))
         ]
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 

@@ -17,7 +17,7 @@ def templates_to_come(parser: FormulaParser) -> dict[str, str]:
     """Return the templates that are defined further down, each with the error message for an earlier use."""
     if "def" not in parser.words:
         return {}
-    words = [token.text for token in parser.tokens]
+    words = parser.texts
     starts = [at for at in range(parser.index, len(words) - 2) if words[at] == "def" and words[at + 2] == "("]
     names = {words[at + 1] for at in starts}
     uses = {

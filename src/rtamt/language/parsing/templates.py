@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
-from rtamt.language.parsing.lexer import Token
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
 
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.errors import SpecificationError
+    from rtamt.language.parsing.lexer import Token, Tokens
     from rtamt.language.parsing.names import NameParser
     from rtamt.language.parsing.parser import FormulaParser
     from rtamt.language.parsing.scope import Scope
@@ -68,7 +68,7 @@ class Template:
     name: str
     parameters: tuple[Parameter, ...]
     text: str
-    tokens: Sequence[Token]
+    tokens: Tokens
     scope: Scope
 
     @property
@@ -126,7 +126,7 @@ class Uses:
 
 def begins_template(parser: FormulaParser) -> bool:
     """Return whether a template is defined here: ``def``, a name and a parenthesis, which no formula begins with."""
-    if parser.token.text != "def":
+    if parser.texts[parser.index] != "def":
         return False
     first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
     named = second.kind == "name" and parser.language.infix(second.text) is None
@@ -153,9 +153,7 @@ def parse_template(parser: FormulaParser) -> Template:
     parser.scope = replace(outer, arguments=unknown)
     parser.formula()
     parser.scope = outer
-    end = parser.tokens[parser.index - 1].end
-    tokens = (*parser.tokens[begin : parser.index], Token("end", "", end, end))
-    return Template(name.text, parameters, parser.text, tokens, outer)
+    return Template(name.text, parameters, parser.text, parser.tokens.between(begin, parser.index), outer)
 
 
 def _parameters(parser: FormulaParser, name: Token) -> tuple[Parameter, ...]:
@@ -299,7 +297,8 @@ def _instance(
         if use is None
         else Use(*use[:2], (*use.names, template.name))
     )
-    inner.text, inner.tokens, inner.index = template.text, template.tokens, 0
+    inner.text = template.text
+    inner.read(template.tokens)
     inner.scope = replace(template.scope, arguments=arguments)
     inner.borrowed = {id(argument.formula) for argument in arguments.values()}
     formula = inner.expression()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Interval
     from rtamt.language.operators import Operator
 
+    #: A half-open range of characters; a :class:`Span` is one.
+    Place: TypeAlias = tuple[int, int]
+
+_CONDITION = Sort.CONDITION
+
 
 class TypedParser(NameParser):
     """Names of members, and operators over operands that have types."""
@@ -31,31 +36,29 @@ class TypedParser(NameParser):
         self,
         op: Operator,
         args: tuple[Formula, ...],
-        places: Sequence[Span],
+        places: Sequence[Place],
         interval: Interval | None = None,
-        span: Span | None = None,
+        span: Place | None = None,
     ) -> Apply:
         """Apply an operator to operands as their types demand. ``places``: where the operands are written."""
-        # What a template is applied to may have a type that the file of the template does not know.
+        whole = tuple.__new__(Span, span or (places[0][0], places[-1][1]))  # half the cost of calling Span
         if op.presence and not isinstance(args[0], Var):
             raise self.error(
                 f"'{op.spellings[0]}' takes a variable, whose samples may be missing; "
                 f"'{self._written(places[0])}' is none",
-                places[0],
+                Span(*places[0]),
             )
-        if self.scope.types or self.scope.enumerations or self.scope.arguments or self.scope.members:
+        if self.scope.typed:
             try:
                 op, args = typed(op, args, lambda k: self._written(places[k]), self.member_text)
             except MistypedError as error:
-                whole = span or Span(places[0].start, places[-1].end)
-                raise self.error(
-                    error.message, whole if error.operand is None else places[error.operand]
-                ) from None
-        if Sort.CONDITION in op.operands:
+                place = whole if error.operand is None else Span(*places[error.operand])
+                raise self.error(error.message, place) from None
+        if _CONDITION in op.operands:
             self._check_conditions(op, args, places)
-        return Apply(op, args, interval, span or Span(places[0].start, places[-1].end))
+        return Apply(op, args, interval, whole)
 
-    def _check_conditions(self, op: Operator, args: Sequence[Formula], places: Sequence[Span]) -> None:
+    def _check_conditions(self, op: Operator, args: Sequence[Formula], places: Sequence[Place]) -> None:
         """Reject numbers where an operator takes a condition."""
         for sort, operand, place in zip(op.operands, args, places, strict=False):
             if sort is Sort.CONDITION and is_number(operand) and type_of(operand) is None:
@@ -63,7 +66,7 @@ class TypedParser(NameParser):
                 raise self.error(
                     f"'{written}' is a number, and '{op.spellings[0]}' needs a condition, which is true or false; "
                     f"compare it, such as {written} > 0",
-                    place,
+                    Span(*place),
                 )
 
     def standing_alone(self, formula: Formula, span: Span, *, named: bool = False) -> Formula:
@@ -79,7 +82,7 @@ class TypedParser(NameParser):
     def _begins_set(self, power: int) -> bool:
         """Return whether ``{`` follows ``in``, which binds as ``==`` does; elsewhere ``in`` is a name."""
         equal = self.language.get("eq")
-        braced = self.tokens[self.index + 1].text == "{"
+        braced = self.texts[self.index + 1] == "{"
         return braced and equal is not None and power <= equal.power
 
     def membership(self, left: Formula, place: Span) -> Formula:
@@ -122,8 +125,9 @@ class TypedParser(NameParser):
     def _right(self, op: Operator) -> Formula:
         raise NotImplementedError
 
-    def _written(self, place: Span) -> str:
-        return self.text[place.start : place.end]
+    def _written(self, place: Place) -> str:
+        start, end = place
+        return self.text[start:end]
 
     # ---- names ---------------------------------------------------------------------------------
 

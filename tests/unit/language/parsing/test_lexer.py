@@ -1,5 +1,7 @@
 """Text to tokens."""
 
+import time
+
 import pytest
 
 from rtamt.language.formula import Span
@@ -79,3 +81,17 @@ def test_every_spelling_is_one_token():
         for spelling in op.spellings:
             assert texts(f" {spelling} ") == [spelling]
             assert kinds(spelling) == ["name" if is_word(spelling) else "symbol", "end"]
+
+
+@pytest.mark.parametrize("opening", ["/*", '"', "/* ", 'a "', "//", "/*/"])
+def test_time_does_not_grow_with_the_square_of_openings_without_an_end(opening):
+    start = time.process_time()
+    tokens = tokenize(opening * 100_001, STL)
+    assert tokens[-1].kind == "end"
+    assert time.process_time() - start < 5
+
+
+def test_tokens_between_two_places_end_where_the_last_one_does():
+    part = tokenize("a and (b) or c", STL).between(1, 4)
+    assert [token.text for token in part] == ["and", "(", "b", ""]
+    assert part[-1] == ("end", "", 8, 8)
