@@ -226,7 +226,7 @@ class OnlineSpecification(QuantifiedText):
         domain = self._domain_for(time, period, tolerance, resolution).online
         make = domain.part("members")
         unfit = [f"verdict='{verdict}'"] if verdict != DELAYED else [f"{name}=" for name in settings]
-        unfit += ["time_unit="] if time_unit is not None else []
+        unfit += ["time_unit="] if time_unit is not None and not domain.continuous else []
         unfit += [f"time='{domain.name}'"] if make is None else []
         for what in unfit:
             raise UsageError(
@@ -248,11 +248,14 @@ class OnlineSpecification(QuantifiedText):
                 "evaluate recordings"
             )
         splitting = Splitting(
-            domain.period or Fraction(1), lambda formula: apply_semantics(formula, chosen, roles), self.text
+            domain.period or Fraction(1),
+            lambda formula: apply_semantics(formula, chosen, roles),
+            self.text,
+            continuous=domain.continuous,
         )
         found = [Watched(self.text, self.formula, self.text)]
         found += [replace(self._watched(each, "standard")) for each in watch]
-        (formula, *others), quantified = splitting.outer(tuple(each.formula for each in found))
+        (formula, *others), quantified = splitting.outer(domain.ground(*(each.formula for each in found)))
         monitor = make(
             formula,
             domain,
@@ -264,9 +267,16 @@ class OnlineSpecification(QuantifiedText):
             declared=self._declared,
             watch=[replace(each, formula=other) for each, other in zip(found[1:], others, strict=True)],
             factory=partial(
-                _monitor, self, time=domain, tolerance=tolerance, semantics=semantics, watch=watch
+                _monitor,
+                self,
+                time=domain,
+                tolerance=tolerance,
+                semantics=semantics,
+                watch=watch,
+                time_unit=time_unit,
             ),
             types=self.types,
+            **({} if time_unit is None else {"unit": time_unit}),
         )
         monitor.bind(self.binding)
         return cast("OnlineMonitor", monitor)  # not a subclass: it has several

@@ -15,6 +15,7 @@ from rtamt.rewrite.ground import ground
 from tests.conformance.test_conformance import (
     agree,
     formula_of,
+    instant_by_instant,
     one_after_another,
     same,
     specification,
@@ -115,9 +116,11 @@ def test_offline(part: int, backend: str) -> None:
 @parts
 def test_sample_by_sample(part: int, backend: str) -> None:
     for case in CORPUS[part::PARTS]:
-        if case.known is not None and case.time == "discrete":
+        if case.known is not None:
             monitor = specification(case, backend).monitor()
-            one_after_another(case, monitor, data_of(case))
+            (one_after_another if case.time == "discrete" else instant_by_instant)(
+                case, monitor, data_of(case)
+            )
 
 
 def test_there_are_cases_of_each_kind_and_trees_of_all_formulas() -> None:

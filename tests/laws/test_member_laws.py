@@ -13,7 +13,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import STL
 from rtamt.language.quantifiers import Binder, Field, FieldOf, Group, quantified
 from rtamt.rewrite.truth import rebuilt
-from rtamt.testing.strategies import formulas, traces
+from rtamt.testing.strategies import dense_chunkings, dense_traces, formulas, traces
 
 CARS = Group("cars", "car_*", (Field("x"),))
 COMBINED = {"forall": np.min, "exists": np.max, "count": lambda truths, axis: np.sum(truths > 0, axis=axis)}
@@ -21,10 +21,10 @@ SUMS = ("sum", "mean", "integral")
 EMPTY = {"forall": np.inf, "exists": -np.inf, "count": 0.0}
 
 
-def quantify(word: str, body: Formula, other: str | None = None) -> Formula:
+def quantify(word: str, body: Formula, other: str | None = None, *, step: bool = True) -> Formula:
     """Return a quantifier over a formula whose variables x become fields v.x.
 
-    ``other``: a quantifier inside it, over other members, for which y is w.x, too.
+    ``other``: a quantifier inside it, over other members, for which y is w.x, too; ``step``: one sample ahead.
     """
 
     def over(variable: str, name: str) -> Formula:
@@ -39,7 +39,8 @@ def quantify(word: str, body: Formula, other: str | None = None) -> Formula:
         return quantified(word, Binder("v", CARS))(over("v", "x"))
     body = over("w", "y")
     inner = quantified(other, Binder("w", CARS, (("v", "w"),)))(body)
-    body = STL["next"](STL["or"](inner, Const(-1.0)))
+    body = STL["or"](inner, Const(-1.0))
+    body = STL["next"](body) if step else body
     return quantified(word, Binder("v", CARS))(over("v", "x"))
 
 
@@ -139,3 +140,75 @@ def test_a_stream_of_members_gives_what_the_whole_recording_gives(data):
         signals = [*map(chunks.update_many, parts), chunks.finish()]
         np.testing.assert_array_equal(np.concatenate([signal.values for signal in signals]), expected)
         np.testing.assert_array_equal(np.concatenate([signal.times for signal in signals]), np.arange(n))
+
+
+@st.composite
+def dense_scenes(draw, until: int) -> dict[str, list[tuple[int, float | None]]]:
+    """Draw the x of some cars in ticks, None where one disappears."""
+    trace = draw(dense_traces(("a", "b", "c"), max_size=6))
+    scene = {}
+    for name, (ticks, values) in trace.items():
+        shown = draw(st.lists(st.booleans(), min_size=len(ticks), max_size=len(ticks)))
+        samples = [
+            (int(t), float(x) if here else None) for t, x, here in zip(ticks, values, shown, strict=True)
+        ]
+        scene[f"car_{name}.x"] = [each for each in samples if each[0] <= until]
+    return {name: samples for name, samples in scene.items() if any(x is not None for _, x in samples)}
+
+
+@st.composite
+def arrivals(draw, own, cars):
+    """Draw a split of ordinary signals and cars into updates, in which no sample of a car comes too late."""
+    updates = [dict(each) for each in draw(dense_chunkings(own))]
+    lasts: dict[str, int] = {}
+    known = []
+    for update in updates:
+        lasts |= {name: int(ticks[-1]) for name, (ticks, _) in update.items() if len(ticks)}
+        known.append(min(lasts.values()) if len(lasts) == len(own) else -1)
+    for name, samples in cars.items():
+        at = 0
+        for tick, x in samples:
+            latest = next((k for k, until in enumerate(known) if until >= tick), len(updates) - 1)
+            at = draw(st.integers(at, latest))
+            ticks, values = updates[at].get(name, ([], []))
+            updates[at][name] = [*ticks, tick], [*values, x]
+    return updates
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@given(data=st.data())
+def test_a_dense_stream_of_members_gives_what_the_whole_recording_gives(backend, data):
+    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
+    timed = {"discrete": False, "unbounded_future": False}
+    body = quantify(
+        word, data.draw(formulas(3, **timed)), data.draw(st.sampled_from((None, other))), step=False
+    )
+    both = STL["and"](STL["and"](Var("y"), Var("z")), body)
+    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"), **timed)), body), both)
+    own = data.draw(dense_traces(("y", "z"), max_size=6))
+    cars = data.draw(dense_scenes(int(min(ticks[-1] for ticks, _ in own.values()))))
+    if not cars:
+        return
+    spec = rtamt.parse('group cars = "car_*"; true', time="dense", resolution="1s", backend=backend)
+    spec = spec.with_formula(formula)
+    whole = {**own, **{name: tuple(zip(*samples, strict=True)) for name, samples in cars.items()}}
+    try:
+        expected = spec.evaluate(whole).signal.points()
+        monitor, found = spec.monitor(), []
+        for update in data.draw(arrivals(own, cars)):
+            known = monitor.update_many(update).points()
+            if known:
+                assert known[-1][0] == min(monitor._inputs.last[name] for name in own) - monitor.horizon
+            found += known
+        found += monitor.finish().points()
+    except EvaluationError:
+        return
+    times = [t for t, _ in found]
+    assert times == sorted(set(times))
+    assert times[-1] == expected[-1][0]
+    assert changes_of(found) == changes_of(expected)
+
+
+def changes_of(points):
+    """Return the points at which a step function changes."""
+    return [each for k, each in enumerate(points) if k == 0 or each[1] != points[k - 1][1]]

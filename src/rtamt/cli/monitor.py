@@ -62,7 +62,8 @@ ignored. Timestamps are found and read as in files (see 'rtamt check --help'): i
 stamp or datetime, with an optional unit ('t [ms]', 'time_ms'), else in the only column of dates. Without
 timestamps, samples are one period apart. A stream does not reveal its period in advance: --period sets it
 (default: 1 s; timestamps must then be 1 s apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
-In discrete time, members of groups may come and go: one that is left out, null or an empty cell is absent.
+Members of groups may come and go: in discrete time, one that is left out, null or an empty cell is absent; in dense
+time null or an empty cell ends its presence, and its samples come before those of the other variables, or with them.
 
 With --time dense, signals change at any instant, and each has its own time base: a JSON object may contain only
 some of the variables, a cell of CSV may be empty, and a line of output is printed for every change and for the
@@ -207,8 +208,7 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
 def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
     """Raise :class:`CommandError` for what no monitor of members that come and go offers."""
     rule = spec.domain.sampling(spec.sampling)
-    unfit = [f"--time {args.time}"] if spec.domain.part("members") is None else []
-    unfit += [f"--verdict {args.verdict}"] if args.verdict not in {None, DELAYED} else []
+    unfit = [f"--verdict {args.verdict}"] if args.verdict not in {None, DELAYED} else []
     unfit += [f"'{rule}'"] if rule is not None and rule.hold else []
     for what in unfit:
         raise CommandError(

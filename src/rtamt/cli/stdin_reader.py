@@ -344,11 +344,9 @@ class CsvSamples:
         check_width(row, header, number)
         if self._timestamps.clock is None:
             self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))
-        given = self._columns
-        if self._dense:
-            given = [c for c in given if row[c.position].strip()]
-        absent = [c for c in given if c.name in self._may_be_absent and not row[c.position].strip()]
-        given = [c for c in given if c not in absent]
+        empty = [c for c in self._columns if not row[c.position].strip()]
+        absent = [c for c in empty if c.name in self._may_be_absent]
+        given = [c for c in self._columns if c not in (empty if self._dense else absent)]
         for column in given:
             self._timestamps.require(column.name, row[column.position].strip(), number)
         members = {c.name: self._member(c, row, number) for c in given if c.name in self._types}

@@ -11,6 +11,7 @@ offline         evaluate queries on a recording; cache compiled plans
 offline_bounds  offline bounds of recordings with missing or uncertain samples
 time_axis        a recording divided into cells, as explanations evaluate it
 online          watched formulas and copies, shared by the monitors
+quantifiers     monitors of quantifiers over members that come and go, in both time domains
 usage_guard     reject concurrent and reentrant use of a monitor
 native          load the compiled core
 user_operators  call custom operators from the core

@@ -55,9 +55,16 @@ class Splitting:
     """Formulas split at their quantifiers; equal quantifiers become one column."""
 
     def __init__(
-        self, period: Fraction, applied: Callable[[Formula], Formula], text: str | None = None
+        self,
+        period: Fraction,
+        applied: Callable[[Formula], Formula],
+        text: str | None = None,
+        *,
+        continuous: bool = False,
     ) -> None:
         self.period = period
+        #: Whether signals go on after the last sample, so that columns have values there.
+        self.continuous = continuous
         self.applied = applied
         self.text = text
         #: The identities of what conditions read as formulas.
@@ -73,7 +80,9 @@ class Splitting:
         self._conditions = read_as_conditions(*formulas)
         found = tuple(map(self._scope.resolved, formulas))
         quantified = self._scope.found
-        if any(each.lag for each in quantified):  # columns are read after the end of the stream
+        if not self.continuous and any(
+            each.lag for each in quantified
+        ):  # columns are read after the end of the stream
             running = PRESENT(Var(RUNNING, None, BOOLEAN))
             scope = _StreamScope(Members({}), {}, running, self, quantified)
             found = tuple(map(scope.resolved, formulas))

@@ -14,6 +14,7 @@ outcomes          bounds and verdicts that are known before the whole trace is
 episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling
 members           the members of groups in recorded data, and where each is present
+member_chunks     chunks of streams with members of groups, any of which they may lack
 binding           variables under their recorded names, in their declared units
 unit_conversion   from the unit of a recording to the declared one
 sampling          the latest values of variables as samples one period apart

@@ -52,6 +52,7 @@ class Dense(TimeDomain):
     setting: ClassVar[str] = "resolution"
     parts: ClassVar[Mapping[str, str]] = {
         "engine": "rtamt.engine.dense:ENGINE",
+        "members": "rtamt.engine.dense.quantifiers:DenseMemberMonitor",
         "stream": "rtamt.verdicts.streaming:DenseStream",
         "eager": "rtamt.verdicts.dense_early:DenseEagerMonitor",
         "interval": "rtamt.verdicts.dense_interval:DenseIntervalMonitor",

@@ -45,12 +45,17 @@ class Bound(NamedTuple):
 
 
 def members_of(
-    groups: Fields, names: Iterable[str], aliases: Mapping[str, str] = MappingProxyType({})
+    groups: Fields,
+    names: Iterable[str],
+    aliases: Mapping[str, str] = MappingProxyType({}),
+    *,
+    partly: bool = False,
 ) -> dict[str, tuple[str, ...]]:
     """Return the members of each group among recorded names, in their order.
 
     ``aliases``: from other names of the same samples to recorded names; they count where the pattern of a group does
-    not match the recorded name. Raises :class:`TraceError` for a member that lacks a field.
+    not match the recorded name. Raises :class:`TraceError` for a member that lacks a field, unless these are ``partly``
+    the names.
     """
     names = [name for name in names if name not in aliases]
     found: dict[str, tuple[str, ...]] = {}
@@ -66,7 +71,7 @@ def members_of(
                     known.add(parts[1])
         for member, recorded in having.items():
             missing = [] if recorded is None else [name for name in fields if name not in recorded]
-            if missing:
+            if missing and not partly:
                 raise TraceError(
                     f"'{member}' is a member of the group '{group.name}' and has no '{missing[0]}'; record "
                     f"'{member}.{missing[0]}', or narrow the pattern \"{group.pattern}\"",
@@ -95,12 +100,12 @@ def bound(
     ``names``: the variables that formulas read beside those of members. Raises :class:`TraceError` for a group
     without members.
     """
-    known = _names(data)
-    members = members_of(groups, known, _aliases(data))
+    known = names_of(data)
+    members = members_of(groups, known, aliases_of(data))
     require_members(members, groups, known, source)
-    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else _on_one_clock
-    columns = _columns(members, groups)
-    made, throughout = read(_with_aliases(data, columns), columns, names)
+    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else on_one_clock
+    columns = columns_of_members(members, groups)
+    made, throughout = read(with_aliases(data, columns), columns, names)
     return Bound(made, Members(members, frozenset(throughout)))
 
 
@@ -118,78 +123,28 @@ def require_members(
             )
 
 
-class Chunk(NamedTuple):
-    """Samples of a stream, in which each member is a set of ordinary variables."""
-
-    data: Any
-    #: The variables of members, with their channels.
-    columns: tuple[str, ...]
-    types: Mapping[str, Any]
-    #: By group: its members, each with the names of its channel (None if it is present throughout) and fields.
-    groups: Mapping[str, Mapping[str, tuple[str | None, Mapping[str, str]]]]
-
-    def present(self, columns: Mapping[str, Any], i: int) -> dict[str, dict[str, dict[str, float]]]:
-        """Return the members of each group that are present at a sample, with their fields."""
-        return {
-            group: {
-                member: {field: float(columns[name][i]) for field, name in fields.items()}
-                for member, (channel, fields) in found.items()
-                if channel is None or columns[channel][i]
-            }
-            for group, found in self.groups.items()
-        }
-
-
-def chunk(data: Any, groups: Fields) -> Chunk:
-    """Return some samples of a stream with the members of groups as ordinary variables, of which there may be none."""
-    found = members_of(groups, _names(data), _aliases(data))
-    known = _columns(found, groups)
-    data = _with_aliases(data, known)
-    if isinstance(data, Trace):
-        data = _with_absences(data, [each.column(field) for each in known for field in each.fields])
-    made, throughout = _on_one_clock(data, known, ())
-    channels = {each.name: channel_of(each.name) for each in known if each.name not in throughout}
-    types = {
-        each.column(field): type_
-        for each in known
-        for field, type_ in each.fields.items()
-        if type_ is not None
-    }
-    columns = (*(each.column(field) for each in known for field in each.fields), *channels.values())
-    return Chunk(
-        made,
-        columns,
-        types,
-        {
-            name: {
-                member: (channels.get(member), {field: f"{member}.{field}" for field in groups[name][1]})
-                for member in own
-            }
-            for name, own in found.items()
-        },
-    )
-
-
-class _Member(NamedTuple):
+class Member(NamedTuple):
     """A member with its fields: the type of each, None for numbers."""
 
     name: str
     fields: Mapping[str, Any]
 
     def column(self, field: str) -> str:
+        """Return the name of a field in data."""
         return f"{self.name}.{field}"
 
 
-def _columns(members: Mapping[str, tuple[str, ...]], groups: Fields) -> list[_Member]:
+def columns_of_members(members: Mapping[str, tuple[str, ...]], groups: Fields) -> list[Member]:
     """Return each member once, with the fields of all groups that it is a member of."""
     found: dict[str, dict[str, Any]] = {}
     for name, (group, fields) in groups.items():
         for member in members[name]:
             found.setdefault(member, {}).update({field: group.values(field) for field in fields})
-    return [_Member(member, fields) for member, fields in found.items()]
+    return [Member(member, fields) for member, fields in found.items()]
 
 
-def _names(data: Any) -> list[str]:
+def names_of(data: Any) -> list[str]:
+    """Return the names of the variables in data, in their order."""
     if isinstance(data, Clocked) or is_mapping(data):
         return [str(name) for name in data if name != TIME]
     if not is_frame(data):
@@ -197,13 +152,14 @@ def _names(data: Any) -> list[str]:
     return [str(name) for name in data.columns if name != TIME]
 
 
-def _aliases(data: Any) -> Mapping[str, str]:
+def aliases_of(data: Any) -> Mapping[str, str]:
+    """Return the other names of recorded samples."""
     return data.aliases if isinstance(data, Trace) else {}
 
 
-def _with_aliases(data: Any, members: Sequence[_Member]) -> Any:
+def with_aliases(data: Any, members: Sequence[Member]) -> Any:
     """Return data that has the fields of members under the names of these, also where they are aliases."""
-    aliases = _aliases(data)
+    aliases = aliases_of(data)
     columns = [
         column for each in members for field in each.fields if (column := each.column(field)) in aliases
     ]
@@ -216,9 +172,10 @@ def _with_aliases(data: Any, members: Sequence[_Member]) -> Any:
 # ---- samples that all have the same timestamps ---------------------------------------------------
 
 
-def _on_one_clock(
-    data: Any, members: Sequence[_Member], _names: Collection[str]
+def on_one_clock(
+    data: Any, members: Sequence[Member], _names: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
+    """Return samples with the fields and channels of members, and the members that are present throughout."""
     if not is_mapping(data):
         check_frame(data, TIME, [each.column(field) for each in members for field in each.fields])
         data = {name: data[name] for name in data.columns}
@@ -238,13 +195,14 @@ def _on_one_clock(
     return made, throughout
 
 
-def _recorded(data: Mapping[str, Any], member: _Member, field: str) -> Any:
+def _recorded(data: Mapping[str, Any], member: Member, field: str) -> Any:
     """Return the values of a field: a column of its own, or in the objects that the member's column has."""
     column = member.column(field)
-    return data[column] if column in data else _in_objects(data[member.name], member.name, field)
+    return data[column] if column in data else in_objects(data[member.name], member.name, field)
 
 
-def _in_objects(objects: Any, member: str, field: str) -> list[Any]:
+def in_objects(objects: Any, member: str, field: str) -> list[Any]:
+    """Return the values of a field in objects; None where an object is."""
     path = field.split(".")
     return [None if each is None else field_of(each, member, path, i) for i, each in enumerate(objects)]
 
@@ -279,7 +237,7 @@ def filler(type_: Any) -> float:
 
 
 def _on_own_clocks(
-    data: Any, members: Sequence[_Member], names: Collection[str]
+    data: Any, members: Sequence[Member], names: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
     fields = {each.column(field): each for each in members for field in each.fields}
     if not is_mapping(data):
@@ -300,7 +258,7 @@ def _on_own_clocks(
                 recorded |= dense_arrays.columns_of(data, [column])
                 continue
             ((times, objects),) = dense_arrays.columns_of(data, [each.name]).values()
-            recorded[column] = times, _in_objects(objects, each.name, field)
+            recorded[column] = times, in_objects(objects, each.name, field)
     start = _start(columns, recorded)
     throughout = []
     for each in members:
@@ -360,7 +318,7 @@ def _in_steps(
 # ---- traces that were read ----------------------------------------------------------------------
 
 
-def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> tuple[Trace, list[str]]:
+def _trace(trace: Trace, members: Sequence[Member], names: Collection[str]) -> tuple[Trace, list[str]]:
     """Return a trace whose members have a sample at each timestamp of their table."""
     made = {name: trace.channel(name) for name in trace}
     throughout = []
@@ -373,7 +331,7 @@ def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> 
         if all(channel.first_gap is None and _begins(channel, start) for channel in channels.values()):
             throughout.append(each.name)
             continue
-        recorded = {field: _with_gaps(channel) for field, channel in channels.items()}
+        recorded = {field: with_gaps(channel) for field, channel in channels.items()}
         times, present, values = _in_steps(recorded, start, each.fields)
         if present is None:
             throughout.append(each.name)
@@ -387,12 +345,12 @@ def _trace(trace: Trace, members: Sequence[_Member], names: Collection[str]) -> 
     return trace.with_channels(made), throughout
 
 
-def _with_absences(trace: Trace, columns: Collection[str]) -> dict[str, Any]:
+def with_absences(trace: Trace, columns: Collection[str]) -> dict[str, Any]:
     """Return the samples of a trace on one time base, in which a value of one of the ``columns`` may be None."""
     made, values = {name: trace.channel(name) for name in trace}, {}
     for name in columns:
         if name in made and made[name].table is not None:
-            times, values[name] = _with_gaps(made[name])
+            times, values[name] = with_gaps(made[name])
             blank = np.zeros(len(times))
             made[name] = replace(made[name], times=times, values=blank, first_gap=None, table=None)
     return trace.with_channels(made).on_one_clock([name for name in made if name != TIME]) | values
@@ -407,7 +365,7 @@ def _begins(channel: Channel, start: Any) -> bool:
     return channel.times is None or (len(channel.times) > 0 and bool(channel.times[0] <= start))
 
 
-def _with_gaps(channel: Channel) -> tuple[NDArray[Any], list[Any]]:
+def with_gaps(channel: Channel) -> tuple[NDArray[Any], list[Any]]:
     """Return the times of a channel's table, and its values there, None where it has none."""
     assert channel.times is not None
     if channel.table is None:

@@ -176,7 +176,6 @@ def test_a_header_without_members_or_without_a_field_is_one_sentence(run, header
 @pytest.mark.parametrize(
     ("options", "spec", "what"),
     [
-        (["--time", "dense"], "", "--time dense"),
         (["--verdict", "eager"], "", "--verdict eager"),
         (["--verdict", "interval"], "", "--verdict interval"),
         (["--verdict", "causation"], "", "--verdict causation"),
@@ -197,3 +196,15 @@ def test_the_future_of_members_has_an_end(run):
     answer = run("monitor", 'group cars = "car_*"; forall v in cars: eventually(v.x > 1)')
     assert (answer.code, answer.out) == (2, "")
     assert answer.err.startswith("rtamt: 'eventually' without an upper bound needs the whole future")
+
+
+def test_in_dense_time_null_and_an_empty_cell_end_the_presence_of_a_member(run):
+    formula = 'group cars = "car_*"; forall v in cars: v.x - ego > 5'
+    objects = ['{"time": 0, "ego": 0, "car_1.x": 30, "car_7": {"x": 14}}', '{"time": 1, "car_7": null}']
+    lines = ["time,ego,car_1.x,car_7.x", "0,0,30,14", "1,0,30,"]
+    for stdin, ends in (("\n".join([*objects, '{"time": 2, "ego": 0}']), 2.0), ("\n".join(lines), 1.0)):
+        answer = run("monitor", formula, "--time", "dense", stdin=stdin)
+        found = [json.loads(line) for line in answer.out.splitlines()]
+        assert found[0] == {"time": 0.0, "robustness": 9.0}
+        assert [each["robustness"] for each in found if each["time"] == 1.0] == [25.0]
+        assert found[-1] == {"time": ends, "robustness": 25.0}

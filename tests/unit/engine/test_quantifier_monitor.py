@@ -60,6 +60,107 @@ def test_a_member_that_is_gone_is_dropped_when_it_cannot_matter_any_more():
     assert given[15] == 3
 
 
+def test_a_new_member_compiles_nothing_in_dense_time_either(monkeypatch):
+    compiled = []
+    original = lower.Lowering.program
+    monkeypatch.setattr(lower.Lowering, "program", lambda *a: compiled.append(a) or original(*a))
+    monitor = spec("forall v in cars: once[0:2](v.x > ego)", time="dense").monitor()
+    before = len(compiled)
+    assert before > 0
+    for t in range(20):
+        monitor.update(t, ego=0.0, **{f"car_{t}.x": 1.0, f"car_{t - 1}.x": None})
+    assert len(compiled) == before
+    assert len(monitor.members) < 6
+    assert len(monitor._inputs.counts) < 6
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_copies_and_pickles_of_dense_monitors_go_on_on_their_own(backend):
+    monitor = spec("forall v in cars: once[0:2](v.x > ego)", backend=backend, time="dense").monitor()
+    monitor.update(0, ego=0.0, **{"car_1.x": 3.0})
+    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301
+    assert monitor.update(1, ego=9.0, **{"car_1.x": 3.0}).points() == [(1, 3)]
+    for twin in twins:
+        assert twin.update(1, ego=0.0, **{"car_1.x": 4.0, "car_2.x": 1.0}).points() == [(1, 1)]
+
+
+def test_a_failed_update_of_a_dense_monitor_changes_nothing():
+    monitor = spec("forall v in cars: once[0:1](1 / v.x + ego / ego > 0)", time="dense").monitor()
+    twin = copy.copy(monitor)
+    for t in range(70):
+        sample = {"ego": 1.0, "car_1.x": 2.0 + t, "car_2.x": 1.0}
+        with pytest.raises(EvaluationError) as error:
+            monitor.update(t, **{**sample, "car_3.x": 1.0, "ego": 0.0})
+        assert str(error.value).startswith("v is car_1: ")
+        with pytest.raises(TraceError):
+            monitor.update(t, **{**sample, "car_1.x": float("nan")})
+        assert monitor.update(t, **sample).points() == twin.update(t, **sample).points()
+    assert monitor.members == twin.members
+    assert monitor.samples == twin.samples == 210
+
+
+def test_a_member_in_dense_time_is_present_from_its_last_field_on_until_one_is_none():
+    monitor = spec("count v in cars: v.x + v.y > ego", time="dense").monitor()
+    assert monitor.update(0, ego=0.0, **{"car_1.x": 3.0}).points() == [(0, 0)]
+    assert monitor.update(1, **{"car_1.y": 1.0}).points() == []
+    assert monitor.update(2, ego=0.0, car_2=SimpleNamespace(x=1.0, y=2.0)).points() == [(1, 1), (2, 2)]
+    assert monitor.update(3, ego=0.0, car_2=None).points() == [(3, 1)]
+    assert monitor.update(4, ego=9.0, **{"car_1.y": None}).points() == [(4, 0)]
+    assert monitor.finish().points() == []
+
+
+def test_a_dense_monitor_without_other_variables_knows_all_up_to_the_latest_update():
+    monitor = spec("forall v in cars: v.x > 0", time="dense").monitor()
+    assert monitor.update(0).points() == []
+    assert monitor.update(1, **{"car_1.x": 3.0}).points() == [(1, 3)]
+    assert monitor.update(4).points() == [(4, 3)]
+    assert monitor.update(5, **{"car_2.x": 1.0}).points() == [(5, 1)]
+
+
+def test_watched_formulas_of_a_dense_monitor_end_with_the_trace():
+    text = CARS + "require R1: forall v in cars: v.x > ego\nrequire R2: eventually[0:2](ego > 0)"
+    parsed = rtamt.parse(text, time="dense")
+    data = {"ego": [(0, 1.0), (3, 2.0), (5, 0.5)], "car_1.x": [(0, 4.0), (4, 2.0), (6, 9.0)]}
+    monitor = parsed.monitor(watch=["R1", "R2"])
+    found = {"R1": [], "R2": []}
+    for step in (lambda: monitor.update_many(data), monitor.finish):
+        step()
+        for name in found:
+            found[name] += monitor[name].points()
+    for name, points in found.items():
+        whole = parsed.requirements[name].evaluate(data).signal
+        assert points[-1] == whole.points()[-1]
+        assert dict(points).items() >= dict(whole.points()).items()
+        assert [t for t, _ in points] == sorted({t for t, _ in points})
+
+
+def test_dense_monitors_take_dates_units_and_semantics():
+    data = {"ego": [(0, 2.0), (3000, 0.0)], "car_1.x": [(0, 1.0), (1000, None)], "car_2.x": [(2000, 2.0)]}
+    text = "forall v in cars: v.x >= ego"
+    monitor = spec(text, time="dense", semantics="boolean").monitor(time_unit="ms")
+    assert monitor.update_many(data).points() == [(0, -inf), (1000, inf), (3000, inf)]
+    dated = spec(text, time="dense").monitor()
+    at = np.datetime64("2026-01-01T12:00:00")
+    assert dated.update(at, ego=0.0, **{"car_1.x": 1.0}).times[0] == at
+    assert dated.update(at + np.timedelta64(2, "s"), ego=2.0).points()[-1][1] == -1
+
+
+def test_a_half_open_bound_of_a_member_is_known_as_early_as_any_other():
+    monitor = spec("forall v in cars: eventually[0:2)(v.x > 0)").monitor()
+    assert monitor.horizon == spec("forall v in cars: eventually[0:2)(v.x > 0)").horizon == 1
+
+
+def test_a_sample_of_a_member_that_comes_too_late_is_one_sentence():
+    monitor = spec("forall v in cars: v.x > ego", time="dense").monitor()
+    monitor.update(1, ego=0.0)
+    with pytest.raises(TraceError) as error:
+        monitor.update(1, **{"car_1.x": 1.0})
+    assert str(error.value) == (
+        "'car_1.x' has a sample at 1 s, and the result is known up to 1 s already; give samples of members before "
+        "those of the other variables, or with them"
+    )
+
+
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 def test_copies_and_pickles_go_on_on_their_own(backend):
     monitor = spec("forall v in cars: once[0:2](v.x > ego)", backend=backend).monitor()

@@ -6,6 +6,9 @@ module                purpose
 backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
+quantifiers           the monitor of quantifiers, over members that come and go
+member_executors      what executes quantifiers: one executor for each member
+steps                 the samples of a stream, cut at the instants up to which all are known
 groups                several requirements, each with the trace of its own variables
 time_axis             a recording in ticks, as explanations evaluate it
 python_backend        the definition behind the interface of the compiled monitor

@@ -10,23 +10,18 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import Monitor
-from rtamt.language.quantifiers import JOINS
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.rewrite.presence import channel_of
-from rtamt.signals import members
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from rtamt.rewrite.quantifier_streams import Quantified
-    from rtamt.signals.discrete import Discrete
-    from rtamt.signals.members import Fields
+    from rtamt.engine.quantifiers import Plan
 
 #: A member's fields at a sample, by name.
 Sample = dict[str, float]
 
 
-class _Executor(Monitor):
+class Executor(Monitor):
     """The monitor of a quantifier's formula over one member."""
 
     #: The index and the time of its first sample, and the member in words.
@@ -75,7 +70,7 @@ class QuantifierExecutor:
                 continue
             given = running.step(present, values, sample, at)
             if given is not None:
-                total = plan.combined(total, given)
+                total = plan.join.numbers(total, given)
         for member in gone:
             del self.running[member]
         return total
@@ -91,7 +86,7 @@ class QuantifierExecutor:
             self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, (0, 0.0))
             self.running[member].restore(each)
 
-    def executors(self) -> Iterator[_Executor]:
+    def executors(self) -> Iterator[Executor]:
         """Yield the executors of all members, also inside."""
         for running in self.running.values():
             yield running.executor
@@ -104,7 +99,7 @@ class _Running:
 
     def __init__(self, plan: Plan, bound: Mapping[str, str], at: tuple[int, float]) -> None:
         self.plan = plan
-        self.executor = copy(plan.template)
+        self.executor: Executor = copy(plan.template)
         who = ", ".join(f"{variable} is {member}" for variable, member in bound.items())
         self.executor.origin = (*at, who)
         self.inside = [QuantifierExecutor(inner, bound) for inner in plan.inside]
@@ -124,7 +119,8 @@ class _Running:
             mine[name] = plan.fillers[field] if sample is None else sample[field]
         for inner in self.inside:
             mine[inner.plan.column] = inner.step(present, mine, at)
-        return self.executor.step(*[mine[name] for name in self.executor.input_names])
+        given: float | None = self.executor.step(*[mine[name] for name in self.executor.input_names])
+        return given
 
     def state(self) -> Any:
         return (
@@ -139,29 +135,3 @@ class _Running:
         self.executor._resume(own)
         for inner, each in zip(self.inside, inside, strict=True):
             inner.restore(each)
-
-
-class Plan:
-    """What is fixed of a quantifier."""
-
-    def __init__(
-        self, of: Quantified, domain: Discrete, text: str | None, backend: str, fields: Fields
-    ) -> None:
-        assert domain.period is not None
-        self.variable, self.group = of.binder.variable, of.binder.group.name
-        self.apart = of.binder.apart
-        self.column, join = of.column, JOINS[of.kind]
-        self.none, self.combined = join.none, join.numbers
-        self.lag = int(of.lag / domain.period)
-        self.keep = None if of.keep is None else int(of.keep / domain.period) + self.lag + 1
-        group, names = fields[self.group]
-        self.fields = {name: f"{self.variable}.{name}" for name in names}
-        self.fillers = {name: members.filler(group.values(name)) for name in names}
-        self.channel = channel_of(self.variable)
-        self.template = _Executor(of.formula, domain, text=text, backend=backend)
-        self.inside = [Plan(each, domain, text, backend, fields) for each in of.inside]
-
-    def differs(self, bound: Mapping[str, str], member: str) -> bool:
-        """Return whether a member is another one than those that the quantifier keeps apart from it."""
-        names = {**bound, self.variable: member}
-        return all(names[one] != names[other] for one, other in self.apart)

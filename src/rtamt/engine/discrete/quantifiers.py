@@ -5,20 +5,19 @@ The outer formula is monitored as any other: what the members of a quantifier gi
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.discrete.member_executors import Plan, QuantifierExecutor
+from rtamt.engine.discrete.member_executors import Executor, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
-from rtamt.engine.usage_guard import UsageGuard, exclusive
-from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import types_of
+from rtamt.engine.quantifiers import Plan, QuantifierMonitor
+from rtamt.engine.usage_guard import exclusive
+from rtamt.errors import TraceError
 from rtamt.rewrite.quantifier_streams import RUNNING
-from rtamt.signals import arrays, members
-from rtamt.signals.binding import Binding
+from rtamt.signals import arrays
 from rtamt.signals.data_errors import nan_of_members, unknown_variable
+from rtamt.signals.member_chunks import chunk
 from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
 
@@ -32,9 +31,6 @@ if TYPE_CHECKING:
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.members import Fields
-
-#: After how many samples the state is remembered, from which a failed update goes back.
-_REMEMBER = 64
 
 
 class _NewValues:
@@ -67,7 +63,7 @@ class _NewValues:
         return found
 
 
-class MemberMonitor:
+class MemberMonitor(QuantifierMonitor):
     """Monitors a formula with quantifiers on a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. :meth:`update` takes the fields of each member by name,
@@ -96,59 +92,44 @@ class MemberMonitor:
         types: Any = None,
     ) -> None:
         domain = domain.online
-        self._outer = Monitor(formula, domain, text=text, backend=backend, watch=watch)
-        self._plans = [Plan(each, domain, text, backend, fields) for each in quantified]
-        self._fields = fields
-        self._declared = frozenset(declared)
-        self._factory = factory
-        self._binding = Binding(tuple(names))
-        self._watched = tuple(each.name for each in watch)
-        self._types = {**types_of(formula), **(types or {})}
-        self._late = max((plan.lag for plan in self._plans), default=0)
-        #: The variables beside the fields of members.
-        self.input_names: tuple[str, ...] = tuple(names)
-        self._usage = UsageGuard()
-        self._begin()
+        assert domain.period is not None
+
+        def template(of: Formula) -> Monitor:
+            return Executor(of, domain, text=text, backend=backend)
+
+        plans = [Plan(each, domain.period, template, fields) for each in quantified]
+        self._late = max((plan.lag for plan in plans), default=0)
+        super().__init__(
+            Monitor(formula, domain, text=text, backend=backend, watch=watch),
+            plans,
+            fields,
+            names=names,
+            declared=declared,
+            watch=watch,
+            factory=factory,
+            types=types,
+        )
 
     def _begin(self) -> None:
-        self._quantifiers = [QuantifierExecutor(plan, {}) for plan in self._plans]
-        self._finished = False
+        """See :class:`QuantifierMonitor`."""
         #: What the last chunk made known of each formula; of a sample, the outer monitor has it.
         self._news: dict[Any, Signal] = {}
-        self._remember()
+        super()._begin()
 
-    # ---- facts -----------------------------------------------------------------------------------
-
-    @property
-    def horizon(self) -> float:
-        """Seconds after t at which ρ at t is known."""
-        return self._outer.horizon
+    def _executors(self) -> list[QuantifierExecutor]:
+        """See :class:`QuantifierMonitor`."""
+        return [QuantifierExecutor(plan, {}) for plan in self._plans]
 
     @property
     def period(self) -> Fraction:
         """The sampling period in seconds."""
-        return self._outer.period
+        period: Fraction = self._outer.period
+        return period
 
     @property
     def samples(self) -> int:
         """The number of samples since the start or the last reset."""
-        return self._outer.samples
-
-    @property
-    def memory(self) -> int:
-        """The size of the state in bytes: the contents of the windows, of all members."""
-        return self._outer.memory + sum(
-            executor.memory for each in self._quantifiers for executor in each.executors()
-        )
-
-    @property
-    def members(self) -> tuple[str, ...]:
-        """The monitored members, including absent ones that can still affect the result."""
-        return tuple(dict.fromkeys(member for each in self._quantifiers for member in each.running))
-
-    def bind(self, binding: Binding) -> None:
-        """Find variables in chunks of recordings as a specification does."""
-        self._binding = binding
+        return int(self._outer.samples)
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -160,7 +141,7 @@ class MemberMonitor:
         data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
         """
         numbers, present = self._read(values, time)
-        robustness = self._take(time, numbers, present)
+        robustness: float | None = self._tried(time, numbers, present)
         self._news = {}
         return robustness
 
@@ -171,7 +152,7 @@ class MemberMonitor:
         Returns the new values as a Signal. Raises the errors of :meth:`update`.
         """
         data = self._binding.applied(data)
-        made = members.chunk(data, self._fields)
+        made = chunk(data, self._fields)
         names = [*self.input_names, *made.columns]
         timestamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
         if n == 0:
@@ -186,7 +167,8 @@ class MemberMonitor:
         try:
             for i in range(n):
                 numbers = {name: float(columns[name][i]) for name in self.input_names}
-                known.note(self._take(float(times[i]), numbers, made.present(columns, i)), self._outer)
+                present = made.present(columns, i)
+                known.note(self._tried(float(times[i]), numbers, present), self._outer)
         except Exception:
             self._restore(before)
             raise
@@ -239,20 +221,6 @@ class MemberMonitor:
             }
         return numbers, present
 
-    def _note_member(self, name: str, value: Any, given: dict[str, dict[str, Any]]) -> bool:
-        """Note a value of a member; return whether the name is that of one."""
-        found = False
-        for group, fields in self._fields.values():
-            if group.matches(name):
-                found = True
-                if value is not None:
-                    sample = given.setdefault(name, {})
-                    sample |= {f: arrays.field_of(value, name, f.split("."), self.samples) for f in fields}
-            elif (parts := group.member(name)) is not None:
-                found = True
-                given.setdefault(parts[0], {})[parts[1]] = value
-        return found
-
     def _sample(
         self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
     ) -> Sample:
@@ -276,20 +244,6 @@ class MemberMonitor:
         )
         return {field: numbers[name] for field, name in names.items()}
 
-    def _take(self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]]) -> float | None:
-        """Take a sample that was read; if it fails, nothing has changed."""
-        if self._finished:
-            raise UsageError("the monitor has finished its trace; call reset() before the next sample")
-        try:
-            robustness = self._advance(time, numbers, present)
-        except Exception:
-            self._go_back()
-            raise
-        self._since.append((time, numbers, present))
-        if len(self._since) >= _REMEMBER:
-            self._remember()
-        return robustness
-
     def _advance(
         self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]], running: float = 1.0
     ) -> float | None:
@@ -299,69 +253,12 @@ class MemberMonitor:
         for each in self._quantifiers:
             values[each.plan.column] = each.step(present, numbers, at)
         outer = self._outer
-        return outer.update(time, **{name: values[name] for name in outer.input_names})
+        robustness: float | None = outer.update(time, **{name: values[name] for name in outer.input_names})
+        return robustness
 
     def _next_time(self) -> float:
-        return self._outer._next_time()
+        return float(self._outer._next_time())
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return what the last update made known of a formula that is watched; see ``Monitor``."""
         return self._news[name] if name in self._news else self._outer[name]
-
-    @exclusive
-    def reset(self, /, **parameters: float) -> None:
-        """Forget the trace; the next sample is the first. ``parameters``: their values from now on."""
-        if parameters:
-            if self._factory is None:
-                raise UsageError("only a monitor that Specification.monitor() has made has parameters")
-            fresh = self._factory(parameters)
-            self._outer, self._plans = fresh._outer, fresh._plans
-        self._outer.reset()
-        self._begin()
-
-    # ---- states ----------------------------------------------------------------------------------
-
-    def _state(self) -> Any:
-        return self._outer._state(), [each.state() for each in self._quantifiers], self._finished
-
-    def _restore(self, state: Any) -> None:
-        outer, quantifiers, self._finished = state
-        self._outer._resume(outer)
-        for each, own in zip(self._quantifiers, quantifiers, strict=True):
-            each.restore(own)
-        self._remember()
-
-    def _remember(self) -> None:
-        self._before = self._state()
-        self._since: list[tuple[Any, Sample, dict[str, dict[str, Sample]]]] = []
-
-    def _go_back(self) -> None:
-        """Return to the state before a sample that failed."""
-        since = self._since
-        self._restore(self._before)
-        for time, numbers, present in since:
-            self._advance(time, numbers, present)
-        self._since = since
-
-    def __copy__(self) -> MemberMonitor:
-        twin = type(self).__new__(type(self))
-        twin.__dict__.update(self.__dict__)
-        twin._usage = UsageGuard()
-        twin._outer = copy(self._outer)
-        twin._quantifiers = [QuantifierExecutor(plan, {}) for plan in self._plans]
-        twin._restore(self._state())
-        return twin
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> MemberMonitor:
-        return self.__copy__()
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        if self._factory is None:
-            raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
-        return _resumed, (self._factory, self._state())
-
-
-def _resumed(factory: Callable[[], MemberMonitor], state: Any) -> MemberMonitor:
-    monitor = factory()
-    monitor._restore(state)
-    return monitor
