@@ -77,8 +77,10 @@ checked: then it is 2.
 Valid but probably unintended formulas in SPEC cause a warning on stderr, with a code for --ignore. Warnings do
 not affect the exit code. 'rtamt lint' prints the same warnings.
 
-Large files are read in chunks, with constant memory, if the future of the formula is bounded (except for
-always and eventually at its top). Many files are read on all cores.
+Files of 16 MB and more are read in chunks, with constant memory, if the future of the formula is bounded (except for
+always and eventually at its top) and the outcome is that of the whole file; files of 256 MB and more also if it may
+differ: the period is that of the first chunk, and --junit and --sarif do not explain violations. Many files are read
+on all cores.
 
 --early stops reading once the verdict and the first violation are decided. The verdict is that of the whole
 recording, the robustness lies within the printed bounds, and later samples are not checked. Formats that cannot
@@ -173,14 +175,14 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(
             f"--early reads no more than the verdicts need, and {option} shows all: leave one out"
         )
-    reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early)
+    explained = args.junit is not None or args.sarif is not None
+    reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early, explained=explained)
     page = None if args.html is None else HtmlReport("rtamt check", given, requirements, traces, reading)
     found: list[Outcome] = []
     complaints = {""}  # several requirements may have one reason
     with Progress() as progress:
         progress.show(f"0/{pairs}")
-        explain = args.junit is not None or args.sarif is not None
-        for outcome in outcomes(given, traces, reading, args.jobs, explain=explain):
+        for outcome in outcomes(given, traces, reading, args.jobs):
             if page is not None:
                 page.add(outcome)
             found.append(outcome if args.output is not None else replace(outcome, result=None))

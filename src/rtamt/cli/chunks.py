@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -14,22 +14,18 @@ if TYPE_CHECKING:
 
 
 class Chunks:
-    """Chunks, whether their timestamps are dates, and the number of samples so far."""
+    """Chunks, and the number of samples so far."""
 
     def __init__(self, spec: Specification, chunks: Iterator[Trace], *, bound: bool = False) -> None:
         self._chunks = chunks if bound else map(spec.binding.applied, chunks)
         self._counts: Counter[str] = Counter()
         self.last: Trace | None = None
-        #: The first time of all.
-        self.start: Any = 0.0
         #: The notes of the last chunk, which include those of all before.
         self.remarks: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
-            if self.last is None:
-                self.start = chunk.start if chunk.start is not None else 0.0
-            else:
+            if self.last is not None:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
             self.remarks = chunk.remarks

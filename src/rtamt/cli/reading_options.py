@@ -45,6 +45,8 @@ class Reading:
     whole: bool = False
     #: No further than the verdicts need.
     early: bool = False
+    #: Violations are explained, which needs the whole recording, if it is not too large.
+    explained: bool = False
 
 
 # ---- the options ---------------------------------------------------------------------------------
@@ -103,11 +105,17 @@ def add_instant_option(parser: argparse.ArgumentParser) -> None:
 
 
 def reading_of(
-    args: argparse.Namespace, read: Collection[str], *, whole: bool, early: bool = False
+    args: argparse.Namespace,
+    read: Collection[str],
+    *,
+    whole: bool,
+    early: bool = False,
+    explained: bool = False,
 ) -> Reading:
     """Return the reading that the options select.
 
-    ``read``: the variables of the requirements; ``whole``: never in chunks; ``early``: no further than needed.
+    ``read``: the variables of the requirements; ``whole``: never in chunks; ``early``: no further than needed;
+    ``explained``: with what explains violations.
     """
     names = names_of(args.name)
     for name in names:
@@ -128,6 +136,7 @@ def reading_of(
         args.recover,
         whole=whole,
         early=early,
+        explained=explained,
     )
 
 

@@ -37,7 +37,7 @@ from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
 from rtamt.signals import members
 from rtamt.signals.episodes import Episodes
-from rtamt.verdicts.streaming import check_stream, check_streamable
+from rtamt.verdicts.streaming import check_stream, check_streamable, has_episodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
 #: Bytes of a file from which on it is read in chunks, where format and formula allow it.
 LARGE = 256 * 2**20
+#: Bytes from which on it is read in chunks where the outcome is that of the whole recording.
+MODERATE = 16 * 2**20
 #: Bytes of all files together from which on starting a process for each core pays.
 _WORTH_PROCESSES = 16 * 2**20
 
@@ -59,23 +61,21 @@ def outcomes(
     traces: Sequence[str],
     reading: Reading,
     jobs: int | None = None,
-    *,
-    explain: bool = False,
 ) -> Iterator[Outcome]:
     """Yield the outcome of every requirement on every recording, recording by recording, in order.
 
-    ``jobs``: processes; by default one for each core, where there is enough to do. ``explain``: violations.
+    ``jobs``: processes; by default one for each core, where there is enough to do.
     """
     count = min(jobs or _processes(traces), len(traces))
     if count <= 1 or reading.whole:
         for trace in traces:
             for outcome in evaluate(requirements, trace, reading):
-                yield _explained(outcome) if explain else outcome
+                yield _explained(outcome) if reading.explained else outcome
         return
     # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
     # that nothing of this one (locks, threads of libraries) is copied into them.
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        work = [pool.submit(_apart, requirements, trace, reading, explain) for trace in traces]
+        work = [pool.submit(_apart, requirements, trace, reading) for trace in traces]
         try:
             for future in work:
                 yield from future.result()
@@ -83,10 +83,10 @@ def outcomes(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading, explain: bool) -> list[Outcome]:
+def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Return outcomes without what cannot leave a process."""
     found = evaluate(requirements, trace, reading)
-    return [replace(_explained(outcome) if explain else outcome, result=None) for outcome in found]
+    return [replace(_explained(outcome) if reading.explained else outcome, result=None) for outcome in found]
 
 
 def _explained(outcome: Outcome) -> Outcome:
@@ -188,8 +188,12 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
     if not requirements:
         return []
     sampled_anew = any(is_resampled(requirement.spec, trace, reading) for requirement in requirements)
-    if _is_large(trace, reading) and not sampled_anew:
+    if _has(LARGE, trace, reading) and not sampled_anew:
         return [o for requirement in requirements for o in _in_chunks(requirement, trace, reading)]
+    if _has(MODERATE, trace, reading) and not sampled_anew and len(requirements) == 1:
+        found = _as_whole(requirements[0], trace, reading)
+        if found is not None:
+            return found
     whole: Trace | None
     try:
         whole = read_for([requirement.spec for requirement in requirements], trace, reading)
@@ -198,54 +202,88 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
     return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
 
 
-def _is_large(trace: str, reading: Reading) -> bool:
+def _has(size: int, trace: str, reading: Reading) -> bool:
+    """Return whether a recording may be read in chunks, and has so many bytes or more."""
     if reading.whole:
         return False
-    return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= LARGE)
+    return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= size)
 
 
 def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check in chunks if format and formula allow it, else read the recording whole."""
     begin = time.perf_counter()
-    chunks: Chunks | None = None
-    found: StreamResult | None = None
+    run = _ChunkedRun(requirement, trace, reading)
     try:
-        check_streamable(requirement.spec)
-        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            if all(table.chunks is not None for table in source.tables) and len(source.tables) == 1:
-                chunks = Chunks(
-                    requirement.spec, chunks_of(source, choice_for([requirement.spec], trace, reading))
-                )
-                found = check_stream(requirement.spec, chunks)
-    except BoundError:
-        pass  # the formula needs the whole recording at once
+        found = run.result()
+    except BoundError:  # the formula needs the whole recording at once
+        found = None
     except StlError as error:
         if requirement.rows:
             return [o for row in requirement.rows for o in _in_chunks(row, trace, reading)]
         # Errors of readers name the place; errors of evaluations do not.
         place = "" if shown(trace) in str(error) else f"{shown(trace)}: "
-        mend = "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
-        return [failed(requirement, trace, f"{place}{error}{mend}", begin)]
-    if chunks is None or found is None:
-        return _check(requirement, trace, None, reading)
-    rows = requirement.rows or (requirement,)
-    seconds = (time.perf_counter() - begin) / len(rows)
-    return [
-        Outcome(
-            row.label,
-            shown(trace),
-            "satisfied" if part.satisfied else "violated",
-            part.robustness,
-            plain_time(part.first_violation),
-            moment_of(part.first_violation, chunks.start),
-            part.samples,
-            part.period,
-            notes=chunks.remarks,
-            **episodes_of(part.episodes, chunks.start),
-            seconds=seconds,
-        )
-        for row, part in zip(rows, found.requirements.values(), strict=True)
-    ]
+        return [failed(requirement, trace, f"{place}{error}{run.remedy(error)}", begin)]
+    return _check(requirement, trace, None, reading) if found is None else run.outcomes(found, begin)
+
+
+def _as_whole(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:
+    """Check in chunks; None where the outcome may differ from that of the whole recording, which is then read."""
+    if reading.explained or not has_episodes(requirement.spec):
+        return None
+    begin = time.perf_counter()
+    run = _ChunkedRun(requirement, trace, reading)
+    try:
+        found = run.result()
+    except StlError:  # found again in the whole recording, and reported as there
+        return None
+    return None if found is None or not found.steady else run.outcomes(found, begin)
+
+
+class _ChunkedRun:
+    """A check of a requirement in chunks of a recording."""
+
+    def __init__(self, requirement: Requirement, trace: str, reading: Reading) -> None:
+        self._requirement = requirement
+        self._trace = trace
+        self._reading = reading
+        self._chunks: Chunks | None = None
+
+    def result(self) -> StreamResult | None:
+        """Return what the check finds; None where the format has no chunks."""
+        spec, reading = self._requirement.spec, self._reading
+        check_streamable(spec)
+        with opened(self._trace, reading.sheet, reading.query, reading.recover) as source:
+            if len(source.tables) != 1 or source.tables[0].chunks is None:
+                return None
+            self._chunks = Chunks(spec, chunks_of(source, choice_for([spec], self._trace, reading)))
+            return check_stream(spec, self._chunks)
+
+    def remedy(self, error: StlError) -> str:
+        """Return a suffix for an error: see :func:`how_to_mend`."""
+        chunks = self._chunks
+        return "" if chunks is None else how_to_mend(error, chunks.last, chunks.before(error))
+
+    def outcomes(self, found: StreamResult, begin: float) -> list[Outcome]:
+        """Return the outcome of each row."""
+        assert self._chunks is not None
+        chunks, rows = self._chunks, self._requirement.rows or (self._requirement,)
+        seconds = (time.perf_counter() - begin) / len(rows)
+        return [
+            Outcome(
+                row.label,
+                shown(self._trace),
+                "satisfied" if part.satisfied else "violated",
+                part.robustness,
+                plain_time(part.first_violation),
+                moment_of(part.first_violation, part.start),
+                part.samples,
+                part.period,
+                notes=chunks.remarks,
+                **episodes_of(part.episodes, part.start),
+                seconds=seconds,
+            )
+            for row, part in zip(rows, found.requirements.values(), strict=True)
+        ]
 
 
 def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Reading) -> list[Outcome]:

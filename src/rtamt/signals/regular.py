@@ -48,12 +48,29 @@ def infer_period(times: FloatArray) -> Fraction:
     if len(times) < 2:
         return Fraction(1)
     gap = float(np.median(np.diff(times)))
-    blur = max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+    blur = _blur(gap, times)
     for digits in range(1, 17):
         short = float(f"{gap:.{digits}g}")
         if abs(short - gap) <= blur:
             return Fraction(repr(short))
     return Fraction(repr(gap))
+
+
+def _blur(gap: float, times: FloatArray) -> float:
+    """Return the precision of a gap between timestamps."""
+    return max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+
+
+def has_period(times: FloatArray, period: Fraction) -> bool:
+    """Return whether more than half of the gaps are a period: so is then the median of chunks of which all are so.
+
+    >>> has_period(np.array([0, 1, 2, 2.5]), Fraction(1)), has_period(np.array([0, 1, 1.5]), Fraction(1))
+    (True, False)
+    """
+    if len(times) < 2:
+        return True
+    gap = float(period)
+    return 2 * int((np.abs(np.diff(times) - gap) <= _blur(gap, times)).sum()) > len(times) - 1
 
 
 def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:

@@ -32,12 +32,13 @@ if TYPE_CHECKING:
 class StreamResult:
     """What a check in chunks gives.
 
-    ``robustness``: ρ at the first instant. ``satisfied``: whether the formula holds there (Boolean
+    ``robustness``: ρ at the first instant, ``start``. ``satisfied``: whether the formula holds there (Boolean
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
     where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
     chunks do not have it. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
     next; None in dense time. ``episodes``: how many episodes of violation there are, the worst and the first ones,
     see ``Result.episodes``; None of several requirements, and as for ``minimum``.
+    ``steady``: False if the period was inferred from the first chunk, and another chunk has another one.
     ``requirements``: the same for each requirement, by name.
     """
 
@@ -47,7 +48,9 @@ class StreamResult:
     minimum: float | None
     samples: int
     period: Fraction | None
+    start: Any = 0.0
     episodes: Episodes | None = None
+    steady: bool = True
     requirements: Mapping[str, StreamResult] = field(default_factory=lambda: MappingProxyType({}))
 
 
@@ -131,6 +134,7 @@ class Requirement:
             None if self._minimum is None else self._minimum.value,
             samples,
             period,
+            time(0),
             None if self._episodes is None else self._summary(self._episodes, time, last),
         )
 

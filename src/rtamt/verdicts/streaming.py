@@ -13,13 +13,15 @@ import numpy as np
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import own_variables
+from rtamt.language.formula import Apply, own_variables
+from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
+from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import time_domain
-from rtamt.signals.regular import TOLERANCE, check_increasing, infer_period
+from rtamt.signals.regular import TOLERANCE, check_increasing, has_period, infer_period
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.chunks import Group, Requirement, StreamResult
@@ -94,6 +96,15 @@ def check_streamable(spec: Specification) -> None:
         check_in_chunks(anchor(outputs.robustness), alone.text)
 
 
+def has_episodes(spec: Specification) -> bool:
+    """Return whether a check in chunks determines the episodes of each requirement, as an evaluation does."""
+    return all(
+        horizon(alone.formula) is not None
+        or (isinstance(alone.formula, Apply) and alone.formula.op is STL["always"])
+        for alone in spec.requirements.values()
+    )
+
+
 class Stream(ABC):
     """Requirements over chunks; that of a time domain takes the time domain as well.
 
@@ -110,6 +121,8 @@ class Stream(ABC):
         self.declared = tuple(declaration.name for declaration in spec.document.declarations)
         self.requirements = {name: Requirement(one, chosen) for name, one in spec.requirements.items()}
         self.samples = 0
+        #: Whether the period that was inferred from the first chunk is that of all chunks.
+        self.steady = True
 
     @abstractmethod
     def take(self, chunk: Any) -> None:
@@ -131,7 +144,9 @@ class Stream(ABC):
             None if None in minima else min(minimum for minimum in minima if minimum is not None),
             self.samples,
             period,
+            min(each.start for each in results),
             results[0].episodes if len(results) == 1 else None,
+            self.steady,
             MappingProxyType({name: found[name] for name in self.requirements}),
         )
 
@@ -150,6 +165,7 @@ class DiscreteStream(Stream):
         super().__init__(spec, semantics, unit)
         self._tolerance = domain.tolerance
         self._period = domain.period
+        self._inferred = domain.period is None
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
         # The timestamps of positions where something is violated, and of the first.
@@ -162,6 +178,8 @@ class DiscreteStream(Stream):
             return
         if self._monitor is None:
             self._monitor = self._begin(timestamps)
+        elif self._inferred and timestamps is not None and self._period is not None:
+            self.steady = self.steady and has_period(timestamps.seconds, self._period)
         self._known(self._monitor, push_samples(self._monitor, timestamps, columns, n))
         self.samples += n
 
