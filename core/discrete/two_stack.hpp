@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 namespace rtamt::discrete {
 
@@ -133,16 +134,15 @@ class TwoStack {
 
     // The ring and the journal hold `width` elements; the journal is only used by checkpoint().
     TwoStack(std::size_t width, Element* ring, Element* journal) noexcept
-        : ring_(ring), width_(width), journal_(journal) {}
+        : ring_(ring), width_(width), journal_(journal) {
+        if constexpr (has_narrow) {
+            if (width <= Stretch<M>::Narrow::widest) long_run_ = std::max<std::size_t>(width, 16);
+        }
+    }
 
     // The next `count` elements, and the aggregate at each.
-    void push(Operands<M> in, Value* out, std::size_t count) noexcept {
-        for (std::size_t done = 0; done < count;) {
-            const std::size_t part = room(count - done);
-            state_.front ? slide(in.from(done), out + done, part)
-                         : grow(in.from(done), out + done, part);
-            done += part;
-        }
+    RTAMT_INLINE void push(Operands<M> in, Value* out, std::size_t count) noexcept {
+        count == 1 ? push_one(in[0], *out) : push_run(in, out, count);
     }
 
     // Slots after the last element: the window empties.
@@ -182,6 +182,9 @@ class TwoStack {
     }
 
   private:
+    // Whether a run of at least `long_run_` elements costs less without the stacks.
+    static constexpr bool has_narrow = requires { typename Stretch<M>::Narrow; };
+
     struct State {
         std::size_t fill = 0;
         Element back = M::identity;
@@ -193,6 +196,50 @@ class TwoStack {
     State state_;
     State saved_;
     Journal<Element> journal_;
+    std::size_t long_run_ = std::numeric_limits<std::size_t>::max();
+
+    RTAMT_INLINE void push_one(const Element& here, Value& out) noexcept {
+        (void)room(1);
+        const Element back = M::append(state_.back, here);
+        const std::size_t next = state_.fill + 1;
+        out = state_.front && next < width_ ? M::result(ring_[next], back) : M::result(back);
+        ring_[state_.fill] = here;
+        state_.back = back;
+        state_.fill = next;
+    }
+
+    void push_run(Operands<M> in, Value* out, std::size_t count) noexcept {
+        if constexpr (has_narrow) {
+            if (count >= long_run_) return push_long_run(in, out, count);
+        }
+        for (std::size_t done = 0; done < count;) {
+            const std::size_t part = room(count - done);
+            state_.front ? slide(in.from(done), out + done, part)
+                         : grow(in.from(done), out + done, part);
+            done += part;
+        }
+    }
+
+    // The totals that are left of the stretch before stand for the elements that they are made of:
+    // a window that contains one of these totals contains all of those elements.
+    void push_long_run(Operands<M> in, Value* out, std::size_t count) noexcept {
+        typename Stretch<M>::Narrow window(width_);
+        Element* before = window.before();
+        if (state_.fill == width_) {
+            copy_values(ring_ + 1, width_ - 1, before);
+        } else {
+            const std::size_t older = width_ - state_.fill - 1;
+            if (state_.front) {
+                copy_values(ring_ + state_.fill + 1, older, before);
+            } else {
+                fill_values(before, older, M::identity);
+            }
+            copy_values(ring_, state_.fill, before + older);
+        }
+        window.run(in.a, out, count);
+        copy_values(in.a + (count - width_), width_, ring_);
+        state_ = {width_, M::identity, true};
+    }
 
     // How many of `count` slots fit into this stretch, after ending it if it is full.
     [[nodiscard]] std::size_t room(std::size_t count) noexcept {

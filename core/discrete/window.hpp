@@ -1,11 +1,15 @@
 // Extremum over the last w slots: bounded once, historically, eventually, always; and their sum.
 //
 // The two stacks of two_stack.hpp. For real numbers the loops are unrolled by four, because a chain
-// of dependent comparisons is what would take the time.
+// of dependent comparisons is what would take the time, and where there are vectors of four
+// doubles they are used (wide_stretch.hpp). Runs longer than a narrow window need no stacks
+// (narrow_window.hpp).
 #pragma once
 
 #include "../values/real.hpp"
+#include "narrow_window.hpp"
 #include "two_stack.hpp"
+#include "wide_stretch.hpp"
 
 namespace rtamt::discrete {
 
@@ -16,10 +20,21 @@ template <class Algebra>
     requires(std::same_as<typename Algebra::Domain, Real> && Algebra::associative)
 struct Stretch<Joined<Algebra>> {
     using In = Operands<Joined<Algebra>>;
+    using Narrow = NarrowWindow<Algebra>;
 
     static void flip(double* ring, std::size_t width) noexcept {
         double tail = Algebra::identity;
         std::size_t i = width;
+#ifdef RTAMT_WIDE
+        if (width >= Wide::least && wide_vectors) {
+            for (; i % Wide::lanes != 0; --i) {
+                tail = Algebra::join(ring[i - 1], tail);
+                ring[i - 1] = tail;
+            }
+            Wide::flip(ring, i, tail);
+            return;
+        }
+#endif
         for (; i >= 4; i -= 4) {
             double* cell = ring + (i - 4);
             const double last = Algebra::join(cell[2], cell[3]);
@@ -41,8 +56,14 @@ struct Stretch<Joined<Algebra>> {
     [[nodiscard]] static double grow(In operands, double* cells, double back, double* out,
                                      std::size_t count) noexcept {
         const double* in = operands.a;
-        copy_values(in, count, cells);
         std::size_t i = 0;
+#ifdef RTAMT_WIDE
+        if (count >= Wide::least && wide_vectors) {
+            back = Wide::grow(in, cells, back, out, count);
+            i = count / Wide::lanes * Wide::lanes;
+        }
+#endif
+        copy_values(in + i, count - i, cells + i);
         for (; i + 4 <= count; i += 4) {
             const double first = Algebra::join(in[i], in[i + 1]);
             const double last = Algebra::join(in[i + 2], in[i + 3]);
@@ -63,6 +84,12 @@ struct Stretch<Joined<Algebra>> {
                                       std::size_t count) noexcept {
         const double* in = operands.a;
         std::size_t i = 0;
+#ifdef RTAMT_WIDE
+        if (count >= Wide::least && wide_vectors) {
+            back = Wide::slide(in, cells, back, out, count);
+            i = count / Wide::lanes * Wide::lanes;
+        }
+#endif
         for (; i + 4 <= count; i += 4) {
             const double first = Algebra::join(in[i], in[i + 1]);
             const double last = Algebra::join(in[i + 2], in[i + 3]);
@@ -86,6 +113,11 @@ struct Stretch<Joined<Algebra>> {
         }
         return back;
     }
+
+  private:
+#ifdef RTAMT_WIDE
+    using Wide = WideStretch<Algebra>;
+#endif
 };
 
 } // namespace rtamt::discrete

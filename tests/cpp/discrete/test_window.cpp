@@ -5,7 +5,12 @@
 
 using oracle::inf;
 using programs::Builder;
+using rtamt::infinity;
+using rtamt::Joined;
+using rtamt::Max;
+using rtamt::Min;
 using rtamt::Opcode;
+using rtamt::discrete::TwoStack;
 using ways::Executor;
 using ways::Random;
 using ways::Signal;
@@ -100,4 +105,63 @@ TEST_CASE("a wide window costs one double a sample of it") {
     builder.output(builder.unary(Opcode::slide_max, builder.input(), 1000000, 0));
     Executor executor(builder.program());
     CHECK(executor.state_bytes() < 8 * 1000000 + 100);
+}
+
+namespace {
+
+// NaN fails every comparison, zeros are equal: what a window of reals may hold but NaN.
+double extreme(oracle::Random& random) {
+    if (random.chance(10)) return random.chance(50) ? -0.0 : 0.0;
+    if (random.chance(10)) return random.chance(50) ? infinity : -infinity;
+    return random.between(-50, 50) / 2.0;
+}
+
+template <class Algebra>
+void check_extrema(std::size_t width, oracle::Random& random) {
+    const std::size_t count = random.chance(20) ? width / 2 + 1 : 2 * width + 700;
+    std::vector<double> values(count);
+    for (double& value : values)
+        value = extreme(random);
+    std::vector<double> ring(width);
+    std::vector<double> journal(width);
+    TwoStack<Joined<Algebra>> stack(width, ring.data(), journal.data());
+    std::vector<double> results(count);
+    for (std::size_t i = 0; i < count;) {
+        const int longest = random.chance(50) ? 300 : 3;
+        const auto part = std::min(count - i, static_cast<std::size_t>(random.between(1, longest)));
+        if (random.chance(30)) { // taken back
+            const std::vector<double> others(part, random.chance(50) ? -infinity : infinity);
+            stack.checkpoint(part);
+            stack.push({others.data(), nullptr}, results.data() + i, part);
+            stack.rollback();
+        }
+        stack.push({values.data() + i, nullptr}, results.data() + i, part);
+        i += part;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        double expected = Algebra::identity;
+        for (std::size_t k = i + 1 - std::min(i + 1, width); k <= i; ++k)
+            expected = Algebra::join(values[k], expected);
+        if (results[i] != expected) {
+            FAIL_CHECK("width " << width << ", sample " << i << ": " << results[i] << ", not "
+                                << expected);
+            return;
+        }
+    }
+}
+
+} // namespace
+
+// Narrow windows over long runs, wide ones in vectors, and the loops between.
+TEST_CASE("extremum of reals is its definition for every width at which the loops change") {
+    oracle::Random random(3);
+    std::vector<std::size_t> widths{63, 64, 65, 66, 67, 68, 100, 255, 256, 257, 999, 1000, 1001};
+    for (std::size_t width = 1; width <= 40; ++width)
+        widths.push_back(width);
+    for (const std::size_t width : widths) {
+        for (int round = 0; round < 4; ++round) {
+            check_extrema<Max>(width, random);
+            check_extrema<Min>(width, random);
+        }
+    }
 }
