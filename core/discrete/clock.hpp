@@ -17,8 +17,8 @@ class Clock {
     // gap, and the same time again; one that is not counts them as violations. The last `history`
     // times are remembered.
     Clock(double period, double tolerance, bool strict, std::size_t history)
-        : timestamps_(period, history), period_(period), slack_(tolerance * period),
-          strict_(strict) {}
+        : timestamps_(period, history), period_(period), tolerance_(tolerance),
+          slack_(tolerance * period), strict_(strict) {}
 
     // Whether the next sample may come at this time.
     [[nodiscard]] bool accepts(double time) const noexcept {
@@ -64,12 +64,15 @@ class Clock {
         snapshot.item(violations_);
     }
 
+    [[nodiscard]] double period() const noexcept { return period_; }
+    [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
     [[nodiscard]] std::uint64_t violations() const noexcept { return violations_; }
     [[nodiscard]] const Timestamps& timestamps() const noexcept { return timestamps_; }
 
   private:
     Timestamps timestamps_;
     double period_;
+    double tolerance_;
     double slack_;
     double anchor_ = 0.0; // the last time that was given
     double steps_ = 0.0;  // samples since then

@@ -82,7 +82,12 @@ class BasicExecutor {
     // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
-    // A whole trace at once, `count` values an output; what a failure leaves behind is unspecified.
+    // A whole trace at once, `count` values an output, whatever came before. Then only another
+    // whole trace may follow; after a failure, nothing.
+    [[nodiscard]] std::optional<Failure> evaluate(Columns columns, std::size_t count,
+                                                  Outputs outputs);
+
+    // The same with an executor of its own.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program, Columns columns,
                                                          std::size_t count, Outputs outputs);
 
@@ -105,9 +110,9 @@ class BasicExecutor {
 
   private:
     Wiring<D> wiring_;
-    ZeroCopy zero_copy_;    // used by evaluate() only, after which no register is read
-    std::size_t last_ = 0;  // place of the last slot in the registers
-    std::int64_t slot_ = 0; // the next slot
+    std::optional<ZeroCopy> zero_copy_; // of whole traces, after which no register is read
+    std::size_t last_ = 0;              // place of the last slot in the registers
+    std::int64_t slot_ = 0;             // the next slot
     std::int64_t samples_ = endless;
     bool finished_ = false;
     Failure failure_{};

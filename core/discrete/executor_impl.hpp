@@ -76,7 +76,7 @@ void BasicExecutor<D>::rollback() noexcept {
 template <ValueDomain D>
 void BasicExecutor<D>::load(Columns columns, std::size_t offset, const Block& block) noexcept {
     if (columns.empty()) return; // after the last sample
-    const auto skips = [&](std::uint32_t input) { return zero_copy_.skips(input); };
+    const auto skips = [&](std::uint32_t input) { return zero_copy_ && zero_copy_->skips(input); };
     wiring_.numbers().load(columns, offset, block.count, skips);
     wiring_.formulas().load(columns, offset, block.count, skips);
 }
@@ -108,7 +108,8 @@ template <ValueDomain D>
 void BasicExecutor<D>::bind_buffers(Columns columns, std::size_t offset, const Block& block,
                                     std::int64_t start, Outputs outputs) noexcept {
     if constexpr (UniformDomain<D>) {
-        zero_copy_.bind_buffers(
+        if (!zero_copy_) return;
+        zero_copy_->bind_buffers(
             columns, offset, block,
             [&](std::size_t output, std::int64_t lag) {
                 return outputs[output] + (block.slot - lag - detail::known_before(start, lag));
@@ -120,7 +121,7 @@ void BasicExecutor<D>::bind_buffers(Columns columns, std::size_t offset, const B
 template <ValueDomain D>
 void BasicExecutor<D>::deliver(const Block& block, std::int64_t start, Outputs outputs) noexcept {
     for (std::size_t output = 0; output < outputs.size(); ++output) {
-        if (zero_copy_.written(output)) continue;
+        if (zero_copy_ && zero_copy_->written(output)) continue;
         const std::uint32_t instruction = program().outputs[output];
         const std::int64_t lag = program().instructions[instruction].lag;
         const Range present = block.present(lag);
@@ -279,22 +280,29 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
 }
 
 template <ValueDomain D>
-std::optional<Failure> BasicExecutor<D>::evaluate(Program program, Columns columns,
-                                                  std::size_t count, Outputs outputs) {
-    BasicExecutor executor(std::move(program));
-    const auto rest = static_cast<std::size_t>(executor.program().latest());
-    executor.reserve(std::max(count, rest));
-    if constexpr (UniformDomain<D>)
-        executor.zero_copy_ = ZeroCopy(executor.program(), executor.wiring_.kernels());
-    if (!executor.advance(columns, count, outputs, false)) return executor.failure_;
-    executor.samples_ = executor.slot_;
+std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t count,
+                                                  Outputs outputs) {
+    const auto rest = static_cast<std::size_t>(program().latest());
+    if (slot_ != 0) reset();
+    reserve(std::max(count, rest));
+    if constexpr (UniformDomain<D>) {
+        if (!zero_copy_) zero_copy_.emplace(program(), wiring_.kernels());
+    }
+    if (!advance(columns, count, outputs, false)) return failure_;
+    samples_ = slot_;
     std::vector<Formula*> tails;
     tails.reserve(outputs.size());
     for (std::size_t output = 0; output < outputs.size(); ++output) {
-        tails.push_back(outputs[output] + (count - executor.remaining(output)));
+        tails.push_back(outputs[output] + (count - remaining(output)));
     }
-    if (!executor.advance({}, rest, tails, false)) return executor.failure_;
+    if (!advance({}, rest, tails, false)) return failure_;
     return std::nullopt;
+}
+
+template <ValueDomain D>
+std::optional<Failure> BasicExecutor<D>::evaluate(Program program, Columns columns,
+                                                  std::size_t count, Outputs outputs) {
+    return BasicExecutor(std::move(program)).evaluate(columns, count, outputs);
 }
 
 template <ValueDomain D>

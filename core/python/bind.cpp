@@ -2,10 +2,12 @@
 #include "../program/opcodes.hpp"
 #include "dense_early_monitor.hpp"
 #include "early_monitor.hpp"
+#include "evaluator.hpp"
 #include "failures.hpp"
 #include "monitor_module.hpp"
 #include "offline.hpp"
 #include "online.hpp"
+#include "recording.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -59,6 +61,8 @@ NB_MODULE(_core, m) {
     rtamt::python::add_dense_early_monitor(m, exceptions);
     rtamt::python::add_online(m);
     rtamt::python::add_offline(m, exceptions);
+    rtamt::python::add_evaluator(m, exceptions);
+    rtamt::python::add_recording(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
 }

@@ -1,5 +1,7 @@
 #include "monitor.hpp"
 
+#include "recording.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -183,11 +185,11 @@ PyObject* Monitor::take(double time) noexcept {
 
 // The time of a sample that the last history_of() or the ones that are being taken have; those come
 // at the given times, or a period apart.
-double Monitor::time_of(std::int64_t sample, const std::optional<Column>& times) const {
+double Monitor::time_of(std::int64_t sample, std::optional<std::span<const double>> times) const {
     const auto index = static_cast<std::size_t>(sample);
     const std::size_t so_far = clock_.timestamps().count();
     if (index < so_far) return clock_.timestamps().at(index);
-    return times ? times->data()[index - so_far] : clock_.upcoming(index - so_far);
+    return times ? (*times)[index - so_far] : clock_.upcoming(index - so_far);
 }
 
 // ---- many samples -------------------------------------------------------------------------------
@@ -208,23 +210,85 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.known(i, count));
     }
-    const auto failure = usage_.exclusively(
-        count, [&] { return executor_.push(pointers, count, results.pointers()); });
+    std::optional<std::span<const double>> stamps;
+    if (times) stamps.emplace(times->data(), count);
+    push(stamps, pointers, count, results.pointers());
+    return results.hand_over();
+}
+
+void Monitor::push(std::optional<std::span<const double>> times,
+                   std::span<const double* const> columns, std::size_t count,
+                   std::span<double* const> outputs) {
+    const auto failure =
+        usage_.exclusively(count, [&] { return executor_.push(columns, count, outputs); });
     if (failure) {
         raise_undefined(exceptions_, *calls_, failure->instruction, failure->sample, failure->fault,
                         time_of(failure->sample, times));
     }
     if (times) {
-        for (std::size_t i = 0; i < count; ++i)
-            clock_.advance(times->data()[i]);
+        for (const double time : *times)
+            clock_.advance(time);
     } else {
         clock_.tick(count);
     }
-    if (count > 0) {
-        for (std::size_t i = 0; i < pointers.size(); ++i)
-            previous_[i] = pointers[i][count - 1];
+    if (count == 0) return;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        previous_[i] = columns[i][count - 1];
+}
+
+nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time) {
+    usage_.require_idle();
+    if (executor_.finished() || !names_.plain()) return nb::none();
+    const auto given = GivenColumns::of(numpy_, data, names_.all(), time);
+    if (!given) return nb::none();
+    const std::size_t count = given->count;
+    const std::int64_t so_far = executor_.samples();
+    const NewArray stamps = numpy_.make(count);
+    const std::span<double> times(stamps.values(), count);
+    const auto last = clock_.timestamps().last();
+    const double period = clock_.period();
+    if (given->times) {
+        if (!given->times->copy(times.data()) || !ordered(times, last) ||
+            !regular(times, last, period, clock_.tolerance())) {
+            return nb::none();
+        }
+    } else {
+        const double first = last ? *last + period : 0.0;
+        for (std::size_t i = 0; i < count; ++i)
+            times[i] = first + period * static_cast<double>(i);
     }
-    return results.hand_over();
+    const std::size_t width = given->columns.size();
+    const auto values = std::make_unique_for_overwrite<double[]>(width * count);
+    std::vector<const double*> columns;
+    columns.reserve(width);
+    for (const Given& column : given->columns) {
+        double* copy = values.get() + columns.size() * count;
+        if (!column.copy(copy)) return nb::none();
+        columns.push_back(copy);
+    }
+
+    const Program& program = executor_.program();
+    std::vector<NewArray> made;
+    std::vector<double*> outputs;
+    nb::list news;
+    for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+        const std::size_t known = executor_.known(i, count);
+        outputs.push_back(made.emplace_back(numpy_.make(known)).values());
+        const std::int64_t lag = program.instructions[program.outputs[i]].lag;
+        nb::object known_at = stamps.array;
+        if (lag != 0) {
+            const NewArray late = numpy_.make(known);
+            const std::int64_t first = std::max<std::int64_t>(so_far - lag, 0);
+            for (std::size_t k = 0; k < known; ++k)
+                late.values()[k] = time_of(first + static_cast<std::int64_t>(k), times);
+            known_at = late.array;
+        }
+        news.append(nb::make_tuple(known_at, made.back().array));
+    }
+    usage_.require_idle(); // an allocation may have run Python code
+    usage_.require(executor_.samples() == so_far && !executor_.finished());
+    push(times, columns, count, outputs);
+    return nb::make_tuple(executor_.samples(), news);
 }
 
 std::vector<Result> Monitor::finish() {

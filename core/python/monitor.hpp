@@ -11,6 +11,7 @@
 #include "failures.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
+#include "numpy.hpp"
 #include "row.hpp"
 #include "usage_guard.hpp"
 
@@ -45,6 +46,11 @@ class Monitor {
     [[nodiscard]] std::vector<Result> push(const std::optional<Column>& times,
                                            const std::vector<Column>& columns,
                                            std::optional<std::int64_t> after);
+    // The same of a dict of columns, with timestamps under the name `time` or a period apart.
+    // Returns the number of samples so far, and times and values of what became known of each
+    // output; None, with nothing changed, for data that Python has to convert or reject.
+    [[nodiscard]] nb::object take_columns(const nb::handle& data, const nb::handle& time);
+
     [[nodiscard]] std::vector<Result> finish();
     void reset();
 
@@ -72,6 +78,7 @@ class Monitor {
     discrete::Clock clock_;
     Numbers numbers_;
     Names names_;
+    NumPy numpy_;
     Exceptions exceptions_;
     UsageGuard usage_;
     std::vector<double> row_;       // the sample that is being taken
@@ -81,7 +88,10 @@ class Monitor {
     void transfer(Snapshot& snapshot);
     [[nodiscard]] Places places() noexcept { return {row_.data(), given_.get(), row_.size()}; }
     [[nodiscard]] bool ready() const noexcept { return usage_.open(executor_.finished()); }
-    [[nodiscard]] double time_of(std::int64_t sample, const std::optional<Column>& times) const;
+    [[nodiscard]] double time_of(std::int64_t sample,
+                                 std::optional<std::span<const double>> times) const;
+    void push(std::optional<std::span<const double>> times, std::span<const double* const> columns,
+              std::size_t count, std::span<double* const> outputs);
     template <bool timed, bool keeps, class Read>
     [[nodiscard]] PyObject* sample(const Read& read) noexcept;
     template <bool timed, bool keeps, class Read>

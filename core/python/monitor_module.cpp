@@ -124,10 +124,18 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
             nb::arg("tolerance") = infinity, nb::arg("strict") = true,
             nb::arg("ignored") = nb::none(), nb::arg("calls") = nb::list(),
             nb::arg("types") = nb::dict())
-        .def("push", &Monitor::push, nb::arg("times").none(), nb::arg("columns"),
-             nb::arg("after") = nb::none(),
-             "Take a chunk, a column an input, unless others than `after` samples came before; "
-             "return what became known of each output.")
+        .def(
+            "push",
+            [](Monitor& self, const std::optional<Column>& times,
+               const std::vector<Column>& columns,
+               std::optional<std::int64_t> after) { return self.push(times, columns, after); },
+            nb::arg("times").none(), nb::arg("columns"), nb::arg("after") = nb::none(),
+            "Take a chunk, a column an input, unless others than `after` samples came before; "
+            "return what became known of each output.")
+        .def("take_columns", &Monitor::take_columns, nb::arg("data"), nb::arg("time"),
+             "Take a dict of columns; return the number of samples so far, and times and values of "
+             "what became known of each output. None for data that has to be converted, or is "
+             "wrong.")
         .def("finish", &Monitor::finish, "End the trace; return the rest of each output.")
         .def("reset", &Monitor::reset, "Forget every sample.")
         .def("state", &Monitor::state, "What the samples so far have left behind.")

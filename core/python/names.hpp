@@ -8,9 +8,11 @@
 
 #include <nanobind/nanobind.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -95,6 +97,12 @@ class Names {
     }
 
     [[nodiscard]] std::size_t count() const noexcept { return names_.size(); }
+    [[nodiscard]] std::span<const nb::str> all() const noexcept { return names_; }
+
+    // Whether all values are plain numbers.
+    [[nodiscard]] bool plain() const noexcept {
+        return std::ranges::all_of(types_, &ValueType::plain);
+    }
 
     // The index of the input of this name, which is probably the one guessed; or nothing. If it is
     // to be found without running Python code (`plain`), nothing for what is not quite a str.

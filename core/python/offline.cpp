@@ -16,6 +16,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -102,23 +103,44 @@ nb::list evaluate_bounds(const nb::bytes& bytes, const std::vector<BoundsColumn>
     return found;
 }
 
-Result scan(std::string_view kind, const Column& a, const std::optional<Column>& b) {
-    const std::span<const double> first(a.data(), a.shape(0));
-    Results results;
-    results.add(first.size());
-    const std::span<double> out(results.pointers().front(), first.size());
+void scan(std::string_view kind, std::span<const double> first,
+          std::optional<std::span<const double>> second, std::span<double> out) {
     if (kind == "run_max") {
         discrete::scan<Max>(first, out);
     } else if (kind == "run_min") {
         discrete::scan<Min>(first, out);
     } else if (kind == "until") {
-        if (!b || b->shape(0) != first.size()) {
+        if (!second) {
             throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
         }
-        discrete::scan_until<Real>(first, {b->data(), b->shape(0)}, out);
+        discrete::scan_until<Real>(first, *second, out);
     } else {
         throw std::invalid_argument("There is no scan '" + std::string(kind) +
                                     "': it is run_max, run_min or until.");
+    }
+}
+
+// Of traces of `count` samples each, one after another.
+Result scan(std::string_view kind, const Column& a, const std::optional<Column>& b,
+            std::optional<std::size_t> count) {
+    const std::span<const double> first(a.data(), a.shape(0));
+    std::optional<std::span<const double>> second;
+    if (b) second.emplace(b->data(), b->shape(0));
+    const std::size_t size = count.value_or(first.size());
+    if (first.size() != 0 && (size == 0 || first.size() % size != 0)) {
+        throw std::invalid_argument("The column does not consist of whole traces.");
+    }
+    if (second && second->size() != first.size()) {
+        throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
+    }
+    Results results;
+    results.add(first.size());
+    const std::span<double> out(results.pointers().front(), first.size());
+    for (std::size_t begin = 0; begin == 0 || begin < first.size();
+         begin += std::max<std::size_t>(size, 1)) {
+        std::optional<std::span<const double>> other;
+        if (second) other = second->subspan(begin, size);
+        scan(kind, first.subspan(begin, size), other, out.subspan(begin, size));
     }
     return std::move(results.hand_over().front());
 }
@@ -238,8 +260,13 @@ void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
         "Run a program without calls over bounds of a whole trace, an array of shape (n, 2) an "
         "input; "
         "return lower and upper bounds of each output.");
-    m.def("scan", &scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
-          "Unbounded future over a whole column: run_max, run_min, or until.");
+    m.def(
+        "scan",
+        [](std::string_view kind, const Column& a, const std::optional<Column>& b,
+           std::optional<std::size_t> n) { return scan(kind, a, b, n); },
+        nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(), nb::arg("n") = nb::none(),
+        "Unbounded future over a whole column, run_max, run_min, or until; with n, over traces of "
+        "n samples each in it.");
     m.def(
         "memory",
         [](const nb::bytes& program, const nb::list& calls) {

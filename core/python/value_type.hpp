@@ -38,6 +38,9 @@ class ValueType {
         python_enum_ = nb::module_::import_("enum").attr("Enum");
     }
 
+    // Whether it is that of numbers.
+    [[nodiscard]] bool plain() const noexcept { return kind_ == Kind::number; }
+
     // As Numbers::read; also false for what is no value of the type.
     template <class Numbers>
     [[nodiscard]] RTAMT_INLINE bool read(const Numbers& numbers, PyObject* object,

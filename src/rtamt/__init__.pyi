@@ -2,6 +2,7 @@
 
 from rtamt.batch import evaluate_all as evaluate_all
 from rtamt.batch import evaluate_batch as evaluate_batch
+from rtamt.batch_results import BatchResult as BatchResult
 from rtamt.compat.dense import STLCTSpecification as STLCTSpecification
 from rtamt.compat.dense import StlDenseTimeOfflineSpecification as StlDenseTimeOfflineSpecification
 from rtamt.compat.dense import StlDenseTimeOnlineSpecification as StlDenseTimeOnlineSpecification

@@ -11,7 +11,6 @@ from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.offline import Evaluators
 from rtamt.errors import StlError, UsageError, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
@@ -206,21 +205,19 @@ def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
     types = {name: type_ for spec, _ in asked.values() for name, type_ in spec.types.items()}
     binding = union([spec.binding for spec, _ in asked.values()])
     whole = query.record(binding.applied(data), names, types)
-    for number, (_, query) in asked.items():
-        if query.domain.step is None:  # otherwise checked without the recording
-            with _place(number):
-                whole.check(query.formula, query.text)
+    for number, (spec, query) in asked.items():
+        with _place(number):
+            spec._check(query, whole)
     for number, (spec, query) in list(asked.items()):
         if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a different time
             yield number, spec._result(query, whole.select(spec.input_names))
             del asked[number]
     if not asked:
         return
-    spec, _ = next(iter(asked.values()))
-    evaluators = Evaluators(spec.backend)
+    first, _ = next(iter(asked.values()))  # keeps the program for the next recording
     for recording, numbers in _with_one_extent(asked, whole):
         formulas = tuple(asked[number][1].formula for number in numbers)
-        for number, signal in zip(numbers, evaluators(formulas, recording), strict=True):
+        for number, signal in zip(numbers, first._signals_of(formulas, recording), strict=True):
             spec, query = asked[number]
             yield (
                 number,

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Result:
     """The result of an evaluation: robustness and verdict at the first instant, and the whole signal.
 
@@ -49,9 +49,25 @@ class Result:
     #: ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``.
     signal: Signal
     #: The semantics of predicates: a name, or the given function.
-    semantics: str | PredicateSemantics = "standard"
+    semantics: str | PredicateSemantics
     #: What is known already: of a requirement what its program has found, of several with different starts each.
-    known: Findings | Mapping[str, Result] | None = None
+    known: Findings | Mapping[str, Result] | None
+
+    def __init__(
+        self,
+        specification: Specification,
+        trace: DomainTrace,
+        signal: Signal,
+        semantics: str | PredicateSemantics = "standard",
+        known: Findings | Mapping[str, Result] | None = None,
+    ) -> None:
+        # The __init__ of a frozen dataclass takes as long as the evaluation of a short trace.
+        fields = self.__dict__
+        fields["specification"] = specification
+        fields["trace"] = trace
+        fields["signal"] = signal
+        fields["semantics"] = semantics
+        fields["known"] = known
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from rtamt.batch_results import evaluate_rows
+from rtamt.engine.engine import engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
@@ -16,6 +18,7 @@ from rtamt.results import Result, requirements_of
 from rtamt.signals import members
 from rtamt.signals.data_errors import nan_of_members
 from rtamt.signals.inexact import Uncertainty, fill_gaps
+from rtamt.signals.rows import Rows
 from rtamt.signals.sampling import sampled
 from rtamt.signals.trace import Trace
 from rtamt.specification_online import OnlineSpecification
@@ -24,6 +27,7 @@ from rtamt.verdicts.offline import by_start, findings_apart
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from rtamt.batch_results import BatchResult
     from rtamt.language.formula import Formula
     from rtamt.language.parsing.imports import Library
     from rtamt.language.units.durations import Duration
@@ -105,9 +109,59 @@ class Specification(OnlineSpecification):
                 )
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
         data = self._sampled(query, self.binding.applied(data))
-        recording = self._with_units(self._recorded(query, data, uncertainty, ranges))
+        recording = None
+        if uncertainty is None and ranges is None:
+            recording = query.read(data, self.input_names, self.types)
+        if recording is None:
+            recording = self._recorded(query, data, uncertainty, ranges)
+        if self.units:
+            recording = self._with_units(recording)
         self._check(query, recording)
         return self._result(query, recording)
+
+    def evaluate_batch(
+        self,
+        data: Any,
+        *,
+        lengths: Any = None,
+        time: str | TimeDomain | None = None,
+        period: Duration | None = None,
+        tolerance: float | None = None,
+        semantics: Semantics | None = None,
+        time_unit: str | None = None,
+    ) -> BatchResult:
+        """Evaluate many short traces in discrete time: an array for each variable, a trace in each row.
+
+        ``data``: a mapping from variable to an array of shape (traces, samples); ``"time"`` is optional, one row of
+        timestamps for all traces or a row for each. ``lengths``: the number of samples of each trace; what follows
+        in its row is ignored. The other arguments are those of :meth:`evaluate`, and so are the results. For
+        traces in dense time, of members that come and go, or with missing samples, see :func:`rtamt.evaluate_batch`.
+
+        Raises the error of :meth:`evaluate` for the first invalid trace, prefixed with its index (from 0).
+
+        >>> import numpy as np, rtamt
+        >>> spec = rtamt.parse("eventually[0:1](x >= 3)")
+        >>> batch = spec.evaluate_batch({"x": np.array([[1, 5, 0], [0, 2, 9]])})
+        >>> batch.robustness, batch.satisfied, batch[1].signal.values
+        (array([ 2., -1.]), array([ True, False]), array([-1.,  6.,  6.]))
+        """
+        query = self._query(time, period, tolerance, None, semantics, time_unit)
+        rule = query.domain.sampling(self.sampling)
+        for what, unfit in (
+            ("dense time", query.domain.continuous),
+            ("groups", bool(self.groups)),
+            (f"'{rule}'", rule is not None and rule.hold),
+        ):
+            if unfit:
+                raise UsageError(
+                    f"arrays of traces cannot be evaluated with {what}: use rtamt.evaluate_batch(spec, traces)"
+                )
+        rows = Rows.of(self.binding.applied(data), self.input_names, lengths)
+
+        def evaluate(row: Any) -> Result:
+            return self.evaluate(row, time=query.domain, semantics=semantics, time_unit=time_unit)
+
+        return evaluate_rows(self, query, rows, evaluate)
 
     def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
         """Return the specification over the members of groups that data has, and data with their presence."""
@@ -124,6 +178,8 @@ class Specification(OnlineSpecification):
 
     def _sampled(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
+        if self.sampling is None:
+            return data
         rule = query.domain.sampling(self.sampling)
         if rule is None or not rule.hold:
             return data
@@ -131,7 +187,8 @@ class Specification(OnlineSpecification):
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
-        self.require_no_groups("this check")
+        if self.groups:
+            self.require_no_groups("this check")
         if len(self.requirements) > 1 and recording.domain.continuous:
             outputs = [one._outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
@@ -143,7 +200,7 @@ class Specification(OnlineSpecification):
                 signal, findings = findings_apart(outputs, recording, self._signals_of)
                 parts = requirements_of(self, findings, query.semantics)
                 return Result(self, recording, signal, query.semantics, parts)
-        return Result(self, recording, self._signals_of((query.formula,), recording)[0], query.semantics)
+        return Result(self, recording, self._evaluators(query.formulas, recording)[0], query.semantics)
 
     def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""
@@ -193,7 +250,7 @@ class Specification(OnlineSpecification):
         chosen = self._semantics(semantics)
         formula = self._apply_semantics(self.formula, chosen)
         domain.check(formula, self.text)
-        return Query(formula, self.text, domain, chosen, unit)
+        return Query(formula, self.text, domain, chosen, unit, engine_of(domain))
 
     def _signals_of(self, formulas: tuple[Formula, ...], trace: DomainTrace) -> list[Signal]:
         """Return the robustness signals of formulas over a normalised recording, all from one program."""

@@ -51,6 +51,8 @@ def results() -> None:
     assert_type(result.explain(), Explanation)
     assert_type(rtamt.evaluate_all([spec], DATA), list[rtamt.Result])
     assert_type(rtamt.evaluate_batch(spec, [DATA]), list[rtamt.Result])
+    batch = assert_type(spec.evaluate_batch({"x": [[1.0], [2.0]]}), rtamt.BatchResult)
+    assert_type(batch[0], rtamt.Result)
     assert_type(rtamt.check_stream(spec, [DATA]), rtamt.StreamResult)
 
 

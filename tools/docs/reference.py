@@ -200,7 +200,8 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Evaluate": (
         "",
         (
-            "Specification.evaluate", "robustness", "Result", "first_violation", "Signal", "evaluate_all",
+            "Specification.evaluate", "Specification.evaluate_batch", "BatchResult", "robustness", "Result",
+            "first_violation", "Signal", "evaluate_all",
             "evaluate_batch", "check_stream", "StreamResult", "Episode", "Discrete", "Dense",
         ),
     ),

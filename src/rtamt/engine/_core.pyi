@@ -60,6 +60,15 @@ class Monitor:
         Return what became known of each output.
         """
 
+    def take_columns(
+        self, data: Any, time: str
+    ) -> tuple[int, list[tuple[NDArray[np.float64], NDArray[np.float64]]]] | None:
+        """Take a dict of columns.
+
+        Return the number of samples so far, and times and values of what became known of each output. None for data
+        that has to be converted, or is wrong.
+        """
+
     def finish(self) -> list[NDArray[np.float64]]:
         """End the trace; return the rest of each output."""
 
@@ -371,6 +380,34 @@ def evaluate(
 ) -> list[NDArray[np.float64]]:
     """Run a program over a whole trace of n samples; return n values an output."""
 
+class Evaluator:
+    """Runs a program without calls over whole traces."""
+
+    def __init__(self, program: bytes) -> None: ...
+    def run(self, columns: list[NDArray[np.float64]], n: int) -> list[NDArray[np.float64]]:
+        """Run over columns of n samples, one an input; return n values an output."""
+
+    def run_rows(
+        self, columns: list[NDArray[np.float64]], rows: int, n: int
+    ) -> tuple[list[NDArray[np.float64]], int]:
+        """Run over many traces of n samples, one after another in each column.
+
+        Return as many values of each output, and the first trace with an undefined value, or -1.
+        """
+
+def read_columns(
+    data: Any,
+    names: Sequence[str],
+    time: str,
+    period: float | None,
+    tolerance: float,
+) -> tuple[NDArray[np.float64] | None, float, dict[str, NDArray[np.float64]], int] | None:
+    """Copy the columns of a trace, a dict.
+
+    Return the timestamps (None without), the period (inferred if None), columns by name and their length. None if
+    anything has to be converted, or is wrong.
+    """
+
 def evaluate_bounds(
     program: bytes, columns: Sequence[NDArray[np.float64]], n: int
 ) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
@@ -379,8 +416,13 @@ def evaluate_bounds(
     Return lower and upper bounds of each output.
     """
 
-def scan(kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-    """Unbounded future over a whole column: run_max, run_min, or until."""
+def scan(
+    kind: str, a: NDArray[np.float64], b: NDArray[np.float64] | None = None, n: int | None = None
+) -> NDArray[np.float64]:
+    """Unbounded future over a whole column, run_max, run_min, or until.
+
+    With n, over traces of n samples each in it.
+    """
 
 def memory(program: bytes, calls: _Calls = ...) -> int:
     """Bytes of state of a new monitor of this program."""

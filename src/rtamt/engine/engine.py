@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
     from rtamt.engine.time_axis import TimeAxis
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,11 +20,14 @@ class Engine:
 
     ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
     domain; for its settings see :class:`Monitor`. ``time_axis``: takes a recording and the name of a back end.
+    ``read``: takes data, the variables and the time domain; returns the recording if the data needs no conversion
+    and is valid, else None.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
     time_axis: Callable[[Any, str], TimeAxis]
+    read: Callable[[Any, Sequence[str], Any], DomainTrace | None] = field(default=lambda *_given: None)
 
 
 def engine_of(domain: TimeDomain) -> Engine:

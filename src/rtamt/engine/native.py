@@ -51,15 +51,21 @@ class _TakenByPython:
         return self._step_carefully(*values)
 
 
+def _read_by_python(*_given: Any) -> None:
+    """Stand in for :func:`rtamt.engine._core.read_columns` where the core is not built."""
+
+
 if TYPE_CHECKING:
     MonitorBase = _core.MonitorBase
     DenseMonitorBase = _core.DenseMonitorBase
     EarlyMonitorBase = _core.EarlyMonitorBase
+    read_columns = _core.read_columns
 else:
     try:
-        from rtamt.engine._core import DenseMonitorBase, EarlyMonitorBase, MonitorBase
+        from rtamt.engine._core import DenseMonitorBase, EarlyMonitorBase, MonitorBase, read_columns
     except ImportError:
         MonitorBase = DenseMonitorBase = EarlyMonitorBase = _TakenByPython
+        read_columns = _read_by_python
 
 
 def core_monitor(

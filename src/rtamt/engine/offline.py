@@ -3,40 +3,56 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.engine import engine_of
 from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
+    from fractions import Fraction
 
+    from rtamt.engine.engine import Engine
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
+    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Query:
     """A formula under its semantics, and the time domain in which recordings are read.
 
-    ``text``: the source text of the formula. ``unit``: the unit of numeric times (None: seconds).
+    ``text``: the source text of the formula. ``unit``: the unit of numeric times (None: seconds). ``engine``: that
+    of the time domain.
     """
 
     formula: Formula
     text: str
     domain: TimeDomain
     semantics: str | PredicateSemantics
-    unit: str | None = None
+    unit: str | None
+    engine: Engine
+
+    @cached_property
+    def formulas(self) -> tuple[Formula]:
+        """The formula as the only one of a program."""
+        return (self.formula,)
 
     def record(self, data: Any, names: Sequence[str], types: Types) -> DomainTrace:
         """Normalise a finished recording of the variables ``names``. Raises :class:`TraceError`.
 
         ``types``: of the variables that are no plain numbers.
         """
-        return self.domain.record(data, names, self.unit, types)
+        found = self.read(data, names, types)
+        return self.domain.record(data, names, self.unit, types) if found is None else found
+
+    def read(self, data: Any, names: Sequence[str], types: Types) -> DomainTrace | None:
+        """Return the recording if the data needs no conversion and is valid, else None."""
+        return None if types or self.unit is not None else self.engine.read(data, names, self.domain)
 
 
 class Evaluators:
@@ -45,28 +61,56 @@ class Evaluators:
     def __init__(self, backend: str) -> None:
         self._backend = backend
         self._evaluators: dict[Any, Callable[[Any], Sequence[Any]]] = {}
+        # The last formulas and step of a recording without bounds, and their evaluator: to look them up in the
+        # dictionary takes as long as to evaluate a short trace.
+        self._last: (
+            tuple[tuple[Formula, ...], Fraction, tuple[str, ...], Callable[[Any], Sequence[Any]]] | None
+        ) = None
 
     def __reduce__(self) -> tuple[type[Evaluators], tuple[str]]:
         return Evaluators, (self._backend,)  # a copy compiles anew
 
     def __call__(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
+        last = self._last
+        if (
+            last is not None
+            and last[0] is formulas
+            and last[1] is recording.step
+            and last[2] == (*recording.columns,)
+            and not recording.bounds
+        ):
+            return recording.signals(last[3](recording))
         if recording.bounds and (asked := presences(*formulas)):
             formulas = tuple(map(tracked, formulas))
             recording = recording.with_presence({name: channel_of(name) for name in asked})
+        evaluator = self._evaluator(formulas, recording)
+        if recording.bounds:
+            return list(evaluator(recording))
+        self._last = formulas, recording.step, tuple(recording.columns), evaluator
+        return recording.signals(evaluator(recording))
+
+    def rows(
+        self, formulas: tuple[Formula], one: DomainTrace, columns: Mapping[str, FloatArray]
+    ) -> FloatArray | None:
+        """Return the robustness of a formula in many recordings, a row each, that differ from ``one`` in values alone.
+
+        None where it has to be evaluated recording by recording.
+        """
+        evaluate = getattr(self._evaluator(formulas, one), "rows", None)
+        return None if evaluate is None else evaluate(columns)
+
+    def _evaluator(
+        self, formulas: tuple[Formula, ...], recording: DomainTrace
+    ) -> Callable[[Any], Sequence[Any]]:
         step, inputs = recording.step, tuple(recording.columns)
         bounded = bool(recording.bounds)
-        key = (
-            type(recording),
-            bounded,
-            formulas,
-            step.as_integer_ratio(),
-            inputs,
-        )  # fractions are slow to hash
+        ratio = step.as_integer_ratio()  # fractions are slow to hash
+        key = (type(recording), bounded, formulas, ratio, inputs)
         evaluator = self._evaluators.get(key)
         if evaluator is None:
             backend = engine_of(recording.domain).backends[self._backend]
             grounded = recording.domain.ground(*formulas)
             make = backend.bounds if bounded else backend.evaluator
             evaluator = self._evaluators[key] = make(grounded, step, inputs)
-        return list(evaluator(recording)) if bounded else recording.signals(evaluator(recording))
+        return evaluator

@@ -21,6 +21,7 @@ sampling          the latest values of variables as samples one period apart
 resampling        signals at other instants: a regular grid, or those of other signals
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
+rows              many traces in one array for each variable, a trace in each row
 data_errors       errors for missing variables and samples, and for NaN
 coding            names of members to their codes; Booleans are 1 or 0
 recoding          codes that a recording has under other numbers: constants of messages

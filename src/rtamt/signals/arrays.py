@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.value_types import ValueType
     from rtamt.signals.coding import Types
+    from rtamt.signals.regular import RegularTimes
 
     FloatArray = NDArray[np.float64]
 
@@ -261,7 +262,11 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
 
 
 def check_numbers(
-    name: str, column: FloatArray, times: FloatArray, first: int = 0, type_: ValueType | None = None
+    name: str,
+    column: FloatArray,
+    times: FloatArray | RegularTimes,
+    first: int = 0,
+    type_: ValueType | None = None,
 ) -> None:
     """Raise :class:`TraceError` at the first NaN, of a Boolean also at a number that is neither 1 nor 0.
 

@@ -52,7 +52,7 @@ class Binding:
         Applying it again changes nothing. ``partial``: for a chunk, which need not have all variables. Raises
         :class:`TraceError` for a recorded name that is missing and units that cannot be converted.
         """
-        if isinstance(data, Trace):
+        if data.__class__ is not dict and isinstance(data, Trace):
             return self._trace(data) if self.columns or self.units else data
         if not self.columns:
             return data

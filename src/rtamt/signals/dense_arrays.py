@@ -66,7 +66,8 @@ class TickSignal(Signal):
         if not hasattr(self, "_times"):
             ticks = np.frombuffer(self._events, np.int64, len(self._events) // 16)
             self._times = self._scale.times(ticks)
-        return self._times
+        times: NDArray[Any] = self._times
+        return times
 
     @property
     def values(self) -> FloatArray:

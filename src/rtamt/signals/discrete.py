@@ -18,7 +18,14 @@ from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
-from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, check_tolerance, infer_period
+from rtamt.signals.regular import (
+    TOLERANCE,
+    RegularTimes,
+    check_increasing,
+    check_regular,
+    check_tolerance,
+    infer_period,
+)
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -106,12 +113,11 @@ class Discrete(TimeDomain):
 DISCRETE = Discrete()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)  # to make a frozen one takes as long as to evaluate a short trace
 class DiscreteTrace(DomainTrace):
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
-    #: Seconds; of dates, since 1970.
-    times: FloatArray
+    _times: FloatArray | RegularTimes
     columns: Mapping[str, FloatArray]
     period: Fraction
     #: Whether the period was inferred from the timestamps.
@@ -128,7 +134,13 @@ class DiscreteTrace(DomainTrace):
     missing: Mapping[str, Mask] = dataclasses.field(default_factory=dict)
 
     def __len__(self) -> int:
-        return len(self.times)
+        return len(self._times)
+
+    @property
+    def times(self) -> FloatArray:
+        """Seconds; of dates, since 1970."""
+        times = self._times
+        return times.array if isinstance(times, RegularTimes) else times
 
     @property
     def domain(self) -> Discrete:
@@ -148,7 +160,7 @@ class DiscreteTrace(DomainTrace):
     @property
     def end(self) -> int:
         """See :class:`DomainTrace`."""
-        return len(self.times) - 1
+        return len(self) - 1
 
     @property
     def samples(self) -> int:
@@ -175,7 +187,12 @@ class DiscreteTrace(DomainTrace):
 
     def select(self, names: Iterable[str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
-        return dataclasses.replace(self, columns={name: self.columns[name] for name in names})
+        columns = {name: self.columns[name] for name in names}
+        if self.bounds:
+            return dataclasses.replace(self, columns=columns)
+        return DiscreteTrace(
+            self._times, columns, self.period, self.inferred, self.original, self.unit, self.units
+        )
 
     def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
@@ -216,9 +233,11 @@ class DiscreteTrace(DomainTrace):
 
     def signals(self, values: Sequence[FloatArray]) -> list[Signal]:
         """See :class:`DomainTrace`; all signals share its timestamps, which cannot be written."""
-        timestamps = self.timestamps.view()
-        timestamps.flags.writeable = False
-        return [Signal(timestamps, column) for column in values]
+        times: Any = self._times if self.original is None else self.original
+        if not isinstance(times, RegularTimes) and times.flags.writeable:
+            times = times.view()
+            times.flags.writeable = False
+        return [Signal(times, column) for column in values]
 
     @property
     def timestamps(self) -> NDArray[Any]:
@@ -308,11 +327,10 @@ def record_discrete(
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
     inferred, original = False, None
+    times: FloatArray | RegularTimes
     if stamped is None:
         period = period or Fraction(1)
-        times = np.arange(n, dtype=np.float64)
-        if period != 1:
-            times *= float(period)
+        times = RegularTimes(n, period)
     else:
         times = stamped.seconds
         original = None if stamped.original is times else stamped.original

@@ -42,6 +42,8 @@ class Uncertainty:
         >>> Uncertainty.of({"x": 0.5}, {"x": (0, 120)}, ["x", "y"])
         Uncertainty(errors={'x': 0.5}, ranges={'x': (0.0, 120.0)})
         """
+        if uncertainty is None and ranges is None:
+            return _EXACT
         errors = {}
         for name, value in _items(uncertainty, "uncertainty", "{'x': 0.1}", names):
             number = number_of(value)
@@ -60,6 +62,8 @@ class Uncertainty:
 
         Raises :class:`TraceError` at a sample that cannot lie in its declared range.
         """
+        if self is _EXACT and not missing:
+            return recording
         if not any(
             name in each for each in (missing, self.errors, self.ranges) for name in recording.columns
         ):
@@ -88,6 +92,9 @@ class Uncertainty:
         if not missing and not any(self.errors.get(name) for name in recording.columns):
             return recording
         return recording.bounded(bounds, missing)
+
+
+_EXACT = Uncertainty()
 
 
 def range_of(name: str, value: Any) -> tuple[float, float]:

@@ -22,6 +22,38 @@ if TYPE_CHECKING:
 TOLERANCE = 0.1
 
 
+class RegularTimes:
+    """Timestamps one period apart from 0 s on, which are computed when they are first asked for.
+
+    >>> RegularTimes(3, Fraction(1, 2)).array
+    array([0. , 0.5, 1. ])
+    """
+
+    __slots__ = ("_array", "_count", "_period")
+
+    def __init__(self, count: int, period: Fraction) -> None:
+        self._count = count
+        self._period = period
+        self._array: FloatArray | None = None
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.array[index]
+
+    @property
+    def array(self) -> FloatArray:
+        """The timestamps in seconds; they cannot be written."""
+        if self._array is None:
+            times = np.arange(self._count, dtype=np.float64)
+            if self._period != 1:
+                times *= float(self._period)
+            times.flags.writeable = False
+            self._array = times
+        return self._array
+
+
 def merged(times: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Return all timestamps of arrays that are in order, each once, in order.
 

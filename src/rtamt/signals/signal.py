@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rtamt.signals.regular import RegularTimes
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -25,14 +27,15 @@ class Signal:
 
     __slots__ = ("_times", "_values")
 
-    def __init__(self, times: NDArray[Any], values: FloatArray) -> None:
-        self._times = times
+    def __init__(self, times: NDArray[Any] | RegularTimes, values: FloatArray) -> None:
+        self._times: Any = times
         self._values = values
 
     @property
     def times(self) -> NDArray[Any]:
         """The times: in seconds, or in the caller's format."""
-        return self._times
+        times: NDArray[Any] | RegularTimes = self._times
+        return times.array if isinstance(times, RegularTimes) else times
 
     @property
     def values(self) -> FloatArray:
@@ -51,7 +54,7 @@ class Signal:
         return list(zip(times, self.values.tolist(), strict=True))
 
     def __len__(self) -> int:
-        return len(self.times)
+        return len(self._times)
 
     def __repr__(self) -> str:
         return f"Signal(times={self.times!r}, values={self.values!r})"

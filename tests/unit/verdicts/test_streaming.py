@@ -19,6 +19,7 @@ from pyarrow import feather, parquet
 import rtamt
 from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
+from rtamt.engine.discrete.evaluate import Run
 from rtamt.engine.native import core
 from rtamt.readers import arrow, csv, rows
 from rtamt.results import first_violation
@@ -353,10 +354,10 @@ def test_each_chunk_is_normalised_once(monkeypatch):
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_robustness_and_verdicts_of_all_requirements_come_from_one_program(time, monkeypatch):
     spec = rtamt.parse("require A: always(x >= 3); require B: eventually(y >= x)", time=time)
-    name = "dense_evaluate" if time == "dense" else "evaluate"
+    owner, name = (core(), "dense_evaluate") if time == "dense" else (Run, "__call__")
     runs = []
-    run = getattr(core(), name)
-    monkeypatch.setattr(core(), name, lambda *args: runs.append(args) or run(*args))
+    run = getattr(owner, name)
+    monkeypatch.setattr(owner, name, lambda *args: runs.append(args) or run(*args))
     found = evaluate_requirements(spec, {"time": [0, 1, 2], "x": [5, 4, 2], "y": [0, 0, 4]})
     assert {key: (part.robustness, part.satisfied) for key, part in found.items()} == {
         "A": (-1.0, False),

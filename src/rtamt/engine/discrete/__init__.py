@@ -6,6 +6,7 @@ module                purpose
 backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
+recording             recordings that need no conversion, read by the core
 quantifiers           the monitor of quantifiers, over members that come and go
 member_executors      what executes quantifiers: one executor for each member
 time_axis             a recording in samples, as explanations evaluate it
@@ -16,7 +17,8 @@ early_python_backend  the definition of bounds behind the interface of the core'
 
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine.discrete.recording import read_discrete
 from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
 from rtamt.engine.engine import Engine
 
-ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeAxis)
+ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeAxis, read_discrete)

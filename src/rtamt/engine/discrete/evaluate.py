@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +14,7 @@ from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import at_sample, undefined
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.plan import Scan
@@ -36,31 +35,53 @@ class Evaluator:
         self._period = period
         self._shape = Shape.of(formulas)
         self._longest = longest_bound(self._shape.expanded(), period)
-        self._plans: dict[int, Plan] = {}
+        # The last plan, with what it was clipped to, and what runs its programs.
+        self._plan: tuple[int, Plan, list[Run]] | None = None
 
-    def plan(self, n: int) -> Plan:
-        """Return the plan for traces of n samples."""
+    def plan(self, n: int) -> tuple[Plan, list[Run]]:
+        """Return the plan for traces of n samples, and what runs the program of each stage and the last one."""
         # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
         clip = min(n, self._longest + 1)
-        plan = self._plans.get(clip)
-        if plan is None:
-            self._plans.clear()
-            plan = self._plans[clip] = self._shape.plan(self._period, clip)
-        return plan
+        last = self._plan
+        if last is None or last[0] != clip:
+            plan = self._shape.plan(self._period, clip)
+            programs = [*(stage.program for stage in plan.stages), plan.program]
+            last = self._plan = clip, plan, [Run(program) for program in programs]
+        return last[1], last[2]
 
     def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:
         """Return the robustness of each formula at each of the n samples of the trace."""
-        plan = self.plan(len(trace))
-        columns = dict(trace.columns)
-        for stage in plan.stages:
-            values = run(stage.program, columns, trace, plan, self._asked)
+        plan, runs = self.plan(len(trace))
+        columns = trace.columns
+        if not plan.stages:
+            return runs[0](columns, trace, plan, self._asked)
+        columns = dict(columns)
+        for stage, run in zip(plan.stages, runs, strict=False):  # the last run is that of the program
+            values = run(columns, trace, plan, self._asked)
             for scan in stage.scans:
                 operands = [values[i] for i in scan.outputs]
                 if scan.kind == DEFINED:
                     columns[scan.name] = defined(scan, operands, trace, plan)
                 else:
                     columns[scan.name] = core().scan(scan.kind, *operands)
-        return run(plan.program, columns, trace, plan, self._asked)
+        return runs[-1](columns, trace, plan, self._asked)
+
+    def rows(self, columns: Mapping[str, FloatArray]) -> FloatArray | None:
+        """Return the robustness of the only formula at each sample of many traces, a row each, of the same length.
+
+        None where it is undefined in one of them, or if an operator has code of its own.
+        """
+        count, n = next(iter(columns.values())).shape
+        plan, runs = self.plan(n)
+        flat = {name: column.reshape(-1) for name, column in columns.items()}
+        for stage, run in zip(plan.stages, runs, strict=False):
+            values = run.rows(flat, count, n)
+            if values is None or any(scan.kind == DEFINED for scan in stage.scans):
+                return None
+            for scan in stage.scans:
+                flat[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs), n=n)
+        values = runs[-1].rows(flat, count, n)
+        return None if values is None else values[0].reshape(count, n)
 
 
 class BoundsEvaluator(Evaluator):
@@ -68,7 +89,7 @@ class BoundsEvaluator(Evaluator):
 
     def of_bounds(self, trace: DiscreteTrace) -> list[Ends]:
         """Return lower and upper bounds of each formula at each of the n samples of the trace."""
-        plan = self.plan(len(trace))
+        plan, _ = self.plan(len(trace))
         columns: dict[str, Ends] = dict(trace.bounds)
         for stage in plan.stages:
             values = self._run(stage.program, columns, trace, plan)
@@ -81,8 +102,10 @@ class BoundsEvaluator(Evaluator):
         self, program: Program, columns: Mapping[str, Ends], trace: DiscreteTrace, plan: Plan
     ) -> list[Ends]:
         inputs = [np.stack(columns[name], axis=1) for name in program.inputs]
-        with undefined_named(program, trace, plan, self._asked):
+        try:
             found: list[Ends] = core().evaluate_bounds(program.code(), inputs, len(trace))
+        except (RuntimeError, core().Undefined) as error:
+            raise failed(error, program, trace, plan, self._asked) from None
         return found
 
 
@@ -97,35 +120,53 @@ def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
     return longest
 
 
-def run(
-    program: Program,
-    columns: Mapping[str, FloatArray],
-    trace: DiscreteTrace,
-    plan: Plan,
-    asked: Sequence[Formula],
-) -> list[FloatArray]:
-    """Run one program of a plan, made for the formulas that are ``asked``, over whole columns."""
-    inputs = [columns[name] for name in program.inputs]
-    with undefined_named(program, trace, plan, asked):
-        values: list[FloatArray] = core().evaluate(
-            program.code(), inputs, len(trace), calls_of(program, SampleDriver)
-        )
-    return values
+class Run:
+    """A program of a plan, ready to run over whole columns any number of times."""
+
+    def __init__(self, program: Program) -> None:
+        self._program = program
+        # Calls have a state of their own, which belongs to one run.
+        self._evaluator = None if program.calls else core().Evaluator(program.code())
+
+    def __call__(
+        self,
+        columns: Mapping[str, FloatArray],
+        trace: DiscreteTrace,
+        plan: Plan,
+        asked: Sequence[Formula],
+    ) -> list[FloatArray]:
+        """Return the values of each output; the plan was made for the formulas that are ``asked``."""
+        program = self._program
+        inputs = [columns[name] for name in program.inputs]
+        values: list[FloatArray]
+        try:
+            if self._evaluator is not None:
+                values = self._evaluator.run(inputs, len(trace))
+            else:
+                calls = calls_of(program, SampleDriver)
+                values = core().evaluate(program.code(), inputs, len(trace), calls)
+        except (RuntimeError, core().Undefined) as error:
+            raise failed(error, program, trace, plan, asked) from None
+        return values
+
+    def rows(self, columns: Mapping[str, FloatArray], count: int, n: int) -> list[FloatArray] | None:
+        """Return the same of ``count`` traces of n samples, one after another; None where one has no value."""
+        if self._evaluator is None:
+            return None
+        values: list[FloatArray]
+        values, wrong = self._evaluator.run_rows([columns[name] for name in self._program.inputs], count, n)
+        return values if wrong < 0 else None
 
 
-@contextmanager
-def undefined_named(
-    program: Program, trace: DiscreteTrace, plan: Plan, asked: Sequence[Formula]
-) -> Iterator[None]:
-    """Turn failures of the core into errors that name the sub-formula and the sample."""
-    try:
-        yield
-    except RuntimeError as error:
-        raise not_made(program, error) from None
-    except core().Undefined as error:
-        sample = error.args[1]
-        formula = culprit(error, program, asked, plan.original)
-        raise undefined(formula, at_sample(sample, float(trace.times[sample]))) from None
+def failed(
+    error: Exception, program: Program, trace: DiscreteTrace, plan: Plan, asked: Sequence[Formula]
+) -> Exception:
+    """Return the error for a failure of the core, which names the sub-formula and the sample."""
+    if isinstance(error, RuntimeError):
+        return not_made(program, error)
+    sample = error.args[1]
+    formula = culprit(error, program, asked, plan.original)
+    return undefined(formula, at_sample(sample, float(trace.times[sample])))
 
 
 def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:

@@ -237,7 +237,25 @@ class Monitor(MonitorBase, OnlineMonitor):
         if self._finished:
             raise self._is_finished()
         data = self._binding.applied(data)
+        taken = self._take_columns(data)
+        if taken is not None:
+            return taken
         return self._push(*arrays.columns_of(data, self.input_names, self._times.unit, self._types))
+
+    def _take_columns(self, data: Any) -> Signal | None:
+        """Take a chunk that needs no conversion; None for any other, which is not taken."""
+        if not self._times.plain or self._episodes is not None:
+            return None
+        try:
+            taken = self._backend.take_columns(data, arrays.TIME)
+        except self._undefined as error:
+            raise self._no_value(error) from None
+        if taken is None:
+            return None
+        samples, known = taken
+        news = [Signal(times, values) for times, values in known]
+        self._news = samples, news
+        return news[0]
 
     def _push(self, timestamps: Timestamps | None, given: Mapping[str, arrays.FloatArray], n: int) -> Signal:
         """See :func:`push_samples`."""

@@ -147,6 +147,9 @@ class PythonMonitor:
             self._values = {name: float(c[-1]) for name, c in zip(self._names, columns, strict=True)}
         return known
 
+    def take_columns(self, data: Any, time: str) -> None:
+        """Leave all data to be converted by the caller."""
+
     @exclusive
     def finish(self) -> list[FloatArray]:
         """Return the values that were still unknown; afterwards only ``reset`` is possible."""

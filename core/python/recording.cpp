@@ -1,0 +1,233 @@
+// Reads a trace that needs no conversion in one call: copies of the columns, the order and distance
+// of the timestamps, and the period that they suggest.
+//
+// Whatever is not plainly right is left to Python (rtamt.signals), which converts it or reports
+// what is wrong with it: there is one place for messages. Both read the same values to the bit
+// (tests/laws/test_recording_laws.py).
+#include "recording.hpp"
+
+#include "numbers.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+namespace rtamt::python {
+
+namespace {
+
+// ---- numbers ------------------------------------------------------------------------------------
+
+// Copies items as doubles; returns whether none is NaN.
+template <class Item>
+bool copy_items(const Py_buffer& view, double* out) noexcept {
+    const auto* bytes = static_cast<const std::byte*>(view.buf);
+    const Py_ssize_t count = view.shape[0];
+    std::int64_t wrong = 0; // as wide as a double, for a loop of vector instructions
+    const auto copy = [&](Py_ssize_t step) {
+        for (Py_ssize_t i = 0; i < count; ++i) {
+            Item item; // NOLINT(*-pro-type-member-init,*-init-variables): memcpy writes it
+            std::memcpy(&item, bytes + i * step, sizeof(Item));
+            const auto number = static_cast<double>(item);
+            out[i] = number;
+            wrong |= -static_cast<std::int64_t>(std::isnan(number));
+        }
+    };
+    constexpr auto next = static_cast<Py_ssize_t>(sizeof(Item));
+    view.strides[0] == next ? copy(next) : copy(view.strides[0]);
+    return wrong == 0;
+}
+
+bool copy_buffer(const Buffer& buffer, double* out) noexcept {
+    const Py_buffer& view = buffer.view();
+    switch (buffer.format()) {
+    case 'd':
+        return copy_items<double>(view, out);
+    case 'f':
+        return copy_items<float>(view, out);
+    case '?':
+        return copy_items<std::uint8_t>(view, out);
+    case 'b':
+        return copy_items<signed char>(view, out);
+    case 'B':
+        return copy_items<unsigned char>(view, out);
+    case 'h':
+        return copy_items<short>(view, out);
+    case 'H':
+        return copy_items<unsigned short>(view, out);
+    case 'i':
+        return copy_items<int>(view, out);
+    case 'I':
+        return copy_items<unsigned int>(view, out);
+    case 'l':
+        return copy_items<long>(view, out);
+    case 'L':
+        return copy_items<unsigned long>(view, out);
+    case 'q':
+        return copy_items<long long>(view, out);
+    case 'Q':
+        return copy_items<unsigned long long>(view, out);
+    default:
+        return false;
+    }
+}
+
+} // namespace
+
+// ---- columns ------------------------------------------------------------------------------------
+
+Given::Given(const NumPy& numpy, nb::object object) noexcept : object_(std::move(object)) {
+    PyObject* given = object_.ptr();
+    if (numpy.is_array(given)) {
+        buffer_ = Buffer(given, PyBUF_STRIDES | PyBUF_FORMAT);
+        if (!buffer_) { // of dates, for instance
+            PyErr_Clear();
+        } else if (buffer_.view().ndim == 1) {
+            count_ = static_cast<std::size_t>(buffer_.view().shape[0]);
+        }
+    } else if (PyList_CheckExact(given) || PyTuple_CheckExact(given)) {
+        count_ = static_cast<std::size_t>(sequence_size(given));
+    }
+}
+
+bool Given::copy(double* out) const noexcept {
+    if (buffer_) return copy_buffer(buffer_, out);
+    const nb::ft_object_guard guard(object_);
+    if (static_cast<std::size_t>(sequence_size(object_.ptr())) != *count_) return false;
+    for (std::size_t i = 0; i < *count_; ++i) {
+        PyObject* item = sequence_item(object_.ptr(), static_cast<Py_ssize_t>(i));
+        if (!PlainNumbers::read(item, out[i])) return false;
+    }
+    return true;
+}
+
+std::optional<GivenColumns> GivenColumns::of(const NumPy& numpy, const nb::handle& data,
+                                             std::span<const nb::str> names,
+                                             const nb::handle& time) {
+    if (!PyDict_CheckExact(data.ptr())) return std::nullopt;
+    const auto find = [&](const nb::handle& name) {
+        const nb::ft_object_guard guard(data);
+        nb::object found = nb::borrow(PyDict_GetItemWithError(data.ptr(), name.ptr()));
+        if (!found.is_valid()) PyErr_Clear();
+        return found;
+    };
+    GivenColumns given;
+    given.columns.reserve(names.size());
+    for (const nb::str& name : names) {
+        nb::object found = find(name);
+        if (!found.is_valid()) return std::nullopt;
+        const auto count = given.columns.emplace_back(numpy, std::move(found)).count();
+        if (!count || *count != *given.columns.front().count()) return std::nullopt;
+        given.count = *count;
+    }
+    if (given.count == 0) return std::nullopt;
+    if (nb::object found = find(time); found.is_valid()) {
+        given.times.emplace(numpy, std::move(found));
+        if (given.times->count() != given.count) return std::nullopt;
+    }
+    return given;
+}
+
+// ---- timestamps ---------------------------------------------------------------------------------
+
+bool ordered(std::span<const double> times, std::optional<double> before) noexcept {
+    bool right = !before || times.front() > *before;
+    for (const double time : times)
+        right &= std::fabs(time) < implausible; // NaN is not, either
+    for (std::size_t i = 1; i < times.size(); ++i)
+        right &= times[i] > times[i - 1];
+    return right;
+}
+
+bool regular(std::span<const double> times, std::optional<double> before, double period,
+             double tolerance) noexcept {
+    const double limit = tolerance * period;
+    bool right = !before || !(std::fabs(times.front() - *before - period) > limit);
+    for (std::size_t i = 1; i < times.size(); ++i)
+        right &= !(std::fabs(times[i] - times[i - 1] - period) > limit);
+    return right;
+}
+
+namespace {
+
+[[nodiscard]] double median_gap(std::span<const double> times) {
+    std::vector<double> gaps(times.size() - 1);
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+        gaps[i] = times[i + 1] - times[i];
+    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+    std::ranges::nth_element(gaps, middle);
+    if (gaps.size() % 2 != 0) return *middle;
+    return (*std::max_element(gaps.begin(), middle) + *middle) / 2.0;
+}
+
+// As infer_period() in rtamt.signals.regular: the median gap, as the shortest decimal within its
+// precision. Timestamps since 1970 have a precision of about 0.2 µs.
+[[nodiscard]] std::optional<double> inferred_period(std::span<const double> times) {
+    if (times.size() < 2) return 1.0;
+    const double gap = median_gap(times);
+    const double largest = std::max(std::fabs(times.front()), std::fabs(times.back()));
+    const double spacing =
+        std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest;
+    const double blur = std::max(1e-6 * gap, 2.0 * spacing);
+    for (int digits = 1; digits <= 16; ++digits) {
+        char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
+        if (text == nullptr) throw nb::python_error();
+        const double shortest = PyOS_string_to_double(text, nullptr, nullptr);
+        PyMem_Free(text);
+        if (std::fabs(shortest - gap) <= blur) return shortest;
+    }
+    return gap;
+}
+
+// ---- the recording ------------------------------------------------------------------------------
+
+nb::object read_columns(const NumPy& numpy, const nb::handle& data,
+                        const std::vector<nb::str>& names, const nb::handle& time,
+                        std::optional<double> period, double tolerance) {
+    const auto given = GivenColumns::of(numpy, data, names, time);
+    if (!given) return nb::none();
+    const std::size_t count = given->count;
+    nb::object times = nb::none();
+    if (given->times) {
+        const NewArray made = numpy.make(count);
+        const std::span<const double> seconds(made.values(), count);
+        if (!given->times->copy(made.values()) || !ordered(seconds, {})) return nb::none();
+        if (!period) period = inferred_period(seconds);
+        if (!regular(seconds, {}, *period, tolerance)) return nb::none();
+        times = made.array;
+    }
+    nb::dict columns;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const NewArray made = numpy.make(count);
+        if (!given->columns[i].copy(made.values())) return nb::none();
+        if (PyDict_SetItem(columns.ptr(), names[i].ptr(), made.array.ptr()) != 0) {
+            throw nb::python_error();
+        }
+    }
+    return nb::make_tuple(times, period, columns, count);
+}
+
+} // namespace
+
+void add_recording(nb::module_& m) {
+    m.def(
+        "read_columns",
+        [numpy = NumPy()](const nb::handle& data, const std::vector<nb::str>& names,
+                          const nb::handle& time, std::optional<double> period, double tolerance) {
+            return read_columns(numpy, data, names, time, period, tolerance);
+        },
+        nb::arg("data"), nb::arg("names"), nb::arg("time"), nb::arg("period").none(),
+        nb::arg("tolerance"),
+        "Copy the columns of a trace, a dict; return the timestamps (None without), the period "
+        "(inferred if None), columns by name and their length. None if anything has to be "
+        "converted, or is wrong.");
+}
+
+} // namespace rtamt::python

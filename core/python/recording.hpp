@@ -1,0 +1,58 @@
+// Reads samples that need no conversion: a dict of arrays and lists of numbers.
+//
+// Whatever is not plainly right is left to Python (rtamt.signals), which converts it or reports
+// what is wrong with it: there is one place for messages. Both read the same values to the bit.
+//
+// Cost: a pass over each column, and one to find the period. Memory: that of the copies.
+#pragma once
+
+#include "numpy.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rtamt::python {
+
+// A column or the timestamps, as the caller gave them.
+class Given {
+  public:
+    Given(const NumPy& numpy, nb::object object) noexcept;
+
+    // Nothing for what is not read here.
+    [[nodiscard]] std::optional<std::size_t> count() const noexcept { return count_; }
+
+    // Whether all are numbers that are read here, and none is NaN.
+    [[nodiscard]] bool copy(double* out) const noexcept;
+
+  private:
+    nb::object object_;
+    Buffer buffer_;
+    std::optional<std::size_t> count_;
+};
+
+// The columns of these names, and the timestamps if there are any: all of one length, at least 1.
+struct GivenColumns {
+    std::vector<Given> columns;
+    std::optional<Given> times;
+    std::size_t count = 0;
+
+    // Nothing for what is not read here.
+    [[nodiscard]] static std::optional<GivenColumns> of(const NumPy& numpy, const nb::handle& data,
+                                                        std::span<const nb::str> names,
+                                                        const nb::handle& time);
+};
+
+// Whether the timestamps are numbers of seconds that increase, also from `before` on.
+[[nodiscard]] bool ordered(std::span<const double> times, std::optional<double> before) noexcept;
+
+// Whether they are one period apart, within a fraction of it.
+[[nodiscard]] bool regular(std::span<const double> times, std::optional<double> before,
+                           double period, double tolerance) noexcept;
+
+void add_recording(nb::module_& module);
+
+} // namespace rtamt::python
