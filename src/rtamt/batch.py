@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterable, Sized
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from itertools import chain
@@ -73,6 +72,8 @@ def evaluate_batch(
     if workers is None or count == 1:
         work.run(alone=count > 1)
     if count > 1:
+        from concurrent.futures import ThreadPoolExecutor
+
         with ThreadPoolExecutor(count, "rtamt") as pool:
             try:
                 for done in [pool.submit(work.run) for _ in range(count)]:

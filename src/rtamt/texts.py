@@ -115,19 +115,19 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     ...     print(rtamt.load(path).name)
     limit
     """
-    from pathlib import Path
-
+    given: object = os.fspath(path) if isinstance(path, os.PathLike) else path
+    if not isinstance(given, str):
+        raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path")
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except TypeError:
-        raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path") from None
+        with open(given, encoding="utf-8-sig") as file:
+            text = file.read()
     except OSError as error:
         raise UsageError(f"cannot read the specification '{path}': {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
         ) from error
-    return parse(text, folder=Path(path).parent, **settings)
+    return parse(text, folder=os.path.dirname(given) or os.curdir, **settings)
 
 
 def packs() -> tuple[str, ...]:

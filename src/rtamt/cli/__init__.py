@@ -26,6 +26,7 @@ early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` pr
 held_feed        streams whose variables arrive at any time, sampled by ``sample ... hold``
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress
+numpy_on_use     numpy is imported when a command first uses it
 compiled         ``rtamt info`` for compiled programs
 reports          JUnit, SARIF and HTML reports
 ===============  =============================================================
@@ -39,6 +40,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
+from rtamt.cli.numpy_on_use import load_numpy_on_use
 from rtamt.cli.parser import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, UsageError, choices
@@ -81,6 +83,7 @@ exit codes:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
+    load_numpy_on_use()
     if sys.stderr is None:  # closed: what would be said there goes nowhere
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
     if sys.stdout is None:

@@ -25,7 +25,7 @@ from rtamt.cli.command import (
 from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_reading_options, reading_of
-from rtamt.cli.reports import REPORTS, HtmlReport, write_report
+from rtamt.cli.reports import REPORTS, write_report
 from rtamt.cli.reports.messages import episodes_members, robustness_members
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from rtamt.cli.outcome import Outcome, Requirement
+    from rtamt.cli.reading_options import Reading
+    from rtamt.cli.reports.html import HtmlReport
     from rtamt.results import Result
     from rtamt.signals.signal import Signal
 
@@ -156,6 +158,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _page(
+    given: Sequence[Requirement], rows: Sequence[Requirement], traces: Sequence[str], reading: Reading
+) -> HtmlReport:
+    """Return the page that is written while the check runs."""
+    from rtamt.cli.reports.html import HtmlReport
+
+    return HtmlReport("rtamt check", given, rows, traces, reading)
+
+
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement on every trace, and print the outcomes."""
     color = use_color(args.color, sys.stdout)
@@ -177,7 +188,7 @@ def run(args: argparse.Namespace) -> int:
         )
     explained = args.junit is not None or args.sarif is not None
     reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early, explained=explained)
-    page = None if args.html is None else HtmlReport("rtamt check", given, requirements, traces, reading)
+    page = None if args.html is None else _page(given, requirements, traces, reading)
     found: list[Outcome] = []
     complaints = {""}  # several requirements may have one reason
     with Progress() as progress:
@@ -207,10 +218,10 @@ def run(args: argparse.Namespace) -> int:
                 label: row.written.name if len(rows) > 1 else "robustness" for label, row in rows.items()
             }
             _write({names[label]: result for label, result in results.items()}, args.output)
-    for kind, (_, make) in REPORTS.items():
+    for kind, (_, at_end) in REPORTS.items():
         path = getattr(args, kind)
-        if make is not None and path is not None:
-            write_report(make, path, requirements, found)
+        if at_end is not None and path is not None:
+            write_report(kind, path, requirements, found)
     if page is not None:
         page.write(args.html)
     return exit_code(found)

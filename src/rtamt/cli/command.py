@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any
-from uuid import uuid4
 
 import numpy as np
 
@@ -159,14 +157,19 @@ def _is_called_like_a_trace(path: str) -> bool:
     return os.path.splitext(path)[1].lower() in set(SUFFIXES) - {".txt"}
 
 
-def read_specification(args: argparse.Namespace, time: str) -> Specification:
+def read_specification(args: argparse.Namespace, time: str, *, runs: bool = True) -> Specification:
     """Read SPEC: the file of that name, else the text itself; ``time``: the name of a time domain."""
-    return read_specifications(args, time, [args.spec])[0]
+    return read_specifications(args, time, [args.spec], runs=runs)[0]
 
 
-def read_specifications(args: argparse.Namespace, time: str, given: Sequence[str]) -> list[Specification]:
-    """Read several files or texts; each name of ``--set`` must be a parameter of one of them."""
-    specs = [_read(args, time, spec) for spec in given]
+def read_specifications(
+    args: argparse.Namespace, time: str, given: Sequence[str], *, runs: bool = True
+) -> list[Specification]:
+    """Read several files or texts; each name of ``--set`` must be a parameter of one of them.
+
+    ``runs``: whether the back end is needed.
+    """
+    specs = [_read(args, time, spec, runs=runs) for spec in given]
     for spec in specs:
         rule = spec.document.sampling
         if args.period is not None and rule is not None and spec.period != rule.period:
@@ -177,11 +180,12 @@ def read_specifications(args: argparse.Namespace, time: str, given: Sequence[str
         raise CommandError(f"{' '.join(f'--set {each}' for each in args.set)}: {error}") from error
 
 
-def _read(args: argparse.Namespace, time: str, spec: str) -> Specification:
+def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Specification:
     domain = time_domain(time, args.period)
     check_backend(args.backend)
     try:
-        require_backend(args.backend, domain)
+        if runs:
+            require_backend(args.backend, domain)
     except UsageError as error:
         raise CommandError(f"{error}; on the command line: --backend python") from None
     if args.period is not None and domain.period is None:
@@ -259,6 +263,9 @@ def json_text(value: Any, **options: Any) -> str:
     >>> print(json_text({"trace": "caf\udce9.csv", "time": Decimal("1700000000.100000001")}))
     {"trace": "caf\\xe9.csv", "time": 1700000000.100000001}
     """
+    import json
+    from uuid import uuid4
+
     mark = uuid4().hex  # which no text contains
     return re.sub(f'"{mark}(.*?)"', r"\1", json.dumps(_readable(value, mark), **options))
 

@@ -118,7 +118,7 @@ def _as_json(
 def _check(file: str, args: argparse.Namespace) -> Specification:
     if not os.path.isfile(file):
         raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
-    spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time)
+    spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time, runs=False)
     try:
         _check_formula(spec, online=args.online)
     except StlError as error:

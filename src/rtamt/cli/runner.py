@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import os
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from itertools import islice
-from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.chunks import Chunks
 from rtamt.cli.command import NO_STAMPS
-from rtamt.cli.early_outcomes import early_outcomes
 from rtamt.cli.outcome import (
     Outcome,
     applicable,
@@ -37,7 +34,6 @@ from rtamt.readers.sql import is_url, shown
 from rtamt.results import first_violation
 from rtamt.signals import members
 from rtamt.signals.episodes import Episodes
-from rtamt.verdicts.streaming import check_stream, check_streamable, has_episodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -72,6 +68,9 @@ def outcomes(
             for outcome in evaluate(requirements, trace, reading):
                 yield _explained(outcome) if reading.explained else outcome
         return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
     # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
     # that nothing of this one (locks, threads of libraries) is copied into them.
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
@@ -168,12 +167,17 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
     return _check(replace(requirement, spec=over, rows=rows), trace, bound.data, reading)
 
 
+def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:
+    if not reading.early:
+        return None
+    from rtamt.cli.early_outcomes import early_outcomes
+
+    return early_outcomes(requirement, trace, reading)
+
+
 def _checked(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording that has the signals for them."""
-    early = {
-        requirement.label: early_outcomes(requirement, trace, reading) if reading.early else None
-        for requirement in requirements
-    }
+    early = {requirement.label: _early(requirement, trace, reading) for requirement in requirements}
     rest = [requirement for requirement in requirements if early[requirement.label] is None]
     late = iter(_all_of(rest, trace, reading))
     return [
@@ -228,6 +232,8 @@ def _in_chunks(requirement: Requirement, trace: str, reading: Reading) -> list[O
 
 def _as_whole(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:
     """Check in chunks; None where the outcome may differ from that of the whole recording, which is then read."""
+    from rtamt.verdicts.streaming import has_episodes
+
     if reading.explained or not has_episodes(requirement.spec):
         return None
     begin = time.perf_counter()
@@ -250,6 +256,8 @@ class _ChunkedRun:
 
     def result(self) -> StreamResult | None:
         """Return what the check finds; None where the format has no chunks."""
+        from rtamt.verdicts.streaming import check_stream, check_streamable
+
         spec, reading = self._requirement.spec, self._reading
         check_streamable(spec)
         with opened(self._trace, reading.sheet, reading.query, reading.recover) as source:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compat.options import Language
-from rtamt.engine.backend import BACKENDS
 from rtamt.engine.discrete import backends as discrete
+from rtamt.engine.engine import BACKENDS
 from rtamt.engine.native import core
 from rtamt.engine.offline import Evaluators
 from rtamt.errors import UsageError

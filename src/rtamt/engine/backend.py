@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from rtamt.engine.engine import BACKENDS
 from rtamt.engine.native import core, culprit
 from rtamt.engine.user_operators import is_built_in
 from rtamt.errors import UsageError
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import CallSite, Program
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import BoundedSignal
-
-#: The names of the back ends: the compiled core, and the definition in Python. The first is the default.
-BACKENDS = ("cpp", "python")
 
 
 class RefusedError(Exception):

@@ -14,11 +14,15 @@ if TYPE_CHECKING:
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 
 
+#: The names of the back ends: the compiled core, and the definition in Python. The first is the default.
+BACKENDS = ("cpp", "python")
+
+
 @dataclass(frozen=True, slots=True)
 class Engine:
     """What evaluates, monitors and explains formulas in one time domain: ``ENGINE`` in its folder.
 
-    ``backends``: by name, see :data:`rtamt.engine.backend.BACKENDS`. ``monitor``: takes a formula and the time
+    ``backends``: by name, see :data:`BACKENDS`. ``monitor``: takes a formula and the time
     domain; for its settings see :class:`Monitor`. ``time_axis``: takes a recording and the name of a back end.
     ``read``: takes data, the variables and the time domain; returns the recording if the data needs no conversion
     and is valid, else None.

@@ -22,8 +22,6 @@ from operator import add
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
 from rtamt.language.parsing.lexer import NAME, quoted
@@ -134,21 +132,22 @@ class Join(NamedTuple):
     """How a quantifier combines its members: formulas, and the numbers that they evaluate to.
 
     ``guard``: the operator between the presence of a member and the body. ``formulas``: the operator between members.
-    ``numbers``: the same of two numbers, ``columns`` of two arrays. ``none``: the value without members.
+    ``numbers``: the same of two numbers, ``columns`` (a function of numpy) of two arrays. ``none``: the value without
+    members.
     """
 
     guard: str
     formulas: str
     numbers: Callable[[float, float], float]
-    columns: np.ufunc
+    columns: str
     none: float
 
 
 #: How each quantifier combines its members.
 JOINS: Mapping[str, Join] = MappingProxyType({
-    "forall": Join("implies", "and", min, np.minimum, inf),
-    "exists": Join("and", "or", max, np.maximum, -inf),
-    "count": Join("and", "add", add, np.add, 0.0),
+    "forall": Join("implies", "and", min, "minimum", inf),
+    "exists": Join("and", "or", max, "maximum", -inf),
+    "count": Join("and", "add", add, "add", 0.0),
 })  # fmt: skip
 
 _QUANTIFIED: dict[tuple[str, Binder], Operator] = {}

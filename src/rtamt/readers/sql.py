@@ -7,7 +7,6 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from os.path import abspath, isfile
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.readers.rows import table_of_rows
@@ -66,6 +65,8 @@ def _read_only(address: Any) -> Any:
     if not path.startswith("file:"):
         if not isfile(path):
             raise missing_file(path)
+        from urllib.parse import quote
+
         address = address.set(database=f"file:{quote(abspath(path))}")
     return address.update_query_dict({"mode": "ro", "uri": "true"})
 

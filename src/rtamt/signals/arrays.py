@@ -37,9 +37,6 @@ if TYPE_CHECKING:
 TIME = counting.TIME
 
 
-_MOMENTS = (datetime, timedelta, np.datetime64, np.timedelta64)
-
-
 class Clocked(ABC):
     """Data with its own time bases: see ``trace.py``."""
 
@@ -73,7 +70,7 @@ class Timestamps(NamedTuple):
 
 def is_moment(time: Any) -> bool:
     """Return whether a time is a date or a duration, and not a number."""
-    return isinstance(time, _MOMENTS)
+    return isinstance(time, (datetime, timedelta, np.datetime64, np.timedelta64))
 
 
 def plain(time: Any) -> Any:
@@ -198,7 +195,7 @@ def timestamps(values: Any, unit: str | None = None) -> Timestamps:
         raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise _not_numbers(values, TIME, 0) from None
-    if raw.dtype.kind == "O" and any(isinstance(value, _MOMENTS) for value in raw.flat):
+    if raw.dtype.kind == "O" and any(map(is_moment, raw.flat)):
         raw = _moments(raw)
     if raw.dtype.kind in "mM":
         if unit is not None:
@@ -235,7 +232,7 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
     for i, value in enumerate(raw.flat):
         kind = "m" if isinstance(value, timedelta | np.timedelta64) else "M"
         kinds.setdefault(kind, i)
-        if not isinstance(value, _MOMENTS) or len(kinds) > 1:
+        if not is_moment(value) or len(kinds) > 1:
             raise TraceError(
                 f"'{TIME}' is {shown(value)} at sample {i}, expected a {'datetime' if 'M' in kinds else 'timedelta'} "
                 f"like the others",

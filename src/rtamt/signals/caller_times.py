@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: The names of time formats in messages, by the kind of their dtype.
 _KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
-_NUMBERS = {"f": np.float64, "i": np.int64, "M": np.int64, "m": np.int64}
+_NUMBERS = {"f": "f8", "i": "i8", "M": "i8", "m": "i8"}
 
 
 @dataclass(frozen=True, slots=True)

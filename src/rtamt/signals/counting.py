@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
     TickArray = NDArray[np.int64]
-
-#: Numbers that cannot be compared with a double without an overflow.
-_SHORT = (np.float16, np.float32)
 
 #: How timestamps are called beside signals.
 TIME = "time"
@@ -38,7 +36,7 @@ _DOUBT = 2.0**-53
 #: Numbers from here on are implausible as seconds (the year 5138), and the smallest plausible time since 1970
 #: in another unit: the year 1973 in it.
 IMPLAUSIBLE = 10**11
-_LARGEST = np.finfo(np.float64).max
+_LARGEST = sys.float_info.max
 _SINCE_1970 = (("ns", 10**17), ("us", 10**14), ("ms", IMPLAUSIBLE))
 
 
@@ -54,7 +52,7 @@ def refuse_implausible(times: Any, name: str, first: int = 0, source: str = "") 
     if isinstance(times, np.ndarray) and times.dtype.kind != "O":
         if times.dtype.kind not in "iuf" or not len(times):
             return
-        if times.dtype in _SHORT:
+        if times.dtype in (np.float16, np.float32):  # which overflow in the comparison
             times = times.astype(np.float64)
         # NaN and infinities are reported elsewhere.
         if times.min() > -IMPLAUSIBLE and times.max() < IMPLAUSIBLE:
@@ -71,7 +69,7 @@ def is_implausible(time: Any) -> bool:
     (False, True, True)
     """
     plain = isinstance(time, int | float | np.integer | np.floating) and not isinstance(time, np.timedelta64)
-    if isinstance(time, _SHORT):
+    if isinstance(time, np.float16 | np.float32):
         time = float(time)
     return plain and bool(IMPLAUSIBLE <= abs(time) <= _LARGEST)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from math import isnan
+from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -205,7 +205,7 @@ def minimum(signals: Sequence[Samples], before: Sequence[float]) -> Samples:
     return ticks, values
 
 
-def changes(ticks: TickArray, values: FloatArray, before: float = np.nan) -> Samples:
+def changes(ticks: TickArray, values: FloatArray, before: float = nan) -> Samples:
     """Return the points of a step function at which its value changes, and the last one.
 
     ``before``: the value before the first point.

@@ -13,9 +13,9 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-import rtamt
 from rtamt.cli import runner
 from rtamt.cli.terminal import Progress
+from rtamt.verdicts import streaming
 
 GOOD = "time,x\n0,5\n1,4\n2,6\n"
 BAD = "time,x\n0,5\n1,1.5\n2,6\n"
@@ -198,7 +198,8 @@ def test_large_files_are_read_in_chunks_with_the_same_outcome(run, write, monkey
     whole = run("check", *formulas, "log.parquet", "--json")
     monkeypatch.setattr(runner, "LARGE", 0)
     streamed = []
-    monkeypatch.setattr(runner, "check_stream", lambda *a: streamed.append(a[0]) or rtamt.check_stream(*a))
+    check = streaming.check_stream
+    monkeypatch.setattr(streaming, "check_stream", lambda *a: streamed.append(a[0]) or check(*a))
     assert run("check", *formulas, "log.parquet", "--json") == whole
     assert [str(spec) for spec in streamed] == ["always(x >= -0.5)"]
     refused = run("check", "always(y >= 0)", "log.parquet")

@@ -78,7 +78,7 @@ class QuantifierExecutor:
         ticks = merged([np.array(sorted(set(ends)), np.int64), *(each.ticks for each in given)])
         total = np.full(len(ticks), plan.none)
         for each in given:
-            total = plan.join.columns(total, each.at(ticks))
+            total = getattr(np, plan.join.columns)(total, each.at(ticks))
         return self._late(ticks, total, part.end, begin)
 
     def _late(self, ticks: TickArray, total: FloatArray, end: int, begin: int | None) -> Steps:
