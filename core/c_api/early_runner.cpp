@@ -54,7 +54,7 @@ class GraphReader {
 [[nodiscard]] early::Node read_node(GraphReader& reader) {
     early::Node node;
     const std::uint32_t kind = reader.number();
-    GraphReader::require(kind <= static_cast<std::uint32_t>(early::Kind::rank_greatest));
+    GraphReader::require(kind <= static_cast<std::uint32_t>(early::Kind::pulses));
     node.kind = static_cast<early::Kind>(kind);
     node.a = reader.number();
     node.b = reader.number();

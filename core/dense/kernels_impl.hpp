@@ -7,6 +7,7 @@
 #include "../program/kernel_factory.hpp"
 #include "constant.hpp"
 #include "pointwise.hpp"
+#include "pulses.hpp"
 #include "rank.hpp"
 #include "running.hpp"
 #include "shift.hpp"
@@ -19,7 +20,6 @@ namespace rtamt::dense {
 namespace detail {
 
 struct Make {
-    static constexpr bool sums = false; // of step functions they are no step functions
     using Pointer = std::unique_ptr<Kernel>;
     const Instruction& at;
 
@@ -43,6 +43,15 @@ struct Make {
     [[nodiscard]] Pointer running() const {
         return std::make_unique<Running<Algebra>>(at.lag);
     }
+    // The sum of a step function is no step function; that of pulses of a tick is.
+    template <ValueDomain N>
+    [[nodiscard]] Pointer slide_sum() const {
+        return std::make_unique<Pulses<N>>(at.lag, N::of(0.0), at.n);
+    }
+    template <ValueDomain N>
+    [[nodiscard]] Pointer run_sum() const {
+        return std::make_unique<Pulses<N>>(at.lag, N::of(0.0), never);
+    }
     template <ValueDomain D>
     [[nodiscard]] Pointer since() const {
         return std::make_unique<Since<D>>(at.lag);
@@ -53,7 +62,7 @@ struct Make {
     }
     template <ValueDomain D, bool least>
     [[nodiscard]] Pointer rank() const {
-        return std::make_unique<Rank<D, least>>(at.lag, at.n, at.x);
+        return std::make_unique<Rank<D, least>>(at.lag, least ? D::top : D::bottom, at.n, at.x);
     }
 };
 

@@ -17,7 +17,6 @@ namespace rtamt::discrete {
 namespace detail {
 
 struct Make {
-    static constexpr bool sums = true;
     using Pointer = std::unique_ptr<Kernel>;
     const Instruction& at;
     std::int64_t lag = 0; // of the operands
@@ -48,6 +47,14 @@ struct Make {
     template <class Algebra>
     [[nodiscard]] Pointer running() const {
         return std::make_unique<Running<Algebra>>(lag, at.lag);
+    }
+    template <ValueDomain N>
+    [[nodiscard]] Pointer slide_sum() const {
+        return slide<SumOf<N>>();
+    }
+    template <ValueDomain N>
+    [[nodiscard]] Pointer run_sum() const {
+        return running<SumOf<N>>();
     }
     template <ValueDomain D>
     [[nodiscard]] Pointer since() const {

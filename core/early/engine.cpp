@@ -251,7 +251,8 @@ void Engine::lift_empty(std::uint32_t index) {
     if (rank && own.low < 0) ticks += static_cast<Tick>(own.steps.front().x) - 1;
     if (ticks <= 0) return;
     const bool least = own.kind == Kind::least || own.kind == Kind::rank_least;
-    const double empty = least ? infinity : -infinity;
+    const double none = least ? infinity : -infinity;
+    const double empty = own.kind == Kind::pulses ? 0.0 : none;
     lift(nodes_[index], 0, 0, ticks - 1, empty);
     lift(nodes_[index], 1, 0, ticks - 1, -empty);
 }
@@ -341,6 +342,7 @@ void Engine::settle(Tick closed, std::span<const Tick> wanted) {
         case Kind::sum:
         case Kind::rank_least:
         case Kind::rank_greatest:
+        case Kind::pulses:
             want(own.a, plus(from, own.low <= -forever ? own.high : own.low));
             break;
         case Kind::held: // the trace may end now, so that the last value is wanted

@@ -191,6 +191,7 @@ class Engine {
     void combine(std::uint32_t index, int reg, bool up);
     void slide(std::uint32_t index, int reg, bool up);
     void rank(std::uint32_t index, int reg, bool up);
+    void pulses(std::uint32_t index, int reg);
     void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     template <bool up>

@@ -17,6 +17,9 @@
 //                  c is the constant of the only step
 //     rank_greatest  the c-th greatest, -inf where there are fewer
 //     held         a at t + low; before the start its first value, after the end its last
+//     pulses       at how many ticks of w, behind t, a is positive: in dense time, where a is a
+//     pulse
+//                  of one tick; a run of which w has more than one tick counts as infinitely many
 //     sum          the sum of a over w, behind t and cut at the start, in the order of totals.hpp
 #pragma once
 
@@ -47,6 +50,7 @@ enum class Kind : std::uint8_t {
     sum,
     rank_least,
     rank_greatest,
+    pulses,
 };
 
 // One operation of an expression; operands are earlier steps.

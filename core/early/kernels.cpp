@@ -54,6 +54,8 @@ void Engine::pass(std::uint32_t index, int reg) {
     case Kind::rank_least:
     case Kind::rank_greatest:
         return rank(index, reg, up);
+    case Kind::pulses:
+        return pulses(index, reg);
     case Kind::held:
         for (const Piece& piece : new_data(own.a, reg)) {
             const Tick l = piece.l == 0 ? 0 : plus(piece.l, -own.low);

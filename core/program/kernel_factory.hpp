@@ -1,9 +1,8 @@
 // Which operation an opcode is, for the kernels of both time domains.
 //
 // A `Make` has a template for every kind of kernel: unary and binary for an operation
-// (values/operations.hpp), shift, since, until and rank for a domain, slide and running for an
-// algebra; each returns a `Make::Pointer`, which owns the kernel. `Make::sums`: whether slide and
-// running have sums, which only samples have.
+// (values/operations.hpp), shift, since, until, rank and the sums for a domain, slide and running
+// for an algebra; each returns a `Make::Pointer`, which owns the kernel.
 #pragma once
 
 #include "../values/algebra.hpp"
@@ -56,10 +55,8 @@ template <ValueDomain N, class Make>
             }
         },
         [&]() -> typename Make::Pointer {
-            if constexpr (Make::sums) {
-                if (opcode == Opcode::slide_sum) return make.template slide<SumOf<N>>();
-                if (opcode == Opcode::run_sum) return make.template running<SumOf<N>>();
-            }
+            if (opcode == Opcode::slide_sum) return make.template slide_sum<N>();
+            if (opcode == Opcode::run_sum) return make.template run_sum<N>();
             return make_either<N>(opcode, make);
         });
 }

@@ -44,7 +44,7 @@ inline Program random_program(oracle::Random& random, int size,
             continue;
         }
         const std::int64_t width = random.between(least, random.chance(20) ? many : few);
-        if (!dense && random.chance(15)) { // windows of the past alone
+        if (random.chance(15)) { // windows of the past alone
             const auto sum = random.chance(70) ? Opcode::slide_sum : Opcode::run_sum;
             known.push_back(builder.unary(sum, a, width, builder.lag(a)));
             continue;

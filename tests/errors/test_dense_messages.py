@@ -179,11 +179,10 @@ def test_operators_that_dense_time_does_not_have() -> None:
             "duration",
             "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration",
         ),
-        ("count", "counts samples at which a formula begins to hold; use rise or atleast"),
     ],
 )
 def test_sums_that_dense_time_does_not_have(name: str, why: str) -> None:
-    text = f"{name}[0:5](x) >= 3" if name not in ("duration", "count") else f"{name}[0:5](x > 1) >= 3"
+    text = f"{name}[0:5](x) >= 3" if name != "duration" else f"{name}[0:5](x > 1) >= 3"
     with pytest.raises(rtamt.SpecificationError) as info:
         rtamt.parse(text, time="dense")
     marks = "^" * text.index(" >= 3")

@@ -147,14 +147,13 @@ def test_robustness_is_right_continuous(op, data):
     formula = Apply(op, operands(op), interval)
     assume(not lone(formula))
     a, b = arguments(interval)
-    whole = lifted(op.dense, signals, a, b)
-    for instant in critical(signals, a, b):
+    whole = lifted(op.dense, signals, a, b, before=op.before)
+    for instant in critical(signals, a, b, op.before):
         assert op.dense(instant, *signals, a, b) == whole.at(instant)
 
 
-@pytest.mark.parametrize(
-    "op", named(op for op in EVERY if op.dense and not op.timed)
-)  # a finer grid is faster
+# On a finer grid what is per second is faster, and a pulse of a tick shorter.
+@pytest.mark.parametrize("op", named(op for op in EVERY if op.dense and not op.timed and not op.before))
 @given(data=st.data())
 def test_between_critical_instants_nothing_changes(op, data):
     signals = tuple(data.draw(steps()) for _ in op.operands)

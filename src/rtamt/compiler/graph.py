@@ -31,6 +31,7 @@ KINDS = (
     "atom", "map", "both", "either", "least", "greatest", "until", "since", "since_dense", "held",
     "sum",
     "rank_least", "rank_greatest",
+    "pulses",
 )  # fmt: skip
 ITEMS = ("value", "all", "some", "until", "both", "either")
 
@@ -261,7 +262,9 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
     begin, end = interval_in_steps(graph, formula)
     depth = graph.horizon(operand)
     value = operand
-    if begin or end:
+    if (begin or end) and graph.domain.continuous:  # its operand is a pulse of a tick
+        value = over(graph, "pulses", operand, -end, -begin)
+    elif begin or end:
         steps = (Step(OPCODES.index("slide_sum" if end < FOREVER else "run_sum")),)
         value = _add(
             graph,

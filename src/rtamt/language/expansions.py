@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.rows import operator
-from rtamt.language.unwritten import AT_LEAST, BEFORE, GE, GT
+from rtamt.language.unwritten import AT_LEAST, BEFORE, GE, GT, PULSES
 
 if TYPE_CHECKING:
     from rtamt.language.records import Known
@@ -149,5 +149,6 @@ def duration(condition: Formula, i: Interval | None) -> Formula:
 
 
 def count(condition: Formula, i: Interval | None) -> Formula:
-    """``sum[a,b](if rise(φ) then 1 else 0)``."""
-    return operator("sum")(operator("if")(operator("rise")(condition), Const(1.0), Const(0.0)), interval=i)
+    """``sum[a,b](if rise(φ) then 1 else 0)``; in dense time, of the ticks in which ``rise(φ)`` is true."""
+    begins = operator("and")(BEFORE(operator("not")(condition)), condition)
+    return PULSES(operator("if")(begins, Const(1.0), Const(0.0)), interval=i)

@@ -78,7 +78,6 @@ def builtin(name: str) -> Operator | None:
 
 
 _SAMPLES = "adds samples, which dense time does not have; use minimum or maximum"
-_COUNT = "counts samples at which a formula begins to hold; use rise or atleast"
 _LINE = "of a step signal is a line, not a step, and dense time has steps only; use atleast with a duration"
 
 
@@ -247,7 +246,7 @@ STL: Language = Language.of((
              expansion=expand.duration, guards=("and",), units=r.seconds),
     function("count", 1, "How often a formula begins to hold in the window behind.", "count[0:60](x >= 3) <= 10",
              operands=(C,), latex=r"\mathrm{{count}}_{I}({0})", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
-             before=1, discrete_only=True, why_discrete=_COUNT, definition=d.count, expansion=expand.count, guards=("and",),
+             before=1, definition=d.count, dense=dense.count, expansion=expand.count, guards=("and",),
              units=r.plain),
     function("held", 3, "The first operand when the second was last true; the third, or its first value, where it "
              "never was.", "x - held(x, y >= 3) <= 2", operands=(N, C, N), optional=1, latex="", tense=Tense.PAST,

@@ -202,7 +202,7 @@ class Operator:
     expansion: Expansion | None = None
     dense: Callable[..., float] | None = None
     discrete_only: bool = False
-    before: int = 0  # how many samples before its window of the past it reads, too
+    before: int = 0  # how many samples, or ticks, before its window of the past it reads, too
     timed: bool = False  # seconds matter: the definition takes the sampling period after the bounds
     share: bool = False  # its first operand is a share of the window, which the interval holds
     one_tick: bool = (

@@ -13,10 +13,12 @@ from rtamt.language.definitions import functions as f
 from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const, Formula
 from rtamt.language.records import (
+    Bounds,
     Fixity,
     Operator,
     Pointwise,
     Shift,
+    Sum,
     Tense,
 )
 from rtamt.language.rows import C, F, N, function, infix, operator, prefix
@@ -98,6 +100,12 @@ UNWRITTEN = {op.name: op for op in (*_TRUTHS, AT_LEAST, PRESENT, WHERE_PRESENT, 
 BEFORE = prefix(
     "before", "before", 70, "One step ago.", "before(x >= 3)", tense=Tense.PAST, reach=1, one_tick=True,
     definition=d.prev, dense=dense.historically, kernel=Shift(inf),
+)  # fmt: skip
+
+# The sum of a number that is 1 for a sample or tick, and else 0. Not part of the language.
+PULSES = function(
+    "pulses", 1, "The number of pulses in the window behind.", "pulses(x)", tense=Tense.PAST, bounds=Bounds.OPTIONAL,
+    definition=d.sum_, dense=dense.pulses, before=1, kernel=Sum(),
 )  # fmt: skip
 
 

@@ -176,7 +176,9 @@ def signal_of(node: Apply, operands: tuple[Steps, ...], begin: int, end: int | N
         at = partial(node.op.dense, period=tick / QUARTERS) if node.op.timed else node.op.dense
         try:
             rank = rank_arguments(node.interval, tick, continuous=True)
-            return lifted(at, operands, begin, end, rank, past=node.op.tense is Tense.PAST)
+            return lifted(
+                at, operands, begin, end, rank, past=node.op.tense is Tense.PAST, before=node.op.before
+            )
         except Exception as error:
             raise raised(node, error) from error
     times = sorted({t for x in operands for t in x.times})

@@ -16,6 +16,7 @@ import numpy as np
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
+from rtamt.language.records import Sum
 from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
@@ -201,7 +202,8 @@ def _apply(
         )
         lower, upper = pointwise(node, operands)
         return _Signal(merged(times, lower.tolist()), merged(times, upper.tolist()))
-    componentwise(node)
+    if not isinstance(node.op.kernel, Sum):  # of pulses: the certain ones, and the possible ones
+        componentwise(node)
     window = (*_window(node, tick), tick)
     return _Signal(
         signal_of(node, tuple(x.lower for x in below), *window),

@@ -115,6 +115,18 @@ inline std::int64_t reach(const Program& program, std::uint32_t index) {
     return longest;
 }
 
+// How many ticks of a window are positive; several in a row are infinitely many.
+inline double pulses(const Slots& a, std::int64_t first, std::int64_t last) {
+    const auto positive = [&](std::int64_t s) {
+        return a[static_cast<std::size_t>(s)].value_or(0.0) > 0;
+    };
+    double count = 0;
+    for (std::int64_t s = first; s <= last; ++s) {
+        if (positive(s)) count += s > first && positive(s - 1) ? inf : 1.0;
+    }
+    return count;
+}
+
 // One tick of an instruction with state, given all ticks of its operands up to it.
 inline double temporal(const Instruction& instruction, const Slots& a, const Slots& b,
                        std::int64_t tick) {
@@ -144,6 +156,10 @@ inline double temporal(const Instruction& instruction, const Slots& a, const Slo
         for (std::int64_t s = 0; s <= tick; ++s)
             least = std::min(least, value_at(a, s).value_or(inf));
         return least;
+    case Opcode::slide_sum:
+        return pulses(a, window, tick);
+    case Opcode::run_sum:
+        return pulses(a, 0, tick);
     case Opcode::since: // t' = tick itself, where (t', t] is empty; then t' inside earlier ticks,
                         // where it contains the rest of that tick
         best = value_at(b, tick).value_or(-inf);

@@ -18,10 +18,7 @@ template <class D>
 void check_opcodes() {
     each_opcode([](const Instruction& instruction, bool computes, Sort sort) {
         const auto kernel = Kernels<D>::make(instruction, sort);
-        // Sums of step signals are lines, which dense time does not have.
-        const bool sums =
-            instruction.opcode == Opcode::slide_sum || instruction.opcode == Opcode::run_sum;
-        CHECK((kernel != nullptr) == (computes && !sums));
+        CHECK((kernel != nullptr) == computes);
         if (!kernel) return;
         CHECK(kernel->pending() == 0);
         // A share keeps a tree, which has a root before there is a sample.

@@ -58,14 +58,17 @@ def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
     return Steps(tuple(t for t, _ in kept), tuple(v for _, v in kept))
 
 
-def critical(operands: Iterable[Steps], a: int, b: int | None) -> list[int]:
+def critical(operands: Iterable[Steps], a: int, b: int | None, before: int = 0) -> list[int]:
     """Return all instants, from t₀ on, at which an operator's value can change.
 
     The value at t depends only on the position of t, t ± a, t ± b and t - b + a among the times at which an
-    operand changes. It is therefore constant between adjacent instants of this set, and after the last.
+    operand changes. It is therefore constant between adjacent instants of this set, and after the last. ``before``:
+    how many ticks an operator compares besides; instants so much earlier and later are among them.
     """
     operands = tuple(operands)
     shifts = {0, a, -a} if b is None else {0, a, -a, b, -b, b - a, a - b}
+    if before:
+        shifts = {shift + by * QUARTERS for shift in shifts for by in (-before, 0, before)}
     start = operands[0].times[0]
     changes = {c for operand in operands for c in operand.times}
     return sorted({c + shift for c in changes for shift in shifts if c + shift >= start})
@@ -79,6 +82,7 @@ def lifted(
     rank: tuple[int, float] | tuple[()] = (),
     *,
     past: bool = True,
+    before: int = 0,
 ) -> Steps:
     """Return an operator's values at all instants, from ``at(t, *operands, a, b)``, its value at one.
 
@@ -86,9 +90,9 @@ def lifted(
     that instant and the next. The definitions give the same value at the critical instant itself, except for
     until[a,b] and precedes[a,b] with a > 0, which may differ there (φ falls exactly a later); by convention
     such an instant takes the value that follows. ``rank``: what an operator of a share takes after its bounds;
-    ``past``: whether its window lies behind.
+    ``past``: whether its window lies behind; ``before``: how many ticks it reads besides.
     """
-    instants = critical(operands, a, b)
+    instants = critical(operands, a, b, before)
     if rank:
         assert b is not None
         windows = [(t - b, t - a) if past else (t + a, t + b) for t in instants]
@@ -243,6 +247,34 @@ def crossings(
             if m * n < 0
         }
     return found
+
+
+# ---- events in a window -------------------------------------------------------------------------
+
+
+def count(t: int, truth: Steps, a: int, b: int | None) -> float:
+    """``count[a,b](φ)``: how many ticks with which φ becomes true meet [t-b, t-a] ∩ [t₀, ∞)."""
+    first = -inf if b is None else t - b
+    before = (-inf, *truth.values)
+    return float(
+        sum(
+            value > 0 and not earlier > 0 and begin <= t - a and begin + QUARTERS > first
+            for begin, value, earlier in zip(truth.times, truth.values, before, strict=False)
+        )
+    )
+
+
+def pulses(t: int, x: Steps, a: int, b: int | None) -> float:
+    """Return how many ticks in which x is positive meet [t-b, t-a]; several of one stretch are infinitely many."""
+    start = x.times[0]
+    first, last = start if b is None else max(t - b, start), t - a
+    total, ends = 0.0, (*x.times[1:], None)
+    for begin, end, value in zip(x.times, ends, x.values, strict=True):
+        if not value > 0 or begin > last or (end is not None and end <= first):
+            continue
+        met = min(last, last if end is None else end - 1) // QUARTERS - max(begin, first) // QUARTERS
+        total += inf if met else 1.0
+    return total
 
 
 # ---- edges --------------------------------------------------------------------------------------
