@@ -6,6 +6,8 @@ Two rules make it hold for formulas that mix past and future:
 - a sub-formula without future operators is delayed as a whole, ``once[d,d](φ)``;
 - a past operator over an operand that was delayed by d must not read the operand before its first
   value, so the operand is guarded by ``once[d,d](true)`` (false before d, true from d on).
+
+So is an operand of an operation that may have no value, such as a root: before d it is a number for which there is one.
 """
 
 from __future__ import annotations
@@ -15,13 +17,15 @@ from fractions import Fraction
 from math import inf
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Const, Formula, Interval, fold, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, Parameter, fold, postorder
 from rtamt.language.operators import STL, Bounds, Sort, Tense
 from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.partial import harmless, value_at
 
 #: The largest number of distinct sub-formulas of a result: a shared one may be needed at 2ⁿ delays.
 MOST = 100_000
@@ -107,15 +111,18 @@ class _Pastifier:
         self.text = text
         self.unit = unit
         self.has_future: dict[int, bool] = {}
-        self.constant: set[int] = set()  # these have the same value at every instant
+        # Those that have the same value at every instant; None: a value that can be set.
+        self.constant: dict[int, float | None] = {}
         for node in postorder(formula):
-            if isinstance(node, Const) or (
+            if isinstance(node, Const):
+                self.constant[id(node)] = None if isinstance(node, Parameter) else node.value
+            elif (
                 isinstance(node, Apply)
                 and node.args
                 and node.op.tense is Tense.NONE
                 and all(id(arg) in self.constant for arg in node.args)
             ):
-                self.constant.add(id(node))
+                self.constant[id(node)] = value_at(node.op, [self.constant[id(arg)] for arg in node.args])
             below = any(self.has_future[id(arg)] for arg in node.args) if isinstance(node, Apply) else False
             self.has_future[id(node)] = below or (isinstance(node, Apply) and node.op.tense is Tense.FUTURE)
 
@@ -171,7 +178,19 @@ class _Pastifier:
                 self._guarded(arg, _guard(node, how), delay, sort)
                 for arg, how, sort in zip(args, node.op.guards, node.op.operands, strict=True)
             )
+        elif delay:
+            args = self._with_a_value(node, args, delay)
         return Apply(node.op, args, node.interval, node.span)
+
+    def _with_a_value(self, node: Apply, args: tuple[Formula, ...], delay: Fraction) -> tuple[Formula, ...]:
+        """Return operands with which an operation on numbers has a value before they mean anything, too."""
+        known = [self.constant.get(id(arg)) for arg in node.args]
+        typed = node.op.equates and any(type_of(arg) is not None for arg in node.args)  # codes are finite
+        instead = {} if typed else harmless(node.op, known)
+        meant = self.shifted(STL["true"](), delay)
+        return tuple(
+            _chosen(meant, arg, Const(instead[k])) if k in instead else arg for k, arg in enumerate(args)
+        )
 
     def shifted(self, formula: Formula, delay: Fraction) -> Formula:
         if delay == 0:
@@ -204,6 +223,15 @@ class _Pastifier:
             return Apply(STL["if"], (meant, operand, Const(_INSTEAD[how])), None, operand.span)
         pair = (meant, operand) if how == "implies" else (operand, meant)
         return Apply(STL[how], pair, None, operand.span)
+
+
+def _chosen(condition: Formula, operand: Formula, instead: Formula) -> Formula:
+    """Return the operand of an operation on numbers where a condition is true, else another one."""
+    if is_number(operand):
+        return Apply(STL["if"], (condition, operand, instead), None, operand.span)
+    # A formula is no operand of `if`.
+    both = STL["and"](condition, operand), STL["and"](STL["not"](condition), instead)
+    return Apply(STL["or"], both, None, operand.span)
 
 
 #: A number that counts as none, as true and as false.

@@ -11,21 +11,20 @@ both members must be present.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, reduce
+from functools import reduce
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, located
-from rtamt.language.operators import STL, Operator, Sort, Tense, builtin
+from rtamt.language.operators import STL, Operator, Sort, Tense
 from rtamt.language.quantifiers import JOINS, FieldOf
 from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.language.unwritten import PRESENT, WHERE_PRESENT
 from rtamt.language.value_types import BOOLEAN
+from rtamt.rewrite.partial import may_fail
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.truth import rebuilt
 
@@ -221,9 +220,7 @@ class Scope(Known):
 
     def _needs_guards(self, op: Operator, args: tuple[Formula, ...]) -> bool:
         """Return whether an operation on numbers may have no value where a member is absent, whose fields are 1."""
-        if any(sort is not Sort.NUMBER for sort in op.operands) or not args:
-            return False
-        return any(_may_fail(op, tuple(_known(arg, member) for arg in args)) for member in self.absent())
+        return any(may_fail(op, tuple(_known(arg, member) for arg in args)) for member in self.absent())
 
     def absent(self) -> set[str | None]:
         """Return the members that may be absent."""
@@ -234,7 +231,7 @@ class Scope(Known):
         instead = [
             arg.value if isinstance(arg, Const) else float(position) for position, arg in enumerate(args, 1)
         ]
-        constants = not _may_fail(op, tuple(instead))  # numbers of the text may stay as they are
+        constants = not may_fail(op, tuple(instead))  # numbers of the text may stay as they are
         return tuple(
             arg
             if constants and isinstance(arg, Const)
@@ -270,18 +267,3 @@ def _both(present: Formula | None, formula: Formula) -> Formula:
 
 def _implies(present: Formula | None, formula: Formula) -> Formula:
     return formula if present is None else Apply(STL["implies"], (present, formula), None, formula.span)
-
-
-#: Values at which operations on numbers have no value, if anywhere.
-_PROBES = (-inf, -1e308, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 1e308, inf)
-
-
-@lru_cache(maxsize=1024)
-def _may_fail(op: Operator, known: tuple[float | None, ...]) -> bool:
-    """Return whether an operation may have no value, some of whose operands are known."""
-    if builtin(op.name) is not op or op.definition is None:
-        return True  # what a user's own operator does with other numbers is not tried
-    grid = np.meshgrid(*(_PROBES if value is None else (value,) for value in known))
-    with np.errstate(all="ignore"):
-        values = op.definition(*(each.ravel() for each in grid))
-    return bool(np.isnan(values).any())
