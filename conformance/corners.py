@@ -37,6 +37,7 @@ _TYPED = (
     ("a-member-beside-a-margin", "eventually[0:2](mode == RTL and x > 2)", _with("mode", "x")),
     ("the-member-before", "delay[1](mode, RTL) == AUTO", _with("mode")),
     ("the-member-that-is-held", "held(mode, p) == RTL", _with("mode", "p")),
+    ("a-boolean-before-the-start", "delay[1](p, true) and held(p, x > 2, false)", _with("p", "x")),
     ("a-choice-of-members", "(if p then mode else RTL) == AUTO", _with("mode", "p")),
 )
 

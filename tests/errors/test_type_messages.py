@@ -134,6 +134,30 @@ def test_a_sample_of_another_type_leaves_the_monitor_as_it_was(verdict, time):
     assert monitor.samples == (2 if time == "discrete" else 4)
 
 
+@pytest.mark.parametrize("text", ["delay[1](x, false) > 1", "(if p then x else false) > 1"])
+def test_a_number_has_no_boolean_in_its_place(text):
+    with pytest.raises(ParseError) as caught:
+        rtamt.parse(f"bool p float x {text}")
+    assert caught.value.message == "'x' is a number, and 'false' is true or false; write a number, such as 0"
+    assert text[caught.value.span.start - 15 :].startswith("false")
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    ("text", "holds"),
+    [
+        ("delay[1](p, false)", [False, True, False]),
+        ("delay[1](p, true)", [True, True, False]),
+        ("held(p, x > 0, true)", [True, False, True]),
+        ("if x > 0 then true else p", [True, True, True]),
+    ],
+)
+def test_a_boolean_before_the_start_is_written_as_true_or_false(text, holds, backend):
+    spec = rtamt.parse(f"bool p float x {text}", backend=backend)
+    result = spec.evaluate({"p": [True, False, True], "x": [-1, 1, 1]})
+    assert [value > 0 for value in result.signal.values] == holds
+
+
 @pytest.mark.parametrize(
     ("text", "advice"),
     [

@@ -13,6 +13,9 @@ from rtamt.errors import did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+#: The Booleans, as they are written.
+LITERALS = {"true": True, "false": False}
+
 #: Members that a message lists at most.
 _LISTED = 12
 

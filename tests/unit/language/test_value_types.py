@@ -27,6 +27,10 @@ PRINTED = [
     ("alias = mode; flag = p; always(alias == RTL and flag and flag == 1)", "always(mode == RTL and p and p == 1)"),
     ("(if p then mode else RTL) == AUTO", "(if p then mode else RTL) == AUTO"),
     ("always(if x > 3 then p else p)", "always(if x > 3 then p else p)"),
+    ("delay[1](p, false) and held(p, x > 3, true)", "delay[1](p, false) and held(p, x > 3, true)"),
+    ("if x > 3 then p else false", "if x > 3 then p else false"),
+    ("held(mode, p, AUTO) == RTL", "held(mode, p, AUTO) == RTL"),
+    ("def past(f, first) = delay[1](f, first); past(p, true)", "delay[1](p, true)"),
     ("require R1: p", "p"),
     ("def at(m, f = p) = m == AUTO and f; at(mode) or at(phase, x > 1)",
      "mode == AUTO and p or phase == AUTO and x > 1"),
@@ -66,6 +70,7 @@ def test_a_declared_name_wins_over_a_member():
 def test_latex_shows_members_and_booleans_by_name():
     formula = parse_document(MODES + "p and mode == RTL").formula
     assert formula.latex() == r"p \wedge \mathrm{mode} = \mathrm{RTL}"
+    assert parse_document(MODES + "delay[1](p, false)").formula.latex().endswith(r"(p, \bot)")
 
 
 def test_in_rtamt_files_a_bool_stays_a_number():

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply
+from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import Fixity, Sort
+from rtamt.language.value_types import BOOLEAN, LITERALS
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -55,6 +56,11 @@ def chains(first: Operator, second: Operator) -> bool:
 def is_number(formula: Formula) -> bool:
     """Return whether a formula is a number by itself: a variable, a constant or arithmetic."""
     return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
+
+
+def is_literal(formula: Formula) -> bool:
+    """Return whether a constant was written as true or false."""
+    return isinstance(formula, Const) and formula.type is BOOLEAN and formula.name in LITERALS
 
 
 def passes_on(op: Operator) -> bool:

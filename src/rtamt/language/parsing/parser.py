@@ -46,6 +46,7 @@ from rtamt.language.parsing.intervals import parse_interval
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.templates import Template, parse_use
+from rtamt.language.parsing.type_rules import as_literal
 from rtamt.language.parsing.typed_parser import TypedParser
 from rtamt.language.quantifiers import begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
@@ -234,6 +235,8 @@ class FormulaParser(TypedParser):
         start = self.starts[self.index]
         operand = self.expression(power)
         sort = op.operands[min(position, len(op.operands) - 1)]
+        if position in op.keeps and self.scope.typed:
+            operand = as_literal(operand)
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
             written = self.text[start:end]

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.operators import STL, Sort
-from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.grammar import is_literal, is_number
 from rtamt.language.unwritten import TRUTH
-from rtamt.language.value_types import BOOLEAN, UNKNOWN, Ambiguous, Enumeration
+from rtamt.language.value_types import BOOLEAN, LITERALS, UNKNOWN, Ambiguous, Enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -65,6 +65,13 @@ def type_of(formula: Formula) -> PartType:
     return leaves[0] if len(set(leaves)) == 1 else None
 
 
+def as_literal(formula: Formula) -> Formula:
+    """Return ``true`` and ``false`` as Booleans, for operators that keep the type of an operand; all else as it is."""
+    if isinstance(formula, Apply) and formula.op.name in LITERALS:
+        return Const(float(LITERALS[formula.op.name]), formula.span, formula.op.name, BOOLEAN)
+    return formula
+
+
 def as_formula(formula: Formula) -> Formula:
     """Return what a Boolean means as a formula: +inf where it is true, else -inf; anything else as it is."""
     if type_of(formula) is not BOOLEAN:
@@ -85,6 +92,7 @@ def typed(
     types = [type_of(operand) for operand in args]
     if not any(types) or UNKNOWN in types or op.presence:  # a template is checked where it is used
         return op, tuple(args)
+    _refuse_literals(op, args, types, texts)
     enumerated = [k for k, each in enumerate(types) if isinstance(each, Enumeration | Ambiguous)]
     if not enumerated:
         if op.equates:
@@ -160,6 +168,18 @@ def _resolved(operand: Formula, one: Enumeration) -> Formula:
         assert code is not None
         return Const(float(code), operand.span, operand.name, one)
     return operand
+
+
+def _refuse_literals(op: Operator, args: Sequence[Formula], types: Sequence[PartType], texts: Texts) -> None:
+    """Refuse ``delay(x, false)`` of a number."""
+    kept = [k for k in op.keeps if k < len(args)]
+    other = next((k for k in kept if types[k] is None), None)
+    for k in kept:
+        if is_literal(args[k]) and other is not None:
+            raise MistypedError(
+                f"'{texts(other)}' is a number, and '{texts(k)}' is true or false; write a number, such as 0",
+                k,
+            )
 
 
 def _refuse_formulas(args: Sequence[Formula], types: Sequence[PartType], texts: Texts) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.operators import STL, Bounds, Fixity, Operator
-from rtamt.language.parsing.grammar import INFINITY, is_infix, passes_on, sign
+from rtamt.language.parsing.grammar import INFINITY, is_infix, is_literal, passes_on, sign
 from rtamt.language.printing.parentheses import (
     falls_apart,
     is_choice,
@@ -54,7 +54,9 @@ def to_latex(formula: Formula) -> str:
         return needs_group(child, op) or (op.fixity is Fixity.FUNCTION and isinstance(child, Apply))
 
     def pieces(node: Formula) -> Iterable[Piece]:
-        if isinstance(node, Const):
+        if isinstance(node, Const) and is_literal(node):
+            yield STL["true" if node.value else "false"].latex
+        elif isinstance(node, Const):
             yield _latex_name(member_name(node)) if is_member(node) else _latex_number(node.value)
         elif isinstance(node, Var):
             yield _latex_name(node.name)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Parameter, Var
 from rtamt.language.operators import STL, Bounds, Fixity, Language
-from rtamt.language.parsing.grammar import ELSE, INFINITY, THEN, is_infix, sign
+from rtamt.language.parsing.grammar import ELSE, INFINITY, THEN, is_infix, is_literal, sign
 from rtamt.language.parsing.lexer import is_word
 from rtamt.language.printing.parentheses import (
     falls_apart,
@@ -156,7 +156,9 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
 
 
 def _constant(node: Const, language: Language) -> str:
-    """Return a number, or the name of a member of an enumeration."""
+    """Return a number, the name of a member of an enumeration, or true or false."""
+    if is_literal(node):
+        return str(node.name)
     return name_text(member_name(node), language) if is_member(node) else number(node.value)
 
 
