@@ -136,6 +136,9 @@ def assignments(texts: Iterable[str]) -> dict[str, float | str]:
 def require_parameters(names: Iterable[str], known: Collection[str]) -> None:
     """Raise :class:`UsageError` unless every name is that of a known parameter."""
     for name in names:
+        first = name.partition("=")[0].strip()
+        if name not in known and first in known and first != name:
+            raise UsageError(f"'{name}' names several parameters; set each by itself, such as {first}=3")
         if name not in known:
             declared = (
                 choices(name, known, "parameters") if known else f"; declare it: parameter float {name} = ..."
@@ -143,8 +146,10 @@ def require_parameters(names: Iterable[str], known: Collection[str]) -> None:
             raise UsageError(f"there is no parameter '{name}'{declared}")
 
 
-def parameter_value(name: str, given: Any, type_: ValueType | None) -> float:
+def parameter_value(name: str, given: Any, type_: ValueType | None, *, whole: bool = False) -> float:
     """Return the value of a parameter as a number; raise :class:`UsageError` for a value of another type.
+
+    ``whole``: whether it is declared as a whole number.
 
     >>> mode = Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4)))
     >>> parameter_value("start", "AUTO", mode), parameter_value("strict", True, BOOLEAN)
@@ -160,6 +165,10 @@ def parameter_value(name: str, given: Any, type_: ValueType | None) -> float:
         raise UsageError(f"the parameter '{name}' is {shown(given)}; it is a bool, so give true or false")
     if type_ is None and truth:
         raise UsageError(f"the parameter '{name}' is {shown(given)}, and it is no bool; give a number")
+    if whole and not float(given).is_integer():
+        raise UsageError(
+            f"the parameter '{name}' is {shown(given)}, and declared as a whole number; declare it as float"
+        )
     return float(given)
 
 

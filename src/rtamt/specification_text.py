@@ -21,6 +21,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.parsing.type_rules import as_formula
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import positive_period
+from rtamt.language.value_types import WHOLE
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.quantifiers import resolve
@@ -156,7 +157,11 @@ class SpecificationText:
         current = self.parameters
         require_parameters(values, current)
         types = self.document.types
-        given = {name: parameter_value(name, value, types.get(name)) for name, value in values.items()}
+        whole = {each.name for each in self.document.declarations if each.type in WHOLE}
+        given = {
+            name: parameter_value(name, value, types.get(name), whole=name in whole)
+            for name, value in values.items()
+        }
         new = {name: value for name, value in given.items() if value != current[name]}
         if not new:
             return self

@@ -214,4 +214,11 @@ def test_a_value_missing_inside_an_expansion_named_operators_that_nobody_had_wri
     data = {"x": [4.0, 4.0], "y": [3.0, 3.0]}
     with pytest.raises(rtamt.EvaluationError) as error:
         spec.evaluate(data if time == "discrete" else {name: ([0, 1], each) for name, each in data.items()})
-    assert str(error.value).startswith(f"'{text}' has no value at ")
+    reason = {
+        "clip": "the second operand is greater than the third",
+        "wrap": "the second operand is not less than the third, or one of the three is infinite",
+    }[text[:4]]
+    assert str(error.value) == (
+        f"'{text}' has no value at {'sample 0, ' * (time == 'discrete')}time 0 s: {reason}; "
+        f"change the formula or the data so that this cannot happen"
+    )

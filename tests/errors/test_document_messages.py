@@ -18,6 +18,48 @@ DOCUMENTS = [
     ("foo x;", "    ^", ParseError, "expected an operator between 'foo' and 'x'"),
     ("flaot x float y x > 1", "^^^^^", ParseError, "'flaot' is not a type; did you mean 'float'?"),
     (
+        "enum Mode { A, B }  input Mod m  m == A",
+        "                          ^^^",
+        ParseError,
+        "'Mod' is not a type; did you mean 'Mode'?",
+    ),
+    (
+        "enum Mode { A, B }  Mod m;  m == A",
+        "                    ^^^",
+        ParseError,
+        "'Mod' is not a type; did you mean 'Mode'?",
+    ),
+    (
+        "input Mod m  enum Mode { A, B }  m == A",
+        "      ^^^",
+        ParseError,
+        "'Mod' is not a type; did you mean 'Mode'?",
+    ),
+    (
+        "input Mode m  enum Mode { A, B }  m == A",
+        "      ^^^^",
+        ParseError,
+        "'Mode' is declared further on; declare an enumeration before its variables",
+    ),
+    (
+        "enum Mode { A, B }  Mode m  bool p  (if p then m else C) == A",
+        "                                                      ^",
+        NameInFormulaError,
+        "'C' is no member of Mode; its members are A, B",
+    ),
+    (
+        "enum Mode { A, B }  Mode m  held(m, m == A, C) == A",
+        "                                            ^",
+        NameInFormulaError,
+        "'C' is no member of Mode; its members are A, B",
+    ),
+    (
+        "parameter int most = 2.5  float x  x < most",
+        "                     ^^^",
+        ParseError,
+        "'most' is 2.5, and declared as a whole number; declare it as float",
+    ),
+    (
         "input Foo x x > 1",
         "      ^^^",
         ParseError,

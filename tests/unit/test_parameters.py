@@ -80,6 +80,22 @@ def test_wrong_values_are_one_sentence(spec, values, message):
         assert str(error.value) == message
 
 
+def test_a_whole_number_takes_no_fraction():
+    spec = rtamt.parse("input float x  parameter int most = 2  x <= most")
+    assert dict(spec.with_parameters(most=3.0).parameters) == {"most": 3.0}
+    with pytest.raises(
+        UsageError,
+        match=r"^the parameter 'most' is 2\.5, and declared as a whole number; declare it as float$",
+    ):
+        spec.with_parameters(most=2.5)
+
+
+def test_two_parameters_in_one_text_are_not_the_name_of_one(spec):
+    with pytest.raises(UsageError) as error:
+        spec.with_parameters(**{"limit=1,gap": 2})
+    assert str(error.value) == ("'limit=1,gap' names several parameters; set each by itself, such as limit=3")
+
+
 def test_a_specification_without_parameters_says_so():
     with pytest.raises(
         UsageError, match=r"^there is no parameter 'limit'; declare it: parameter float limit = \.\.\.$"

@@ -12,6 +12,7 @@ from rtamt.language.parsing.grammar import is_number, is_predicate
 from rtamt.language.records import Fixity, Sort
 from rtamt.language.units.check import unit_findings
 from rtamt.language.units.dimensions import DIMENSION, SCALE, UNCHECKED
+from rtamt.language.units.durations import format_duration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -116,6 +117,16 @@ def _division_by_zero(document: Document) -> Found:
             yield node.span, "this divides by 0"
 
 
+def _held_too_short(document: Document) -> Found:
+    rule = document.sampling
+    if rule is not None and rule.limit is not None and rule.limit < rule.period:
+        yield (
+            rule.span,
+            "a value is held for less than the sampling period, so a signal that is recorded once a period has gaps; "
+            f"hold it for {format_duration(rule.period)} or longer",
+        )
+
+
 def _past_parenthesis(document: Document) -> Found:
     """An operator is written like a function, directly before a parenthesis, but also applies to what follows it."""
     text = document.text
@@ -189,6 +200,12 @@ RULES: tuple[Rule, ...] = (
         "a prefix operator directly before a parenthesis, whose operand extends past it",
         "prev(x) - x <= 3",
         _past_parenthesis,
+    ),
+    Rule(
+        "RT106",
+        "a value that is held for less than the sampling period",
+        "sample 100ms hold for 50ms  x >= 3",
+        _held_too_short,
     ),
     Rule("RT201", "a number that has a name and is never used", "sum = x + y; x >= 3", _unused_number),
     Rule(

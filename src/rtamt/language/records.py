@@ -230,6 +230,7 @@ class Operator:
     # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
+    fails: str = ""  # where a function has no value, for a message; by default several reasons are named
     binder: Binder | None = None  # of a quantifier in a formula
     # The unit of the result from those of the operands (``units/rules.py``); None: unknown.
     units: UnitRule | None = None

@@ -27,9 +27,11 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
             f"the operator '{formula.op.name}' gave NaN: '{excerpt(formula)}' has no value at {where}; "
             f"mend the operator, or change the formula or the data so that this cannot happen"
         )
+    why = formula.op.fails if isinstance(formula, Apply) else ""
     return EvaluationError(
-        f"'{excerpt(formula)}' has no value at {where}: it is 0/0, inf - inf, 0 * inf, "
-        f"or a function outside its domain; change the formula or the data so that this cannot happen"
+        f"'{excerpt(formula)}' has no value at {where}: "
+        f"{why or 'it is 0/0, inf - inf, 0 * inf, or a function outside its domain'}; "
+        f"change the formula or the data so that this cannot happen"
     )
 
 

@@ -13,6 +13,9 @@ from rtamt.errors import did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+#: The types of numbers without a fraction.
+WHOLE = ("int", "long")
+
 #: The Booleans, as they are written.
 LITERALS = {"true": True, "false": False}
 

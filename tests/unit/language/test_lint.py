@@ -29,6 +29,8 @@ def test_every_rule_finds_its_example_and_no_other_one_does():
         ("const float limit = 3; x > 1 or limit > 2", [("RT103", "limit > 2")]),
         ("const float none = 0; x / none > 1", [("RT104", "x / none")]),
         ("x / 2 > 0", []),
+        ("sample 1s hold for 500ms; x > 3", [("RT106", "sample 1s hold for 500ms")]),
+        ("sample 1s hold for 1s skip nan; x > 3", []),
         ('group cars = "car_*"  forall c in cars: c.x > 3', []),
         ("always[0:5](x + y) <= 3", [("RT105", "always[0:5](x + y) <= 3")]),
         ("not(x) > 3", [("RT105", "not(x) > 3")]),

@@ -53,6 +53,7 @@ def test_what_a_rule_says(text, rule):
         ("sample 1s hold for ever; x > 3", ParseError,
          "expected the longest time for which a value is held, such as 100ms, got 'ever'"),
         ("sample 1s hold skip x > 3", ParseError, "expected 'nan' after 'skip', got 'x'"),
+        ("sample 1s skip nan x > 3", ParseError, "'skip nan' stands after 'hold': write sample 1s hold skip nan"),
         ("x > 3; sample 1s", ParseError, "declarations and annotations stand before the first formula"),
         ("sample 100ms; always[0:150ms](x > 3)", BoundError, "The operator bound must be a multiple of the sampling "
          "period: 150 ms is not a whole number of periods of 100 ms; change the bound or the period"),

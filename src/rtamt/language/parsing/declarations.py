@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
@@ -17,7 +18,7 @@ from rtamt.language.parsing.lexer import Token, is_name, quoted
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier, unquoted_pattern
 from rtamt.language.tables import begins_table, parse_table
-from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.language.value_types import BOOLEAN, WHOLE, Enumeration
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 TYPES = ("float", "int", "long", "complex", "bool")
 
 #: The types of parameters, besides enumerations.
-_SET_LATER = ("float", "int", "long", "bool")
+_SET_LATER = ("float", *WHOLE, "bool")
 
 _Kind = Literal["var", "const", "parameter"]
 
@@ -173,8 +174,14 @@ class DeclarationParser(ImportParser):
             self.next()
         type_name = self.next()
         if not self._is_type(type_name):
+            later = {name for word, name in pairwise(self.texts[self.index :]) if word == "enum"}
+            if type_name.text in later:
+                raise self.error(
+                    f"'{type_name.text}' is declared further on; declare an enumeration before its variables",
+                    type_name.span,
+                )
             types = (*TYPES, *self._enumerations, *self._imports)
-            hint = did_you_mean(type_name.text, types)
+            hint = did_you_mean(type_name.text, (*types, *later))
             raise self.error(
                 f"'{type_name.text}' is not a type{hint or '; types are ' + ', '.join(types[:20])}"
                 f"{'' if hint else ', and classes that are imported'}",
@@ -216,7 +223,14 @@ class DeclarationParser(ImportParser):
         if not constant and self.accept("="):
             columns = self._columns(name, type_name)
         elif self.accept("="):
+            start = self.token.start
             value = self._value(type_)
+            if kind == "parameter" and type_name in WHOLE and not value.is_integer():
+                span = Span(start, self.tokens[self.index - 1].end)
+                written = self.text[span.start : span.end]
+                raise self.error(
+                    f"'{name}' is {written}, and declared as a whole number; declare it as float", span
+                )
             self._constants[name] = value
             if kind == "parameter":
                 self._constants[name] = self._values.get(name, value)
@@ -380,6 +394,8 @@ class DeclarationParser(ImportParser):
         if self._opening(first.text) is not None or not (self._plain_name(1) and self._plain_name(0)):
             return False
         third = self._at(2)
+        if third.text == ";" and did_you_mean(first.text, self._enumerations):
+            return True
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
 
     def _is_optional(self) -> bool:

@@ -46,13 +46,12 @@ from rtamt.language.parsing.intervals import parse_interval
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.templates import Template, parse_use
-from rtamt.language.parsing.type_rules import as_literal
 from rtamt.language.parsing.typed_parser import TypedParser
 from rtamt.language.quantifiers import begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from rtamt.errors import SpecificationError
     from rtamt.language.parsing.lexer import Token
@@ -212,7 +211,7 @@ class FormulaParser(TypedParser):
         places: list[Place] = []
         while not operands or self.accept(","):
             start = self.starts[self.index]
-            operands.append(self.argument(op, len(operands)))
+            operands.append(self.argument(op, operands))
             places.append((start, self.ends[self.index - 1]))
         if not self.accept(")"):
             raise self.error(
@@ -230,13 +229,12 @@ class FormulaParser(TypedParser):
             result = self.apply(op, (result, operand), (span, place), interval, span)
         return result
 
-    def argument(self, op: Operator, position: int, power: int = 0) -> Formula:
-        """Parse an operand of an operator; strict ones take no formula for a number."""
-        start = self.starts[self.index]
-        operand = self.expression(power)
+    def argument(self, op: Operator, before: Sequence[Formula], power: int = 0) -> Formula:
+        """Parse an operand of an operator after those ``before`` it; strict ones take no formula for a number."""
+        start, position = self.starts[self.index], len(before)
+        keeps = op.keeps and self.scope.typed
+        operand = self.kept(op, before, power) if keeps else self.expression(power)
         sort = op.operands[min(position, len(op.operands) - 1)]
-        if position in op.keeps and self.scope.typed:
-            operand = as_literal(operand)
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
             written = self.text[start:end]
@@ -259,10 +257,10 @@ class FormulaParser(TypedParser):
                 first.span,
             )
         operands, places, outer = [], [], self._awaited
-        for position, word in enumerate((THEN, ELSE, None)):
+        for word in (THEN, ELSE, None):
             self._awaited = word or outer
             start = self.token.start
-            operands.append(self.argument(op, position, 0 if word else op.power))
+            operands.append(self.argument(op, operands, 0 if word else op.power))
             places.append(Span(start, self.tokens[self.index - 1].end))
             if word and not self.accept(word):
                 raise self.error(*diagnostics.no_word(self.tokens, self.index, word))

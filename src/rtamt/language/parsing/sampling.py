@@ -11,7 +11,7 @@ instant, whenever its samples came; with ``skip nan`` samples that are NaN are l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices
@@ -36,6 +36,7 @@ class Sampling:
     hold: bool = False
     limit: Fraction | None = None
     skip_nan: bool = False
+    span: Span | None = field(default=None, compare=False, repr=False)
 
     def __str__(self) -> str:
         limit = "" if self.limit is None else f" for {_written(self.limit)}"
@@ -57,16 +58,20 @@ def begins_sampling(parser: RequirementParser) -> bool:
 
 def parse_sampling(parser: RequirementParser) -> Sampling:
     """``sampling = "sample" , duration , [ "hold" , [ "for" , duration ] , [ "skip" , "nan" ] ] , [ ";" ]``."""
-    parser.next()
+    start = parser.next().start
     period, limit = _duration(parser, "sampling period"), None
     hold = _keyword(parser, "hold")
     if hold and _keyword(parser, "for"):
         limit = _duration(parser, "longest time for which a value is held")
+    if not hold and parser.token.text == "skip" and parser.tokens[parser.index + 1].text == "nan":
+        rule = str(Sampling(period, hold=True, skip_nan=True))
+        raise parser.error(f"'skip nan' stands after 'hold': write {rule}", parser.token.span)
     skip = hold and _keyword(parser, "skip")
     if skip and not _keyword(parser, "nan"):
         raise parser.error(f"expected 'nan' after 'skip', got {parser.token}", parser.token.span)
+    span = Span(start, parser.tokens[parser.index - 1].end)
     parser.accept(";")
-    return Sampling(period, hold, limit, skip)
+    return Sampling(period, hold, limit, skip, span)
 
 
 def _keyword(parser: RequirementParser, *words: str) -> bool:

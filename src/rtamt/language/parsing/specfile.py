@@ -166,6 +166,11 @@ class _DocumentParser(DeclarationParser):
                 known = self._explicit[-1]
                 name = known.name
                 found.append(Assertion(name, known.formula, known.span))
+                if name not in self.scope:
+                    pending[name] = (
+                        f"'{name}' is the name of a requirement, which formulas cannot read; "
+                        f"give its formula a name before it, such as holds = ..., and use that in both"
+                    )
             else:
                 first, name = self.index, self._assertion_name()
                 if name is not None:

@@ -10,7 +10,15 @@ from rtamt.language.formula import Apply, Const, Formula, Span, Var
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.names import NameParser
-from rtamt.language.parsing.type_rules import MistypedError, ambiguous, as_formula, no_formula, type_of, typed
+from rtamt.language.parsing.type_rules import (
+    MistypedError,
+    ambiguous,
+    as_formula,
+    as_literal,
+    no_formula,
+    type_of,
+    typed,
+)
 from rtamt.language.value_types import Ambiguous, Enumeration
 
 if TYPE_CHECKING:
@@ -121,6 +129,23 @@ class TypedParser(NameParser):
         right = self._right(op)
         self._against = before
         return right
+
+    def kept(self, op: Operator, before: Sequence[Formula], power: int) -> Formula:
+        """Parse an operand of an operator that keeps types; a member is one of their enumeration."""
+        outer = self._against
+        if len(before) not in op.keeps:
+            self._against = None
+            operand = self.expression(power)
+        else:
+            found = [type_of(before[k]) for k in op.keeps if k < len(before)]
+            self._against = next((each for each in found if isinstance(each, Enumeration)), outer)
+            operand = as_literal(self.expression(power))
+        self._against = outer
+        return operand
+
+    def expression(self, power: int = 0, under: Operator | None = None) -> Formula:
+        """Parse an expression whose operators bind more tightly than ``power``."""
+        raise NotImplementedError
 
     def _right(self, op: Operator) -> Formula:
         raise NotImplementedError

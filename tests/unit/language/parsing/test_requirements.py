@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 import rtamt
-from rtamt.errors import ParseError, UsageError
+from rtamt.errors import NameInFormulaError, ParseError, UsageError
 from rtamt.language.document import Requirement
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
@@ -94,8 +94,8 @@ MESSAGES = [
         "'low' is the name of another requirement or definition",
     ),
     (
-        "require x: y > 1; x > 1",
-        "        ^",
+        "float x; require x: x > 1",
+        "                 ^",
         "'x' is the name of a variable; give the requirement another one",
     ),
     (
@@ -129,6 +129,17 @@ def test_messages(text, marks, sentence):
         parse_document(text)
     column = marks.index("^") + 1
     assert str(caught.value) == f"{sentence}\n  line 1, column {column}:\n    {text}\n    {marks}"
+
+
+def test_a_formula_cannot_read_a_requirement():
+    text = "{}require R1: y > 1; R1 and x > 1"
+    for declared in ("", "float x; float y; "):
+        with pytest.raises(NameInFormulaError) as caught:
+            parse_document(text.format(declared))
+        assert caught.value.message == (
+            "'R1' is the name of a requirement, which formulas cannot read; give its formula a name before it, such as "
+            "holds = ..., and use that in both"
+        )
 
 
 def test_one_of_several_is_a_specification_of_its_own_also_after_pickling():
