@@ -256,7 +256,8 @@ class FormulaParser(TypedParser):
                 f"put parentheses around it: {by} ({first.text} ...)",
                 first.span,
             )
-        operands, places, outer = [], [], self._awaited
+        operands: list[Formula] = []
+        places, outer = [], self._awaited
         for word in (THEN, ELSE, None):
             self._awaited = word or outer
             start = self.token.start
