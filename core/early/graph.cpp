@@ -130,8 +130,7 @@ void Graph::check() const {
         const bool rank = node.kind == Kind::rank_least || node.kind == Kind::rank_greatest;
         require(!rank || (node.steps.size() == 1 && node.steps.front().x >= 1.0 &&
                           node.low > -forever && node.high < forever));
-        require(node.kind <= Kind::pulses &&
-                (node.kind != Kind::held || node.low == node.high));
+        require(node.kind <= Kind::pulses && (node.kind != Kind::held || node.low == node.high));
         if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
         if (node.kind != Kind::atom) require(earlier(node.a));
         if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));
