@@ -251,8 +251,8 @@ void Engine::lift_empty(std::uint32_t index) {
     if (rank && own.low < 0) ticks += static_cast<Tick>(own.steps.front().x) - 1;
     if (ticks <= 0) return;
     const bool least = own.kind == Kind::least || own.kind == Kind::rank_least;
-    const double none = least ? infinity : -infinity;
-    const double empty = own.kind == Kind::pulses ? 0.0 : none;
+    double empty = least ? infinity : -infinity;
+    if (own.kind == Kind::pulses) empty = 0.0;
     lift(nodes_[index], 0, 0, ticks - 1, empty);
     lift(nodes_[index], 1, 0, ticks - 1, -empty);
 }
