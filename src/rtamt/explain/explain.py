@@ -140,8 +140,24 @@ class _Explainer:
         if overturns(first[0]):
             return first
         others = self._places(implicant, self._signals.at(self._structure.core, cell))
-        candidates = (self._described(point, cell) for point in islice(others, _TRIED))
-        return next((other for other in candidates if overturns(other[0])), first)
+        found = self._alone(list(islice(others, _TRIED)), cell)
+        return first if found is None else self._described(found, cell)
+
+    def _alone(self, points: Sequence[Point], cell: int) -> Point | None:
+        """Return the first of some places that overturns the verdict alone.
+
+        Where all together do not, none does; so most are excluded at once.
+        """
+        if not points:
+            return None
+        robustness = self._signals.at(self._structure.core, cell)
+        moved = self._moved(points, -inf if robustness > 0 else inf, cell)
+        if not (moved < 0 if robustness > 0 else moved > 0):
+            return None
+        if len(points) == 1:
+            return points[0]
+        half = len(points) // 2
+        return self._alone(points[:half], cell) or self._alone(points[half:], cell)
 
     def _places(self, implicant: list[Interval], robustness: float) -> Iterator[Point]:
         """Yield the places of an implicant that have the value of the robustness."""
@@ -167,9 +183,8 @@ class _Explainer:
             words = predicate_text(leaf.formula, self._text)
             decided_by = "constant" if leaf.fixed else "predicate"
         if leaf is not None and not leaf.fixed:
-            if self._dense:
-                start, end = self._values[point.name].around(point.cell)
-            lowest, highest = self._follows(point, start, end, cell)
+            start, end = self._stretch(point)
+            lowest, highest = (self._moved([point], toward, cell) for toward in (-inf, inf))
         found = CriticalPoint(
             words,
             None if leaf is None else leaf.formula,
@@ -184,19 +199,21 @@ class _Explainer:
         )
         return found, point.cell
 
-    def _follows(self, point: Point, start: int, end: int, cell: int) -> tuple[float, float]:
-        """Return the robustness when the critical value goes, up to sign, to -inf and to +inf alone."""
+    def _stretch(self, point: Point) -> tuple[int, int]:
+        """Return the cells on which a value moves: in dense time those of its segment."""
+        return self._values[point.name].around(point.cell) if self._dense else (point.cell, point.cell + 1)
+
+    def _moved(self, points: Sequence[Point], toward: float, cell: int) -> float:
+        """Return the robustness when the values at some places go, up to sign, to -inf or to +inf."""
         run = self._line.runner((self._structure.polar[self._structure.core, 1],))
         signals = {name: self._values[name] for name, leaf in self._structure.leaves.items() if leaf.fixed}
         for name, leaf in self._structure.leaves.items():
             if not leaf.fixed:
                 signals[literal(name, 1)] = signals[literal(name, -1)] = self._values[name]
-        moved = literal(point.name, point.sign)
-        ends = []
-        for value in (-point.sign * inf, point.sign * inf):
-            changed = self._values[point.name].changed(start, end, value)
-            ends.append(run({**signals, moved: changed})[0].at(cell))
-        return ends[0], ends[1]
+        for name, sign in {(point.name, point.sign) for point in points}:
+            cells = Cells.of([self._stretch(p) for p in points if (p.name, p.sign) == (name, sign)])
+            signals[literal(name, sign)] = self._values[name].changed(cells, sign * toward)
+        return run(signals)[0].at(cell)
 
     # ---- the implicant -----------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from rtamt.language.records import Bounds, Pointwise, Rank, Shift, Since, Sort, 
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 #: Later than every cell (a sample, in dense time a tick), and small enough that a few of them still add up
 #: within 64 bits.
@@ -200,6 +200,23 @@ def reaches(order: tuple[Formula, ...], period: Fraction) -> dict[Formula, tuple
             ahead = own[1] + max((found[arg][1] for arg in node.args), default=0)
         found[node] = min(behind, NEVER), min(ahead, NEVER)
     return found
+
+
+def settling(formulas: Iterable[Formula], period: Fraction) -> int:
+    """Return how many cells from the nearest change of a signal core formulas are constant at the latest.
+
+    There an operator without an upper bound has one value, too: that of its operand and of what lies beyond the
+    change; only its lower bound counts.
+    """
+    found: dict[Formula, int] = {}
+    for node in postorder(*formulas):
+        own = 0
+        if isinstance(node, Apply):
+            bounded = max(own_reach(node, period))
+            own = bounded if bounded < NEVER else window_of(node, period)[0] + node.op.before
+            own += max((found[arg] for arg in node.args), default=0)
+        found[node] = own
+    return max(found.values(), default=0) + 1
 
 
 def own_reach(node: Apply, period: Fraction) -> tuple[int, int]:

@@ -184,20 +184,19 @@ class StepFunction:
         i = int(np.searchsorted(self.changes, cell, side="right"))
         return int(self.changes[i - 1]), int(self.changes[i]) if i < len(self.changes) else self.end
 
-    def changed(self, begin: int, end: int, value: float) -> StepFunction:
-        """Return the function with another value on [begin, end), which is not empty."""
-        if begin >= self.end:
-            return self
-        first, last = (int(i) for i in np.searchsorted(self.changes, (begin, end), side="left"))
-        changes, values = [begin], [value]
-        if end < self.end and (last == len(self.changes) or self.changes[last] > end):
-            changes.append(end)
-            values.append(float(self.values[last - 1]))
-        return StepFunction(
-            np.concatenate((self.changes[:first], np.array(changes, np.int64), self.changes[last:])),
-            np.concatenate((self.values[:first], values, self.values[last:])),
-            self.end,
+    def changed(self, cells: Cells, value: float) -> StepFunction:
+        """Return the function with another value on some cells."""
+        cells = cells.within(0, self.end)
+        edges = np.concatenate((cells.starts, cells.ends[cells.ends < self.end]))
+        new = np.setdiff1d(
+            edges, self.changes[np.searchsorted(self.changes, edges).clip(max=len(self.changes) - 1)]
         )
+        places = np.searchsorted(self.changes, new)
+        changes = np.insert(self.changes, places, new)
+        values = np.insert(self.values, places, self.each(new))
+        for begin, end in zip(*np.searchsorted(changes, (cells.starts, cells.ends)), strict=True):
+            values[begin:end] = value
+        return StepFunction(changes, values, self.end)
 
     def positive(self) -> Cells:
         """Return where the value is above 0."""

@@ -49,9 +49,14 @@ def test_steps(samples, data):
     assert np.repeat(found, np.diff(changes, append=end)).tolist() == samples[begin:end]
     mirrored = steps.mirrored(begin, end)
     assert [mirrored.at(-k) for k in range(begin, end)] == samples[begin:end]
-    changed = steps.changed(begin, end, 9.0)
+    changed = steps.changed(Cells.of([(begin, end)]), 9.0)
     assert [changed.at(k) for k in range(len(samples))] == samples[:begin] + [9] * (end - begin) + samples[
         end:
+    ]
+    some = set(data.draw(st.lists(st.integers(0, len(samples) - 1), max_size=6)))
+    changed = steps.changed(cells(some), 9.0)
+    assert [changed.at(k) for k in range(len(samples))] == [
+        9 if k in some else value for k, value in enumerate(samples)
     ]
     first, after = steps.around(begin)
     assert first <= begin < after

@@ -10,10 +10,12 @@ import numpy as np
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.structure import settling
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.epoch import is_epoch, moment_text
 from rtamt.signals.instants import StepFunction
+from rtamt.signals.shortened import Shortened
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -40,10 +42,19 @@ class DiscreteTimeAxis(TimeAxis):
     def runner(self, formulas: Sequence[Formula]) -> Runner:
         """See :class:`TimeAxis`."""
         evaluator = self._evaluator(formulas)
+        margin = settling(formulas, self.period)
 
         def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
-            columns = {name: self._samples(steps) for name, steps in signals.items()}
-            recording = DiscreteTrace(self._recording.times, columns, self.period)
+            changes = sum(len(steps.changes) for steps in signals.values())
+            if not changes or changes * 2 * margin >= self.end:
+                return over(signals, self.end)
+            short = Shortened.of(signals.values(), margin)
+            found = over({name: short.of_function(steps) for name, steps in signals.items()}, short.end)
+            return [short.back(steps) for steps in found]
+
+        def over(signals: Mapping[str, StepFunction], end: int) -> list[StepFunction]:
+            columns = {name: _samples(steps) for name, steps in signals.items()}
+            recording = DiscreteTrace(self._recording.times[:end], columns, self.period)
             return [StepFunction.of_samples(values) for values in evaluator(recording)]
 
         return run
@@ -51,11 +62,6 @@ class DiscreteTimeAxis(TimeAxis):
     def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[DiscreteTrace], Sequence[FloatArray]]:
         names = tuple(self._recording.columns)
         return self._backend.evaluator(tuple(formulas), self.period, names)
-
-    def _samples(self, steps: StepFunction) -> np.ndarray[Any, Any]:
-        if len(steps.changes) == self.end:  # it changes with every sample
-            return steps.values
-        return np.repeat(steps.values, np.diff(steps.changes, append=self.end))
 
     def cell(self, at: Any) -> int:
         """See :class:`TimeAxis`."""
@@ -88,3 +94,9 @@ class DiscreteTimeAxis(TimeAxis):
     def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
         """See :class:`TimeAxis`."""
         return True
+
+
+def _samples(steps: StepFunction) -> np.ndarray[Any, Any]:
+    if len(steps.changes) == steps.end:  # it changes with every sample
+        return steps.values
+    return np.repeat(steps.values, np.diff(steps.changes, append=steps.end))
