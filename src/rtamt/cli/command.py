@@ -180,7 +180,28 @@ def read_specifications(
         raise CommandError(f"{' '.join(f'--set {each}' for each in args.set)}: {error}") from error
 
 
-def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Specification:
+def read_library(args: argparse.Namespace, time: str, file: str) -> Specification | None:
+    """Read a file that only declares what others import, with a formula at its end; None for any other file."""
+    options, (folder, name) = _options(args, time, runs=False), os.path.split(os.path.abspath(file))
+    try:
+        parse(f'import "{name}"\ntrue', folder=folder, **options)
+        with open(file, encoding="utf-8-sig") as text:
+            spec = parse(f"{text.read()}\ntrue", folder=folder, **options)
+    except SpecificationError:
+        return None
+    document = spec.document
+    named = (
+        document.declarations,
+        document.definitions,
+        document.templates,
+        document.tables,
+        document.enumerations,
+    )
+    return spec if any(named) or document.groups else None
+
+
+def _options(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:
+    """Return the settings of specifications that the arguments choose."""
     domain = time_domain(time, args.period)
     check_backend(args.backend)
     try:
@@ -190,7 +211,7 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
         raise CommandError(f"{error}; on the command line: --backend python") from None
     if args.period is not None and domain.period is None:
         raise CommandError(f"{time} time has no sampling period: leave out --period, or --time {time}")
-    options: Settings = {
+    return {
         "period": args.period,
         "unit": args.unit,
         "backend": args.backend,
@@ -198,6 +219,10 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
         "semantics": args.semantics,
         "language": read_language(args.language),
     }
+
+
+def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Specification:
+    options = _options(args, time, runs=runs)
     if is_trace(spec):
         raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
     name = pack_named(spec)

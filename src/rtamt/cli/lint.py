@@ -12,6 +12,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     json_text,
+    read_library,
     read_specification,
     warn,
     warnings_of,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Check specification files without evaluating them. Report each error: what is wrong, where (line, column and a
 caret) and how to fix it. Warn about valid but probably unintended formulas, such as a sum of a speed and a
-distance.
+distance. A file without formulas is checked as one that others import.
 
 Exit code: 0 all files are valid, 2 some have errors; with --strict, 1 if there are only warnings.
 --json prints one object per line: {"file", "severity", "code", "message", "line", "column", "end_line",
@@ -118,7 +119,13 @@ def _as_json(
 def _check(file: str, args: argparse.Namespace) -> Specification:
     if not os.path.isfile(file):
         raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
-    spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time, runs=False)
+    try:
+        spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time, runs=False)
+    except CommandError:
+        library = read_library(args, args.time, file)
+        if library is None:
+            raise
+        return library
     try:
         _check_formula(spec, online=args.online)
     except StlError as error:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
+
+import rtamt
 
 
 def test_files_that_are_right(run, write):
@@ -145,3 +148,24 @@ def test_without_the_library_of_units_only_lint_notes_what_is_not_checked(run, w
         "is not installed: pip install 'rtamt[units]'",
     )
     assert run("check", "speed.stl", "log.csv").err == ""
+
+
+def test_a_file_that_others_import_needs_no_formula(run, write):
+    write("lib.stl", "input float v [m/s]\ninput float gap [m]\ndef near(x) = x < 3\nclose = v + gap > 3\n")
+    write("other.stl", 'import "lib.stl"\nconst float least = 3\n')
+    assert run("lint", "other.stl") == (0, "1 file has no errors or warnings\n", "")
+    answer = run("lint", "lib.stl", "--json")
+    assert answer.code == 2
+    assert (json.loads(answer.out)["code"], json.loads(answer.out)["line"]) == ("RT301", 4)
+    for text, message in (
+        ("x > 3 and", "expected an operand after 'and'"),
+        ("def f(x) = x +\n", "expected an operand after '+'"),
+        ("// nothing\n", "the text is empty"),
+    ):
+        write("wrong.stl", text)
+        assert f"rtamt: wrong.stl: {message}" in run("lint", "wrong.stl").err
+
+
+def test_the_files_of_the_package_have_no_findings(run):
+    files = sorted(map(str, Path(rtamt.__file__).parent.glob("library/**/*.stl")))
+    assert run("lint", "--strict", *files) == (0, f"{len(files)} files have no errors or warnings\n", "")

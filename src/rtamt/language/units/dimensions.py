@@ -15,7 +15,7 @@ product of a radius in m and a rate in rad/s is a speed in m/s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, product
 from math import inf, isclose, pi
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
-from rtamt.language.units.library import UnknownUnitError, is_none, resolved, unit_text
+from rtamt.language.units.library import UnknownUnitError, is_none, resolved, shortest_text, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -130,6 +130,7 @@ def joined(a: int, first: Quantity, b: int, second: Quantity, *, zeros: bool) ->
     one, other = resolve(first, second)
     if one.bases != other.bases:
         raise _different(a, first, b, second)
+    one, other = _in_radians(one, other), _in_radians(other, one)
     ones, others = _scales(first, one), _scales(second, other)
     if zeros and not difference and one.offset != other.offset and None not in (one.offset, other.offset):
         mine, its = f"'{{{a}}}' {first}", f"'{{{b}}}' {second}"
@@ -144,9 +145,17 @@ def joined(a: int, first: Quantity, b: int, second: Quantity, *, zeros: bool) ->
     raise _scaled(a, first, b, second, one, other)
 
 
+def _in_radians(cycles: Resolved, other: Resolved) -> Resolved:
+    """Return a frequency as an angular one, of 2 pi radians a cycle, beside a unit with an angle."""
+    count = cycles.units.get("hertz")
+    if not count or cycles.angle or not other.angle:
+        return cycles
+    return replace(cycles, scale=cycles.scale * (2 * pi) ** float(count), angle=other.angle)
+
+
 def _different(a: int, first: Quantity, b: int, second: Quantity) -> MisfitError:
     ratios = [(a, times(second, power(first, Fraction(-1)))), (b, times(first, power(second, Fraction(-1))))]
-    texts = [(k, unit_text(ratio.powers)) for k, ratio in ratios if isinstance(ratio, Quantity)]
+    texts = [(k, shortest_text(ratio.powers)) for k, ratio in ratios if isinstance(ratio, Quantity)]
     texts.sort(key=lambda each: each[1].startswith("1/"))
     more = "".join(f", or multiply '{{{k}}}' by a constant in {text}" for k, text in texts[:1])
     one, other = f"'{{{a}}}' {first}", f"'{{{b}}}' {second}"

@@ -142,7 +142,22 @@ def unit_text(powers: Powers) -> str:
     """
     if len(powers) == 1 and powers[0][1] == 1:
         return powers[0][0]
-    exponents = _exponents(product(powers))
+    return _written(_exponents(product(powers)))
+
+
+def shortest_text(powers: Powers) -> str:
+    """Return a product of units in base units if that is shorter and exact, else as :func:`unit_text` does.
+
+    >>> shortest_text((("J", Fraction(1)), ("s", Fraction(2)), ("N*m", Fraction(-1))))
+    's^2'
+    """
+    unit, known = product(powers), resolved(powers)
+    bases = dict(known.bases) | ({"radian": known.angle} if known.angle else {})
+    return _written(bases) if known.scale == 1 and len(bases) < len(_exponents(unit)) else unit_text(powers)
+
+
+def _written(exponents: Mapping[str, Fraction]) -> str:
+    """Return a product of units of the library in symbols."""
     above, below = (
         [
             registry().get_symbol(name) + (f"^{abs(exponent)}" if abs(exponent) != 1 else "")

@@ -21,6 +21,8 @@ input float celsius [degC]
 input float kelvin [K]
 input float ms [ms]
 input float s [s]
+input float torque [N*m]
+input float joule [J]
 input float share [%]
 input float ratio [1]
 input float u
@@ -52,6 +54,7 @@ FITTING = [
     "ms / 1000 < s and 0.001 * ms < s and ratio * 100 < share",
     "deg * 0.0174533 < rad and 180 / 3.14159 * rad < deg",
     # angles
+    "hz * s > 3 and 1 / s < hz and hz * 6.28319 < omega and omega / 6.28319 < hz and hz * gap < v",
     "sin(rad) > 0 and cos(radians(deg)) > 0 and tan(v / v) > 0 and asin(gap / limit) < rad and atan2(gap, gap) < rad",
     "degrees(atan(ratio)) < deg and radians(deg / s) < omega and degrees(omega) > deg / s",
     "omega * gap < v",
@@ -108,6 +111,8 @@ MISFITS = [
     ("mod(rad, 360) > 0", "RT302", "rad"),
     ("wrap(deg, -rad, rad) > 0", "RT302", "wrap(deg, -rad, rad)"),
     ("rpm < hz", "RT302", "rpm < hz"),
+    ("hz < omega", "RT302", "hz < omega"),
+    ("omega > 2 * hz", "RT302", "omega > 2 * hz"),
     ("celsius < kelvin", "RT302", "celsius < kelvin"),
     ("sqrt(gap) < gap", "RT301", "sqrt(gap) < gap"),
     ("pow(v, 2) < gap", "RT301", "pow(v, 2) < gap"),
@@ -152,7 +157,14 @@ MESSAGES = {
     "v < kmh": f"'v' is in m/s and 'kmh' is in km/h, two units of one quantity; {BOTH}, or multiply 'v' by 3.6",
     "kmh < v": f"'kmh' is in km/h and 'v' is in m/s, two units of one quantity; {BOTH}, or divide 'kmh' by 3.6",
     "rad < deg": f"'rad' is in rad and 'deg' is in deg, two units of one quantity; {BOTH}, or write radians(deg)",
-    "rpm < hz": f"'rpm' is in rpm and 'hz' is in Hz, two units of one quantity; {BOTH}",
+    "rpm < hz": f"'rpm' is in rpm and 'hz' is in Hz, two units of one quantity; {BOTH}, or divide 'rpm' by 60",
+    "hz < omega": (
+        f"'hz' is in Hz and 'omega' is in rad/s, two units of one quantity; {BOTH}, or multiply 'hz' by 6.28319"
+    ),
+    "torque / joule / s > s": (
+        "'torque / joule / s' is in N*m/J/s and 's' is in s, which are different quantities; correct a declaration, or "
+        "multiply 'torque / joule / s' by a constant in s^2"
+    ),
     "kelvin < celsius": f"'kelvin' is in K and 'celsius' is in degC, which count from different zeros; {BOTH}",
     "sin(deg) > 0": "'deg' is in deg, and this takes an angle in radians; write radians(deg)",
     "exp(share) > 0": "'share' is in %, and this takes a number without unit; divide it by 100",
