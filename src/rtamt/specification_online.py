@@ -224,10 +224,12 @@ class OnlineSpecification(QuantifiedText):
     ) -> OnlineMonitor:
         """Return a monitor of quantifiers over members that come and go."""
         domain = self._domain_for(time, period, tolerance, resolution).online
-        make = domain.part("members")
-        unfit = [f"verdict='{verdict}'"] if verdict != DELAYED else [f"{name}=" for name in settings]
+        early = verdict != DELAYED
+        make = domain.part(f"members_{verdict}" if early else "members")
+        unfit = [f"{name}=" for name in settings if name != "at"]
+        unfit += [f"verdict='{verdict}' in {domain.name} time"] if early and make is None else []
         unfit += ["time_unit="] if time_unit is not None and not domain.continuous else []
-        unfit += [f"time='{domain.name}'"] if make is None else []
+        unfit += [f"time='{domain.name}'"] if make is None and not early else []
         for what in unfit:
             raise UsageError(
                 f"a monitor of quantifiers has no {what}; name the members, which must be present throughout: "
@@ -252,6 +254,7 @@ class OnlineSpecification(QuantifiedText):
             lambda formula: apply_semantics(formula, chosen, roles),
             self.text,
             continuous=domain.continuous,
+            late=not early,
         )
         found = [Watched(self.text, self.formula, self.text)]
         found += [replace(self._watched(each, "standard")) for each in watch]
@@ -274,8 +277,11 @@ class OnlineSpecification(QuantifiedText):
                 semantics=semantics,
                 watch=watch,
                 time_unit=time_unit,
+                verdict=verdict,
+                **settings,
             ),
             types=self.types,
+            **settings,
             **({} if time_unit is None else {"unit": time_unit}),
         )
         monitor.bind(self.binding)

@@ -212,3 +212,47 @@ def test_a_dense_stream_of_members_gives_what_the_whole_recording_gives(backend,
 def changes_of(points):
     """Return the points at which a step function changes."""
     return [each for k, each in enumerate(points) if k == 0 or each[1] != points[k - 1][1]]
+
+
+def bounds_law(spec, columns, expected):
+    """Check the bounds of every instant after every sample, and at the end, against those of the whole trace."""
+    n, horizon = len(columns["y"]), int(spec.horizon)
+    monitor = spec.monitor(verdict="interval")
+    bounds: dict[int, tuple[float, float]] = {}
+    for t in range(n):
+        monitor.update(float(t), **{name: xs[t] for name, xs in columns.items() if xs[t] is not None})
+        for change in monitor.changes():
+            for place in range(int(change.begin), int(change.end) + 1):
+                now, before = change.interval, bounds.get(place, (-np.inf, np.inf))
+                assert before[0] <= now.lower <= now.upper <= before[1]
+                bounds[place] = now.lower, now.upper
+        for place in range(n - horizon):  # what the end of the trace does not cut
+            low, high = bounds.get(place, (-np.inf, np.inf))
+            assert low <= expected[place] <= high
+            assert place + horizon > t or low == high == expected[place]
+    for change in monitor.finish():
+        for place in range(int(change.begin), int(change.end) + 1):
+            bounds[place] = change.interval.lower, change.interval.upper
+    for place in range(n):
+        assert bounds[place] == (expected[place], expected[place])
+    start = spec.monitor(verdict="interval", at="start")
+    for t in range(n):
+        start.update(float(t), **{name: xs[t] for name, xs in columns.items() if xs[t] is not None})
+    start.finish()
+    assert start.interval() == rtamt.Interval(expected[0], expected[0])
+
+
+@given(data=st.data())
+def test_bounds_of_members_contain_the_robustness_and_meet_it_at_the_horizon(data):
+    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
+    body = quantify(word, data.draw(formulas(2)), data.draw(st.sampled_from((None, other))))
+    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"))), body), STL["and"](Var("y"), body))
+    n = data.draw(st.integers(1, 7))
+    columns = {"y": data.draw(traces(("y",), min_size=n, max_size=n))["y"].tolist(), **data.draw(scenes(n))}
+    spec = rtamt.parse('group cars = "car_*"; true').with_formula(formula)
+    expected = values_of(formula, columns)
+    if expected is not None:
+        try:
+            bounds_law(spec, columns, expected)
+        except EvaluationError:
+            return

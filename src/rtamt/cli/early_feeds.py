@@ -18,6 +18,7 @@ from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.signals.outcomes import Interval, VerdictRun
 from rtamt.verdicts.at_start import SAFE
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
+from rtamt.verdicts.member_bounds import MemberIntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
     from rtamt.verdicts.interval import Change, IntervalMonitor
+
+_DISCRETE = DiscreteEarlyMonitor, MemberIntervalMonitor
 
 
 class EagerFeed:
@@ -137,7 +140,7 @@ class StartFeed:
 class IntervalFeed:
     """Prints the bounds of every instant whenever they change; the live view is that of :class:`StartFeed`."""
 
-    def __init__(self, monitor: IntervalMonitor, live: Live | None = None) -> None:
+    def __init__(self, monitor: IntervalMonitor | MemberIntervalMonitor, live: Live | None = None) -> None:
         self.monitor = monitor
         self._live = live
         #: What is known at the samples that are drawn, in the order in which they came.
@@ -176,7 +179,7 @@ class IntervalFeed:
             self._known[now] = Interval(-inf, inf)
             if len(self._known) > live.MOST:
                 del self._known[next(iter(self._known))]
-        discrete = isinstance(self.monitor, DiscreteEarlyMonitor)
+        discrete = isinstance(self.monitor, _DISCRETE)
         for change in changes:
             for time in self._known:
                 if change.begin <= time < change.end or (discrete and time == change.end):
@@ -210,11 +213,11 @@ class CausationFeed:
             say(f'{{{_caused(caused)}, "final": true}}', flush=True)
 
 
-def _time(monitor: EarlyMonitor, stamp: Any) -> Any:
+def _time(monitor: EarlyMonitor | MemberIntervalMonitor, stamp: Any) -> Any:
     """Return the time of a sample; without timestamps, samples are one period apart."""
     if stamp is not None:
         return stamp
-    if not isinstance(monitor, DiscreteEarlyMonitor):
+    if not isinstance(monitor, _DISCRETE):
         raise TraceError("in dense time every sample needs its time")
     return monitor.samples * float(monitor.period)
 

@@ -37,7 +37,6 @@ from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.causation import CausationMonitor
-from rtamt.verdicts.interval import IntervalMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:
@@ -208,7 +207,10 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
 def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
     """Raise :class:`CommandError` for what no monitor of members that come and go offers."""
     rule = spec.domain.sampling(spec.sampling)
-    unfit = [f"--verdict {args.verdict}"] if args.verdict not in {None, DELAYED} else []
+    early = args.verdict not in {None, DELAYED}
+    unfit = (
+        [f"--verdict {args.verdict}"] if early and spec.domain.part(f"members_{args.verdict}") is None else []
+    )
     unfit += [f"'{rule}'"] if rule is not None and rule.hold else []
     for what in unfit:
         raise CommandError(
@@ -222,8 +224,9 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
     verdict = args.verdict
     if args.explain and verdict != "eager":
         raise CommandError("--explain explains verdicts before the horizon: use it with --verdict eager")
-    unbounded = not spec.groups and unbounded_future(spec.formula) is not None
-    at_start = verdict in {None, "interval"} and unbounded
+    has_bounds = not spec.groups or spec.domain.part("members_interval") is not None
+    unbounded = unbounded_future(spec.formula) is not None
+    at_start = verdict in {None, "interval"} and unbounded and has_bounds
     if not at_start and verdict in {None, DELAYED}:
         return None
     if at_start:
@@ -233,14 +236,12 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
             f"--live draws the robustness; leave it out, or use --verdict {DELAYED} or --verdict interval"
         )
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
-    monitor = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
+    monitor: Any = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
     if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)
-    return (
-        IntervalFeed(monitor, live)
-        if isinstance(monitor, IntervalMonitor)
-        else EagerFeed(monitor, spec.types, explain=args.explain)
-    )
+    if verdict == "interval":
+        return IntervalFeed(monitor, live)
+    return EagerFeed(monitor, spec.types, explain=args.explain)
 
 
 def _watched(

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.engine.online import OnlineMonitor, Watched
-    from rtamt.language.formula import Formula
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.members import Fields
 
@@ -34,7 +33,7 @@ class Plan:
     """What is fixed of a quantifier: its formula over one member, compiled once, and how members are combined."""
 
     def __init__(
-        self, of: Quantified, step: Fraction, template: Callable[[Formula], OnlineMonitor], fields: Fields
+        self, of: Quantified, step: Fraction, template: Callable[[Quantified], OnlineMonitor], fields: Fields
     ) -> None:
         self.variable, self.group = of.binder.variable, of.binder.group.name
         self.apart = of.binder.apart
@@ -47,7 +46,7 @@ class Plan:
         self.fields = {name: f"{self.variable}.{name}" for name in names}
         self.fillers = {name: members.filler(group.values(name)) for name in names}
         self.channel = channel_of(self.variable)
-        self.template: Any = template(of.formula)
+        self.template: Any = template(of)
         self.inside = [Plan(each, step, template, fields) for each in of.inside]
 
     def differs(self, bound: Mapping[str, str], member: str) -> bool:

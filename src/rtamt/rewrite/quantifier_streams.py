@@ -61,10 +61,13 @@ class Splitting:
         text: str | None = None,
         *,
         continuous: bool = False,
+        late: bool = True,
     ) -> None:
         self.period = period
         #: Whether signals go on after the last sample, so that columns have values there.
         self.continuous = continuous
+        #: Whether columns have each value when it is known, one lag late; else its bounds from the beginning.
+        self.late = late
         self.applied = applied
         self.text = text
         #: The identities of what conditions read as formulas.
@@ -80,9 +83,8 @@ class Splitting:
         self._conditions = read_as_conditions(*formulas)
         found = tuple(map(self._scope.resolved, formulas))
         quantified = self._scope.found
-        if not self.continuous and any(
-            each.lag for each in quantified
-        ):  # columns are read after the end of the stream
+        goes_on = self.late and not self.continuous  # after the end of the stream, columns are read
+        if goes_on and any(each.lag for each in quantified):
             running = PRESENT(Var(RUNNING, None, BOOLEAN))
             scope = _StreamScope(Members({}), {}, running, self, quantified)
             found = tuple(map(scope.resolved, formulas))
@@ -135,7 +137,7 @@ class _StreamScope(Scope):
             known = Quantified(binder, node.op.name, given, name, lag, keep, tuple(inner.found))
             self.found.append(known)
         column = Var(known.column, node.span)
-        if not known.lag:
+        if not known.lag or not self.splitting.late:
             return column
         interval = Interval(known.lag, known.lag, "s", "s", implied=True)
         return Apply(STL["ahead"], (column,), interval, node.span)

@@ -68,6 +68,7 @@ class Discrete(TimeDomain):
         "replay": "rtamt.plot.band:replay_samples",
         "ros_groups": "rtamt.ros.groups:sampled",
         "members": "rtamt.engine.discrete.quantifiers:MemberMonitor",
+        "members_interval": "rtamt.verdicts.member_bounds:MemberIntervalMonitor",
     }
 
     period: Fraction | None

@@ -19,6 +19,7 @@ dense_early           what those of dense time share, and the monitor of such ve
 interval              bounds of the robustness: late samples and corrections
 discrete_interval     the monitor of bounds in discrete time
 dense_interval        the monitor of bounds in dense time
+member_bounds         bounds in discrete time of quantifiers over members that come and go
 causation             what each sample alone causes: what its monitors share
 discrete_causation    the monitor of causation in discrete time
 dense_causation       the monitor of causation in dense time

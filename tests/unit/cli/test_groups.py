@@ -177,7 +177,7 @@ def test_a_header_without_members_or_without_a_field_is_one_sentence(run, header
     ("options", "spec", "what"),
     [
         (["--verdict", "eager"], "", "--verdict eager"),
-        (["--verdict", "interval"], "", "--verdict interval"),
+        (["--verdict", "interval", "--time", "dense"], "", "--verdict interval"),
         (["--verdict", "causation"], "", "--verdict causation"),
         ([], "sample 1s hold\n", "'sample 1s hold'"),
     ],
@@ -208,3 +208,24 @@ def test_in_dense_time_null_and_an_empty_cell_end_the_presence_of_a_member(run):
         assert found[0] == {"time": 0.0, "robustness": 9.0}
         assert [each["robustness"] for each in found if each["time"] == 1.0] == [25.0]
         assert found[-1] == {"time": ends, "robustness": 25.0}
+
+
+def test_an_unbounded_requirement_over_members_is_monitored_at_the_start(run):
+    lines = ['{"ego": 0, "car_1.x": 30}', '{"ego": 12, "car_7.x": 14}', '{"ego": 24}']
+    formula = 'group cars = "car_*"; always forall v in cars: v.x - ego > 5'
+    found = [json.loads(line) for line in run("monitor", formula, stdin="\n".join(lines)).out.splitlines()]
+    assert [each["status"] for each in found] == ["open", "violated since 1.0 s", "violated since 1.0 s"]
+    assert found[-1] == {"lower": -3.0, "upper": -3.0, "status": "violated since 1.0 s", "final": True}
+
+
+def test_bounds_of_every_instant_over_members(run):
+    lines = ['{"car_1.x": 30}', '{"car_7.x": 14}', "{}"]
+    formula = 'group cars = "car_*"; always[0:1] forall v in cars: v.x > 5'
+    answer = run("monitor", formula, "--verdict", "interval", stdin="\n".join(lines))
+    found = [json.loads(line) for line in answer.out.splitlines()]
+    assert found[0] == {"time": 0.0, "lower": "-inf", "upper": 25.0, "final": False}
+    assert {each["time"]: each["lower"] for each in found if each["final"]} == {
+        0.0: 9.0,
+        1.0: 9.0,
+        2.0: "inf",
+    }

@@ -280,9 +280,12 @@ def test_what_a_monitor_of_quantifiers_cannot_do_is_one_sentence():
     with pytest.raises(UsageError) as error:
         quantified.monitor(verdict="eager")
     assert str(error.value) == (
-        "a monitor of quantifiers has no verdict='eager'; name the members, which must be present throughout: "
-        "spec.over({'cars': [...]}).monitor(...)"
+        "a monitor of quantifiers has no verdict='eager' in discrete time; name the members, which must be present "
+        "throughout: spec.over({'cars': [...]}).monitor(...)"
     )
+    for settings in ({"time": "dense"}, {"lateness": 1}, {"ranges": {"car_1.x": (0, 1)}}):
+        with pytest.raises(UsageError, match="a monitor of quantifiers has no"):
+            quantified.monitor(verdict="interval", **settings)
     with pytest.raises(SpecificationError, match="without an upper bound"):
         spec("forall v in cars: eventually(v.x > 0)").monitor()
     eager = quantified.over({"cars": ["car_1"]}).monitor(verdict="eager")

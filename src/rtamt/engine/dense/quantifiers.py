@@ -64,8 +64,8 @@ class DenseMemberMonitor(QuantifierMonitor):
         types: Any = None,
         unit: str | None = None,
     ) -> None:
-        def template(of: Formula) -> DenseMonitor:
-            return Executor(of, domain, text=text, backend=backend)
+        def template(of: Quantified) -> DenseMonitor:
+            return Executor(of.formula, domain, text=text, backend=backend)
 
         self._tick = domain.resolution
         self._unit = None if unit is None else check_unit(unit)

@@ -5,6 +5,7 @@ The outer formula is monitored as any other: what the members of a quantifier gi
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -63,7 +64,67 @@ class _NewValues:
         return found
 
 
-class MemberMonitor(QuantifierMonitor):
+class SampledMembers(QuantifierMonitor):
+    """A monitor of quantifiers in discrete time: what an update gives."""
+
+    @abstractmethod
+    def _next_time(self) -> float:
+        """Return the time of the next sample if it has none."""
+
+    def _read(self, values: Mapping[str, Any], time: Any) -> tuple[Sample, dict[str, dict[str, Sample]]]:
+        """Return the numbers of an update, and the members that are present."""
+        own: dict[str, Any] = {}
+        given: dict[str, dict[str, Any]] = {}
+        heads = {name.split(".")[0] for name in self.input_names}
+        for name, value in values.items():
+            member = self._note_member(name, value, given)
+            if name in self.input_names or name in heads:
+                own[name] = value  # of a member, too, if the pattern matches the name
+            elif not member and name not in self._declared:
+                patterns = [group.pattern for group, _ in self._fields.values()]
+                raise unknown_variable(name, [*self.input_names, *patterns])
+        for name in self.input_names:
+            head, *path = name.split(".")
+            if path and name not in own and head in own:
+                own[name] = arrays.field_of(own[head], head, path, self.samples)
+        own = {name: value for name, value in own.items() if name in self.input_names}
+        seconds = arrays.number_of(time)
+        stamp = self._next_time() if seconds is None else seconds
+        numbers = read_values(own, self.input_names, self.samples, stamp, self._types)
+        present = {}
+        for name, (group, fields) in self._fields.items():
+            present[name] = {
+                member: self._sample(member, sample, group, fields, stamp)
+                for member, sample in given.items()
+                if group.matches(member) and all(sample.get(field, 0.0) is not None for field in fields)
+            }
+        return numbers, present
+
+    def _sample(
+        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
+    ) -> Sample:
+        """Return the fields of a member as numbers."""
+        for field in fields:
+            if field not in sample:
+                raise TraceError(
+                    f"'{member}' has no '{field}' at sample {self.samples}; give '{member}.{field}', or leave "
+                    f"out all fields of a member that is absent",
+                    variable=f"{member}.{field}",
+                    index=self.samples,
+                )
+        names = {field: f"{member}.{field}" for field in fields}
+        types = {names[field]: group.values(field) for field in fields if group.values(field) is not None}
+        numbers = read_values(
+            {name: sample[field] for field, name in names.items()},
+            tuple(names.values()),
+            self.samples,
+            stamp,
+            types,
+        )
+        return {field: numbers[name] for field, name in names.items()}
+
+
+class MemberMonitor(SampledMembers):
     """Monitors a formula with quantifiers on a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. :meth:`update` takes the fields of each member by name,
@@ -94,8 +155,8 @@ class MemberMonitor(QuantifierMonitor):
         domain = domain.online
         assert domain.period is not None
 
-        def template(of: Formula) -> Monitor:
-            return Executor(of, domain, text=text, backend=backend)
+        def template(of: Quantified) -> Monitor:
+            return Executor(of.formula, domain, text=text, backend=backend)
 
         plans = [Plan(each, domain.period, template, fields) for each in quantified]
         self._late = max((plan.lag for plan in plans), default=0)
@@ -191,58 +252,6 @@ class MemberMonitor(QuantifierMonitor):
         self._finished = True
         self._news = known.signals(last)
         return self._news[None]
-
-    def _read(self, values: Mapping[str, Any], time: Any) -> tuple[Sample, dict[str, dict[str, Sample]]]:
-        """Return the numbers of an update, and the members that are present."""
-        own: dict[str, Any] = {}
-        given: dict[str, dict[str, Any]] = {}
-        heads = {name.split(".")[0] for name in self.input_names}
-        for name, value in values.items():
-            member = self._note_member(name, value, given)
-            if name in self.input_names or name in heads:
-                own[name] = value  # of a member, too, if the pattern matches the name
-            elif not member and name not in self._declared:
-                patterns = [group.pattern for group, _ in self._fields.values()]
-                raise unknown_variable(name, [*self.input_names, *patterns])
-        for name in self.input_names:
-            head, *path = name.split(".")
-            if path and name not in own and head in own:
-                own[name] = arrays.field_of(own[head], head, path, self.samples)
-        own = {name: value for name, value in own.items() if name in self.input_names}
-        seconds = arrays.number_of(time)
-        stamp = self._next_time() if seconds is None else seconds
-        numbers = read_values(own, self.input_names, self.samples, stamp, self._types)
-        present = {}
-        for name, (group, fields) in self._fields.items():
-            present[name] = {
-                member: self._sample(member, sample, group, fields, stamp)
-                for member, sample in given.items()
-                if group.matches(member) and all(sample.get(field, 0.0) is not None for field in fields)
-            }
-        return numbers, present
-
-    def _sample(
-        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
-    ) -> Sample:
-        """Return the fields of a member as numbers."""
-        for field in fields:
-            if field not in sample:
-                raise TraceError(
-                    f"'{member}' has no '{field}' at sample {self.samples}; give '{member}.{field}', or leave "
-                    f"out all fields of a member that is absent",
-                    variable=f"{member}.{field}",
-                    index=self.samples,
-                )
-        names = {field: f"{member}.{field}" for field in fields}
-        types = {names[field]: group.values(field) for field in fields if group.values(field) is not None}
-        numbers = read_values(
-            {name: sample[field] for field, name in names.items()},
-            tuple(names.values()),
-            self.samples,
-            stamp,
-            types,
-        )
-        return {field: numbers[name] for field, name in names.items()}
 
     def _advance(
         self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]], running: float = 1.0
