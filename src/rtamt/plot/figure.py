@@ -352,10 +352,15 @@ class _Drawing:
         """Return stretches wide enough to be visible, joined where the gap between them is not."""
         pixel = (self._limits[1] - self._limits[0]) / 1000
         low, high = self._limits
+        starts, ends = np.array(sorted(stretches), dtype=float).reshape(-1, 2).T
+        seen = (starts <= high) & (ends >= low)
+        starts, ends = np.maximum(starts[seen], low), np.minimum(ends[seen], high)
+        # There may be very many, most of them closer to their neighbours than a pixel.
+        ends = np.maximum.accumulate(ends)
+        apart = starts[1:] - ends[:-1] >= pixel
+        first, last = (np.r_[each][: len(starts)] for each in ((True, apart), (apart, True)))
         found: list[tuple[float, float]] = []
-        for start, end in sorted(
-            (max(start, low), min(end, high)) for start, end in stretches if start <= high and end >= low
-        ):
+        for start, end in zip(starts[first].tolist(), ends[last].tolist(), strict=True):
             if found and start - found[-1][1] < pixel:
                 found[-1] = (found[-1][0], max(end, found[-1][1]))
             else:

@@ -108,8 +108,8 @@ def ranges(line: Line, wanted: NDArray[np.bool_], *, dense: bool, end: float) ->
     lasts = np.flatnonzero(np.diff(padded) == -1) - 1
     if dense:
         stops = np.r_[line.positions[1:], max(end, line.positions[-1])]
-        return tuple((float(line.positions[i]), float(stops[j])) for i, j in zip(firsts, lasts, strict=True))
+        return tuple(zip(line.positions[firsts].tolist(), stops[lasts].tolist(), strict=True))
     between = (line.positions[1:] + line.positions[:-1]) / 2
     half = (line.positions[-1] - line.positions[0]) / (2 * (len(line.positions) - 1)) if len(between) else 0.5
     edges = np.r_[line.positions[0] - half, between, line.positions[-1] + half]
-    return tuple((float(edges[i]), float(edges[j + 1])) for i, j in zip(firsts, lasts, strict=True))
+    return tuple(zip(edges[firsts].tolist(), edges[lasts + 1].tolist(), strict=True))
