@@ -2,52 +2,29 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
+from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import STL
-from rtamt.language.quantifiers import Binder, Field, FieldOf, Group, quantified
-from rtamt.rewrite.truth import rebuilt
+from rtamt.testing.members import HEAD, dense_scenes, quantified_formulas, quantify, scenes
 from rtamt.testing.strategies import dense_chunkings, dense_traces, formulas, traces
 
-CARS = Group("cars", "car_*", (Field("x"),))
 COMBINED = {"forall": np.min, "exists": np.max, "count": lambda truths, axis: np.sum(truths > 0, axis=axis)}
 SUMS = ("sum", "mean", "integral")
 EMPTY = {"forall": np.inf, "exists": -np.inf, "count": 0.0}
 
 
-def quantify(word: str, body: Formula, other: str | None = None, *, step: bool = True) -> Formula:
-    """Return a quantifier over a formula whose variables x become fields v.x.
-
-    ``other``: a quantifier inside it, over other members, for which y is w.x, too; ``step``: one sample ahead.
-    """
-
-    def over(variable: str, name: str) -> Formula:
-        def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
-            if isinstance(node, Var) and node.name == name:
-                return FieldOf(f"{variable}.x", None, None, variable, "x", CARS)
-            return rebuilt(node, args) if isinstance(node, Apply) else node
-
-        return fold(body, step)
-
-    if other is None:
-        return quantified(word, Binder("v", CARS))(over("v", "x"))
-    body = over("w", "y")
-    inner = quantified(other, Binder("w", CARS, (("v", "w"),)))(body)
-    body = STL["or"](inner, Const(-1.0))
-    body = STL["next"](body) if step else body
-    return quantified(word, Binder("v", CARS))(over("v", "x"))
-
-
-def values_of(formula: Formula, data: dict[str, object]) -> np.ndarray | None:
+def values_of(formula: Formula, data: dict[str, object], backend: str = "cpp") -> np.ndarray | None:
     """Return the robustness at each sample, None where an operation has no value."""
     try:
-        spec = rtamt.parse('group cars = "car_*"; true').with_formula(formula)
+        spec = rtamt.parse('group cars = "car_*"; true', backend=backend).with_formula(formula)
         return spec.evaluate(data).signal.values
     except EvaluationError:
         return None
@@ -83,35 +60,9 @@ def test_a_quantifier_means_each_member_on_its_own_trace(word, data):
     np.testing.assert_array_equal(found, COMBINED[word](each, axis=0))
 
 
-def inside(outer: Formula, quantifier: Formula) -> Formula:
-    """Return a formula with a quantifier in place of its variable q."""
-
-    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
-        if isinstance(node, Var) and node.name == "q":
-            return quantifier
-        return rebuilt(node, args) if isinstance(node, Apply) else node
-
-    return fold(outer, step)
-
-
-@st.composite
-def scenes(draw, n: int) -> dict[str, list[float | None]]:
-    """Draw the x of some cars, each of which appears and disappears."""
-    trace = draw(traces(("a", "b", "c"), min_size=n, max_size=n))
-    scene = {}
-    for name, values in trace.items():
-        present = draw(st.lists(st.booleans(), min_size=n, max_size=n))
-        scene[f"car_{name}.x"] = [
-            x if here else None for x, here in zip(values.tolist(), present, strict=True)
-        ]
-    return scene
-
-
 @given(data=st.data())
 def test_a_stream_of_members_gives_what_the_whole_recording_gives(data):
-    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
-    body = quantify(word, data.draw(formulas(3)), data.draw(st.sampled_from((None, other))))
-    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"))), body), STL["and"](Var("y"), body))
+    formula = data.draw(quantified_formulas())
     n = data.draw(st.integers(1, 9))
     y = data.draw(traces(("y",), min_size=n, max_size=n))["y"].tolist()
     columns = {"y": y, **data.draw(scenes(n))}
@@ -143,20 +94,6 @@ def test_a_stream_of_members_gives_what_the_whole_recording_gives(data):
 
 
 @st.composite
-def dense_scenes(draw, until: int) -> dict[str, list[tuple[int, float | None]]]:
-    """Draw the x of some cars in ticks, None where one disappears."""
-    trace = draw(dense_traces(("a", "b", "c"), max_size=6))
-    scene = {}
-    for name, (ticks, values) in trace.items():
-        shown = draw(st.lists(st.booleans(), min_size=len(ticks), max_size=len(ticks)))
-        samples = [
-            (int(t), float(x) if here else None) for t, x, here in zip(ticks, values, shown, strict=True)
-        ]
-        scene[f"car_{name}.x"] = [each for each in samples if each[0] <= until]
-    return {name: samples for name, samples in scene.items() if any(x is not None for _, x in samples)}
-
-
-@st.composite
 def arrivals(draw, own, cars):
     """Draw a split of ordinary signals and cars into updates, in which no sample of a car comes too late."""
     updates = [dict(each) for each in draw(dense_chunkings(own))]
@@ -178,13 +115,7 @@ def arrivals(draw, own, cars):
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @given(data=st.data())
 def test_a_dense_stream_of_members_gives_what_the_whole_recording_gives(backend, data):
-    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
-    timed = {"discrete": False, "unbounded_future": False}
-    body = quantify(
-        word, data.draw(formulas(3, **timed)), data.draw(st.sampled_from((None, other))), step=False
-    )
-    both = STL["and"](STL["and"](Var("y"), Var("z")), body)
-    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"), **timed)), body), both)
+    formula = STL["and"](data.draw(quantified_formulas(discrete=False)), STL["le"](Var("z"), Const(9.0)))
     own = data.draw(dense_traces(("y", "z"), max_size=6))
     cars = data.draw(dense_scenes(int(min(ticks[-1] for ticks, _ in own.values()))))
     if not cars:
@@ -244,9 +175,7 @@ def bounds_law(spec, columns, expected):
 
 @given(data=st.data())
 def test_bounds_of_members_contain_the_robustness_and_meet_it_at_the_horizon(data):
-    word, other = data.draw(st.tuples(*[st.sampled_from(sorted(COMBINED))] * 2))
-    body = quantify(word, data.draw(formulas(2)), data.draw(st.sampled_from((None, other))))
-    formula = STL["or"](inside(data.draw(formulas(2, ("q", "y"))), body), STL["and"](Var("y"), body))
+    formula = data.draw(quantified_formulas(2))
     n = data.draw(st.integers(1, 7))
     columns = {"y": data.draw(traces(("y",), min_size=n, max_size=n))["y"].tolist(), **data.draw(scenes(n))}
     spec = rtamt.parse('group cars = "car_*"; true').with_formula(formula)
@@ -256,3 +185,41 @@ def test_bounds_of_members_contain_the_robustness_and_meet_it_at_the_horizon(dat
             bounds_law(spec, columns, expected)
         except EvaluationError:
             return
+
+
+@given(quantified_formulas(unbounded_future=True))
+def test_a_quantified_formula_prints_and_comes_back_from_a_pickle(formula):
+    again = rtamt.parse(HEAD + str(formula)).formula
+    assert again == formula, str(formula)
+    assert pickle.loads(pickle.dumps(formula)) == formula  # noqa: S301 - our own bytes
+    assert formula.latex().count("{") == formula.latex().count("}")
+
+
+@given(data=st.data())
+@settings(max_examples=40)
+def test_back_ends_agree_on_members_and_their_monitors_come_back_from_pickles(data):
+    formula = data.draw(quantified_formulas(2))
+    n = data.draw(st.integers(1, 6))
+    columns = {"y": data.draw(traces(("y",), min_size=n, max_size=n))["y"].tolist(), **data.draw(scenes(n))}
+    found = []
+    for backend in ("cpp", "python"):
+        expected = values_of(formula, columns, backend)
+        found.append(expected)
+        if expected is None:
+            continue
+        monitor = rtamt.parse(HEAD + "true", backend=backend).with_formula(formula).monitor()
+        values: list[float] = []
+        try:
+            for t in range(n):
+                if t == n // 2:
+                    monitor = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own bytes
+                known = monitor.update(
+                    t, **{name: xs[t] for name, xs in columns.items() if xs[t] is not None}
+                )
+                values += [] if known is None else [known]
+            values += monitor.finish().values.tolist()
+        except EvaluationError:
+            continue
+        np.testing.assert_array_equal(values, expected)
+    if all(each is not None for each in found):
+        np.testing.assert_array_equal(*found)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Sort, Tense
+from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Bounds
 from rtamt.language.unwritten import COLUMN, PRESENT
 from rtamt.language.value_types import BOOLEAN
@@ -70,17 +71,18 @@ class Splitting:
         self.late = late
         self.applied = applied
         self.text = text
-        #: The identities of what conditions read as formulas.
-        self._conditions: set[int] = set()
+        #: The quantifiers that conditions read.
+        self._conditions: set[Formula] = set()
         self._scope = _StreamScope(Members({}), splitting=self)
 
     def reads_truth(self, quantifier: Formula) -> bool:
         """Return whether some condition reads whether a quantifier holds."""
-        return id(quantifier) in self._conditions
+        return quantifier in self._conditions
 
     def outer(self, formulas: tuple[Formula, ...]) -> tuple[tuple[Formula, ...], tuple[Quantified, ...]]:
         """Return formulas over columns and their quantifiers, none of which is inside another one."""
-        self._conditions = read_as_conditions(*formulas)
+        places = read_as_conditions(*formulas)
+        self._conditions = {each for each in quantifiers(*formulas) if id(each) in places}
         found = tuple(map(self._scope.resolved, formulas))
         quantified = self._scope.found
         goes_on = self.late and not self.continuous  # after the end of the stream, columns are read

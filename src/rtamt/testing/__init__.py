@@ -13,6 +13,7 @@ laws        ``check_operator``, and the laws of discrete time
 dense_laws  the laws of dense time
 case        the operator under test, and the report of a broken law
 strategies  random formulas, traces and chunkings
+members     random formulas with quantifiers, and scenes of members that appear and disappear
 ==========  =======================================================
 """
 

@@ -13,6 +13,8 @@ import pytest
 import rtamt
 from rtamt.compiler import lower
 from rtamt.errors import EvaluationError, SpecificationError, TraceError, UsageError
+from rtamt.language.formula import Const
+from rtamt.language.operators import STL
 
 inf = float("inf")
 CARS = 'group cars = "car_*"; '
@@ -169,6 +171,16 @@ def test_copies_and_pickles_go_on_on_their_own(backend):
     assert monitor.update(1, ego=9.0, **{"car_1.x": 3.0}) == 3
     for twin in twins:
         assert twin.update(1, ego=0.0, **{"car_1.x": 4.0, "car_2.x": 1.0}) == 1
+
+
+def test_a_monitor_whose_formula_shares_a_quantifier_comes_back_from_a_pickle():
+    parsed = spec("exists v in cars: v.x > 0")
+    shared = parsed.formula
+    both = STL["and"](shared, STL["gt"](STL["if"](shared, Const(1.0), Const(0.0)), Const(0.5)))
+    monitor = parsed.with_formula(both).monitor()
+    monitor.update(0, **{"car_1.x": 3.0})
+    twin = pickle.loads(pickle.dumps(monitor))  # noqa: S301
+    assert twin.update(1, **{"car_1.x": 4.0}) == monitor.update(1, **{"car_1.x": 4.0}) == 0.5
 
 
 def test_a_failed_update_changes_nothing():
