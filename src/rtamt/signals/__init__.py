@@ -10,6 +10,7 @@ dense             dense time and its traces: timestamps per signal, counted in t
 signal            ``Signal``: the result of evaluations and monitors
 inexact           missing samples, measurement errors, declared ranges
 instants          sets of times as intervals, and step functions of them
+shortened         step functions without the middle of long stretches in which nothing changes
 outcomes          bounds and verdicts that are known before the whole trace is
 episodes          the maximal runs of violation
 trace             ``Trace``: named signals, each with its own time base; resampling

@@ -73,7 +73,7 @@ def inside(outer: Formula, quantifier: Formula) -> Formula:
 
 @st.composite
 def quantified_formulas(
-    draw: DrawFn, max_depth: int = 3, *, discrete: bool = True, **settings: Any
+    draw: DrawFn, /, max_depth: int = 3, *, discrete: bool = True, **settings: Any
 ) -> Formula:
     """Draw a formula with a quantifier, sometimes with one inside it, beside the ordinary variable y.
 
