@@ -82,7 +82,7 @@ class Stream:
         self._made_of = formulas, inputs, period, unit, tolerance, ignored
         self._unit = float(UNITS[unit])
         self._session = discrete.BACKENDS[backend()].session(
-            formulas, inputs, Discrete(period, tolerance), ignored, strict=False, unit=UNITS[unit]
+            formulas, inputs, Discrete(period, tolerance), ignored, strict=False, unit=UNITS[unit], parts=True
         )
         #: The monitor, which counts samples and gaps.
         self.monitor: Any = self._session.open()

@@ -3,6 +3,7 @@
 ======= ===================================================== ===============================
 pass    effect                                                where
 ======= ===================================================== ===============================
+hoist   windows and delays without constants are shared       ``hoist.py``
 fuse    a chain of operators at one instant is one loop       ``core/program/fusion.hpp``
 reuse   values share a register if never needed together      ``core/program/liveness.hpp``
 ======= ===================================================== ===============================
@@ -14,7 +15,10 @@ program: the header of the program contains those that it leaves out, one bit ea
 from __future__ import annotations
 
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from rtamt.compiler.hoist import hoist
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
@@ -22,7 +26,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import Program
 
 #: Passes that rewrite a program, in order.
-REWRITES: Mapping[str, Callable[[Program], Program]] = {}
+REWRITES: Mapping[str, Callable[[Program], Program]] = MappingProxyType({"hoist": hoist})
 
 #: Passes of the core, in the order of their bits.
 LOADED = ("fuse", "reuse")

@@ -63,12 +63,17 @@ class Shape:
         return _kept(self.formulas) if self.values else _expanded(self.formulas)
 
     def program(
-        self, period: Fraction, inputs: tuple[str, ...], domain: type[TimeDomain] = Discrete
+        self,
+        period: Fraction,
+        inputs: tuple[str, ...],
+        domain: type[TimeDomain] = Discrete,
+        *,
+        without: frozenset[str] = frozenset(),
     ) -> Program:
         """Compile the formulas for a monitor; arguments as for :func:`compile_program`."""
         if not self.values:
-            return compile_program(self.expanded(), period, inputs, domain=domain)
-        return _program(self.formulas, period, inputs, domain).with_parameters(self.values)
+            return compile_program(self.expanded(), period, inputs, domain=domain, without=without)
+        return _program(self.formulas, period, inputs, domain, without).with_parameters(self.values)
 
     def plan(
         self,
@@ -108,9 +113,13 @@ _kept = lru_cache(_KEPT)(_expanded)
 
 @lru_cache(_KEPT)
 def _program(
-    formulas: tuple[Formula, ...], period: Fraction, inputs: tuple[str, ...], domain: type[TimeDomain]
+    formulas: tuple[Formula, ...],
+    period: Fraction,
+    inputs: tuple[str, ...],
+    domain: type[TimeDomain],
+    without: frozenset[str],
 ) -> Program:
-    return compile_program(_kept(formulas), period, inputs, domain=domain)
+    return compile_program(_kept(formulas), period, inputs, domain=domain, without=without)
 
 
 @lru_cache(_KEPT)

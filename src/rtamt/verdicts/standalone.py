@@ -201,5 +201,5 @@ def _meanings(program: Program, formulas: Iterable[Formula]) -> dict[int, str]:
     return {
         i: _label(written.get(formula, formula))
         for i, formula in enumerate(program.origins)
-        if isinstance(formula, Apply) and program.value_of[formula] == i
+        if isinstance(formula, Apply) and program.value_of.get(formula) == i
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
@@ -50,9 +51,10 @@ class CompiledDiscrete(Compiled):
         *,
         strict: bool = True,
         unit: Fraction = _SECOND,
+        parts: bool = False,
     ) -> SampleProgram:
         """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
-        return SampleProgram(formulas, inputs, domain, ignored, strict=strict, unit=unit)
+        return SampleProgram(formulas, inputs, domain, ignored, strict=strict, unit=unit, parts=parts)
 
     def memory(self, program: Program) -> int:
         """See :class:`Backend`."""
@@ -89,13 +91,17 @@ class DefinedDiscrete(Defined):
         *,
         strict: bool = True,
         unit: Fraction = _SECOND,
+        parts: bool = False,
     ) -> SampleDefinition:
         """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
         return SampleDefinition(formulas, inputs, domain, strict=strict, unit=unit)
 
 
 class SampleProgram(CompiledSession):
-    """Formulas as a program of the compiled core."""
+    """Formulas as a program of the compiled core.
+
+    ``parts``: whether :meth:`part` is called, for which the value of every instruction is kept.
+    """
 
     def __init__(
         self,
@@ -106,9 +112,11 @@ class SampleProgram(CompiledSession):
         *,
         strict: bool,
         unit: Fraction,
+        parts: bool,
     ) -> None:
         assert domain.period is not None
-        program = Shape.of(formulas).program(domain.period, inputs)
+        without = frozenset(PASSES) if parts else frozenset()
+        program = Shape.of(formulas).program(domain.period, inputs, without=without)
         super().__init__(formulas, program)
         self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
 
