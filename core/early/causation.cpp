@@ -29,6 +29,7 @@ void Causes::check(const Engine& engine, const Origin& origin) {
         if (!holds) throw std::invalid_argument("This is no causation that an engine can compute.");
     };
     const auto earlier = [&](std::uint32_t ref, std::size_t end) { return ref / 2 < end; };
+    reach_ = engine.reach();
     for (std::size_t i = 0; i < causes_.size(); ++i) {
         const Cause& cause = causes_[i];
         const bool recursion = cause.kind == Cause::Kind::until || cause.kind == Cause::Kind::since;
@@ -40,10 +41,7 @@ void Causes::check(const Engine& engine, const Origin& origin) {
         require(!pair || earlier(cause.b, i));
         require(!recursion || (cause.core / 2 < engine.size() && cause.low >= 0));
         require(cause.low <= cause.high && cause.shift >= 0 && cause.shift < forever);
-        for (const Tick bound : {cause.low, cause.high}) {
-            if (bound > -forever && bound < forever) reach_ += bound < 0 ? -bound : bound;
-        }
-        reach_ = std::min(reach_ + cause.shift + 2, forever / 4);
+        reach_ = std::min(plus(reach_, cause.shift + 2), forever / 4);
     }
     for (const std::uint32_t output : outputs_)
         require(earlier(output, causes_.size()));

@@ -14,6 +14,7 @@ Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
       nodes_(graph_.nodes.size()), settled_(graph_.inputs, -1), readers_(graph_.inputs),
       results_(graph_.nodes.size()), row_(graph_.inputs) {
     graph_.check();
+    truths_ = graph_.truths();
     ranges_.resize(graph_.inputs, bounds::anything);
     std::size_t steps = 0;
     for (std::uint32_t i = 0; i < graph_.nodes.size(); ++i) {
@@ -44,6 +45,16 @@ Bounds Engine::known(std::uint32_t input, Tick t) const noexcept {
 
 Bounds Engine::at(std::uint32_t ref, Tick t) const noexcept {
     return {runs(ref, 0).at(t).value, -runs(ref, 1).at(t).value};
+}
+
+Tick Engine::reach() const noexcept {
+    Tick sum = 0;
+    for (const Node& node : graph_.nodes) {
+        for (const Tick bound : {node.low, node.high}) {
+            if (bound > -forever && bound < forever) sum = plus(sum, bound < 0 ? -bound : bound);
+        }
+    }
+    return sum;
 }
 
 // A change, with samples up to a tick.

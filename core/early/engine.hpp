@@ -106,6 +106,9 @@ class Engine {
     [[nodiscard]] Tick horizon(std::uint32_t ref) const noexcept {
         return graph_.nodes[ref / 2].horizon;
     }
+    // The sum of the bounds of all windows, without those that have no end: how far from a sample a
+    // value may be that it changes, and that others do not share from there on.
+    [[nodiscard]] Tick reach() const noexcept;
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
     [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }
 
@@ -143,7 +146,8 @@ class Engine {
     Graph graph_;
     std::vector<Bounds> ranges_;
     bool late_;
-    bool partial_ = false; // an operation may have no value
+    std::vector<bool> truths_; // by node
+    bool partial_ = false;     // an operation may have no value
     std::vector<State> nodes_;
     std::vector<std::uint32_t> atoms_;
     std::vector<Registers> inputs_;                   // where knowledge may be late
@@ -194,6 +198,7 @@ class Engine {
     void pulses(std::uint32_t index, int reg);
     void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    void slide_truth(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     template <bool up>
     void until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);
     template <bool up, bool dense>

@@ -158,4 +158,49 @@ void Graph::check() const {
     }
 }
 
+namespace {
+
+// Of an expression.
+[[nodiscard]] bool is_truth(std::span<const Step> steps) {
+    std::vector<bool> truths;
+    for (const Step& step : steps) {
+        switch (step.opcode) {
+        case Opcode::holds_gt:
+        case Opcode::holds_ge:
+        case Opcode::holds_eq:
+            truths.push_back(true);
+            break;
+        case Opcode::constant:
+            truths.push_back(std::isinf(step.x));
+            break;
+        case Opcode::neg:
+            truths.push_back(truths[step.a]);
+            break;
+        case Opcode::min:
+        case Opcode::max:
+            truths.push_back(truths[step.a] && truths[step.b]);
+            break;
+        default:
+            truths.push_back(false);
+        }
+    }
+    return truths.back();
+}
+
+} // namespace
+
+std::vector<bool> Graph::truths() const {
+    std::vector<bool> truths;
+    for (const Node& node : nodes) {
+        bool truth = node.kind == Kind::atom ? is_truth(node.steps)
+                                             : node.kind != Kind::map && node.kind != Kind::sum;
+        if (node.kind != Kind::atom) {
+            for (const std::uint32_t ref : {node.a, node.b})
+                truth = truth && (ref == none || truths[ref / 2]);
+        }
+        truths.push_back(truth);
+    }
+    return truths;
+}
+
 } // namespace rtamt::early

@@ -77,6 +77,9 @@ struct Graph {
 
     // Throws std::invalid_argument unless references point backwards and steps are complete.
     void check() const;
+
+    // By node, whether its values are infinite, which are those of truth.
+    [[nodiscard]] std::vector<bool> truths() const;
 };
 
 // What an operation makes of one or two operands.

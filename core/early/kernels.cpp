@@ -131,12 +131,24 @@ void Engine::slide(std::uint32_t index, int reg, bool up) {
     for (const Piece& piece : new_data(own.a, reg)) {
         if (up) {
             lift(state, reg, plus(piece.l, -own.high), plus(piece.r, -own.low), piece.now);
+        } else if (truths_[own.a / 2]) {
+            slide_truth(state, reg, own, operand, piece);
         } else if (own.low <= -forever) {
             run_least(state, reg, own, operand, piece);
         } else {
             slide_least(state, reg, own, operand, piece);
         }
     }
+}
+
+// What a piece of truth decides are the windows that lie in its run.
+void Engine::slide_truth(State& state, int reg, const Node& node, const Runs& operand,
+                         Piece piece) {
+    const Run run = operand.at(piece.l);
+    const Tick l = run.begin <= 0 ? 0 : plus(run.begin, -node.low);
+    const Tick r = plus(run.end, -node.high);
+    lift(state, reg, std::max(l, plus(piece.l, -node.high)), std::min(r, plus(piece.r, -node.low)),
+         piece.now);
 }
 
 // The least value of a window can rise only where it was that of the piece and no other value in
@@ -147,6 +159,7 @@ void Engine::slide_least(State& state, int reg, const Node& node, const Runs& op
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
     Tick t = std::max(state.from, plus(piece.l, -node.high));
     Tick last = std::min(state.to, plus(piece.r, -node.low));
+    if (const Run mine = own.at(t); mine.end >= last && mine.value < piece.old) return;
     if (piece.r < plus(last, node.high)) {
         const Run next = operand.at(piece.r + 1); // nearly always beyond what was read
         if (next.value <= piece.old) {

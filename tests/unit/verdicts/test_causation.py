@@ -119,6 +119,14 @@ def test_many_samples_keep_little_memory():
     assert monitor.memory <= before + 2**12
 
 
+@BACKENDS
+def test_a_sample_causes_what_it_settles_by_windows_below_a_duration_later_on(backend):
+    spec = rtamt.parse("duration[1:4](historically[1:4](x > 0)) > 1", backend=backend)
+    monitor = spec.monitor(verdict="causation")
+    monitor.update(0, x=-1)
+    assert [monitor.causation(t).violation for t in range(7)] == [inf, inf, 0, 0, 0, -1, 0]
+
+
 @pytest.mark.parametrize("time", ["discrete", rtamt.Dense("1s")])
 def test_until_reads_hold_before_its_bound_after_many_samples(time):
     spec = rtamt.parse("x >= 0 until[5:6] y >= 0")
