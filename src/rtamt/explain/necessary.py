@@ -51,7 +51,11 @@ class Needs(Demands):
     def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
         need, found = self._share(node, sign)
         before, after = self._offsets(node)
-        return only_share(cells, found, before, after, need, ends=self._ends(sign))
+        needed = only_share(cells, found, before, after, need, ends=self._ends(sign))
+        window = self._ticks(sign, cells, before, after, need)
+        if window is None or not isinstance(node.args[0], Var):
+            return needed
+        return needed | window.needed(found & cells.widened(before, after)).within(0, self._end)
 
     def _ends(self, sign: int) -> Callable[..., NDArray[np.int64]] | None:
         # In dense time the cells at both ends of a window count as one, which holds where both do.

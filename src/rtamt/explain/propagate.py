@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.explain.critical import around
-from rtamt.explain.shares import sharing
+from rtamt.explain.shares import TickWindow, sharing
 from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
@@ -231,6 +231,9 @@ class Demands:
         need, found = self._share(node, sign)
         before, after = self._offsets(node)
         found = found & cells.widened(before, after)
+        window = self._ticks(sign, cells, before, after, need)
+        if window is not None:
+            return window.fewest(found, self._end)
         if self._dense:
             return found
         if cells.lone is None:
@@ -242,6 +245,13 @@ class Demands:
         best = np.argsort(-values if self.truth(sign) else values, kind="stable")
         chosen = samples[best[: max(need - (found.count - inside.count), 0)]]
         return Cells.union(chosen, chosen + 1)
+
+    def _ticks(self, sign: int, cells: Cells, before: int, after: int, need: int) -> TickWindow | None:
+        """Return the window of a share in dense time, of a single cell that is asked for."""
+        cell = cells.lone
+        if not self._dense or cell is None:
+            return None
+        return TickWindow(cell + before, cell + after, need, both=self.truth(sign))
 
     def _offsets(self, node: Apply) -> tuple[int, int]:
         """Return the ends of a window, counted from the present cell on."""

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import deque
+from dataclasses import dataclass
 from itertools import accumulate
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from rtamt.signals.instants import Cells
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.signals.instants import Ints
 
 
 def sharing(asked: Cells, found: Cells, before: int, after: int, need: int) -> Cells:
@@ -16,6 +25,49 @@ def sharing(asked: Cells, found: Cells, before: int, after: int, need: int) -> C
     No cell can be left out, because no smaller set exists. Cost: proportional to the number of intervals.
     """
     return _Sweep(found, before, after, need).over(asked)
+
+
+@dataclass(frozen=True, slots=True)
+class TickWindow:
+    """The window of one instant in dense time: cells from ``first`` to ``last``, those two being one tick together.
+
+    ``both``: whether that tick counts where both cells do, or where one of them does. ``need``: how many ticks must.
+    """
+
+    first: int
+    last: int
+    need: int
+    both: bool
+
+    def weights(self, starts: Ints, ends: Ints) -> tuple[Ints, Ints]:
+        """Return how many cells of intervals are in the window without its last cell, and without its first."""
+        return tuple(
+            np.maximum(np.minimum(ends, last + 1) - np.maximum(starts, first), 0)
+            for first, last in ((self.first, self.last - 1), (self.first + 1, self.last))
+        )
+
+    def enough(self, one: Ints, other: Ints) -> NDArray[np.bool_]:
+        """Return whether so many cells without the last, and so many without the first, are as many as needed."""
+        return (np.minimum if self.both else np.maximum)(one, other) >= self.need
+
+    def fewest(self, found: Cells, end: int) -> Cells:
+        """Return as few intervals of ``found`` before ``end`` as possible that suffice, besides those before cell 0."""
+        inside = found.within(0, end)
+        weights = self.weights(inside.starts, inside.ends)
+        outside = found - inside
+        spare = [mine.sum() for mine in self.weights(outside.starts, outside.ends)]
+        order = np.argsort(-(weights[0] + weights[1]), kind="stable")
+        totals = (np.cumsum(mine[order]) + more for mine, more in zip(weights, spare, strict=True))
+        missing = ~self.enough(*totals)
+        chosen = order[: int(missing.sum()) + 1]
+        return Cells.union(inside.starts[chosen], inside.ends[chosen])
+
+    def needed(self, found: Cells) -> Cells:
+        """Return a cell of each interval of ``found`` without which there are too few."""
+        weights = self.weights(found.starts, found.ends)
+        left = (mine.sum() - mine for mine in weights)
+        needed = ~self.enough(*left)
+        return Cells(found.starts[needed], found.starts[needed] + 1)
 
 
 class _Sweep:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: The classes of nearly all values that are no names.
 _NO_NAMES = {float, int, bool, type(None)}
 
+#: As many members at most are compared with a whole array, which is faster than looking each value up.
+_COMPARED = 12
+
 NO_TYPES: Types = MappingProxyType({})
 
 
@@ -52,13 +55,19 @@ def encoded(values: Any, name: str, type_: ValueType | None, first: int = 0) -> 
     """
     if not isinstance(type_, Enumeration) or _is_numeric(values):
         return values
+    codes: dict[Any, float] = {member: float(code) for member, code in type_.members}
+    if isinstance(values, np.ndarray) and values.dtype.kind == "U" and len(codes) <= _COMPARED:
+        places = np.zeros(values.shape, np.int8)  # of members, from 1 on
+        for place, member in enumerate(codes, 1):
+            places += (values == member).view(np.int8) * np.int8(place)
+        if places.all():
+            return np.array([np.nan, *codes.values()])[places]
     items = list(_items(values))
     classes = set(map(type, items))
     if classes <= _NO_NAMES:
         return items
-    codes: dict[Any, float] = {member: float(code) for member, code in type_.members}
     if classes == {str} and codes.keys() >= set(items):
-        return [codes[item] for item in items]
+        return np.fromiter(map(codes.__getitem__, items), np.float64, len(items))
     return [
         encoded_value(item, name, type_, f"sample {first + i}", first + i) for i, item in enumerate(items)
     ]

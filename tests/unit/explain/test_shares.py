@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -53,6 +54,19 @@ def test_a_share_of_many_windows_is_not_tried_interval_by_interval(monkeypatch):
     explanation = rtamt.parse("always(atleast[0:1000](50%, x > -0.5))").evaluate({"x": x}).explain()
     assert explanation.satisfied
     assert len(explanation.causes) > 2000
+
+
+@pytest.mark.parametrize("share", ["20%", "95%"])
+def test_a_share_in_dense_time_is_not_tried_interval_by_interval(monkeypatch, share):
+    monkeypatch.delattr(Forcing, "failures")
+    data = np.random.default_rng(0)
+    times, x = np.cumsum(data.integers(1, 9, 3000)), data.normal(size=3000)
+    spec = rtamt.parse(f"atleast[0:{times[-1] - times[0]}s]({share}, x > -0.5)", time="dense")
+    explanation = spec.evaluate({"x": (times.astype(float), x)}).explain()
+    assert explanation.satisfied == (share == "20%")
+    taken = sum(each.end - each.start for each in explanation.implicant)
+    whole = (times[-1] - times[0]) * (0.2 if explanation.satisfied else 0.05)
+    assert whole <= taken <= whole + max(each.end - each.start for each in explanation.implicant)
 
 
 def test_causes_are_made_when_they_are_read():

@@ -44,6 +44,21 @@ def test_text_columns_in_memory(source):
     assert values(source) == IS_AUTO
 
 
+@pytest.mark.parametrize("count", [1, 3, 12, 13, 40])
+@pytest.mark.parametrize("column", [list, np.array, lambda names: np.array(names, object)])
+def test_columns_of_names_mean_their_codes(count, column):
+    members = [f"M{7 * k}" for k in range(count)]
+    spec = rtamt.parse(
+        f"enum E {{ {', '.join(f'{m} = {k - 2}' for k, m in enumerate(members))} }} E e  e == {members[-1]}"
+    )
+    names = [members[(k * k) % count] for k in range(50)]
+    codes = [members.index(name) - 2 for name in names]
+    found = [spec.evaluate({"e": each}).signal.values.tolist() for each in (column(names), codes)]
+    assert found[0] == found[1]
+    with pytest.raises(rtamt.TraceError, match=r"^'e' is 'M' at sample 50, which is no member of E"):
+        spec.evaluate({"e": column([*names, "M"])})
+
+
 def test_frames_are_evaluated_without_reading_them_before():
     for frame in (pd.DataFrame({"mode": COLUMN}), pl.DataFrame({"mode": COLUMN})):
         assert SPEC.evaluate(frame).signal.values.tolist() == IS_AUTO
