@@ -311,7 +311,9 @@ def _kinds(spec: Specification) -> Iterator[str]:
         yield "variables  none"
     for i, group in enumerate(spec.document.groups.values()):
         fields = "; ".join(
-            f"{each.type} {each.name}{f' [{each.unit}]' if each.unit else ''}" for each in group.fields
+            f"{each.type} {each.called or each.name}{f' [{each.unit}]' if each.unit else ''}"
+            f"{f' = {quoted(each.name)}' if each.called else ''}"
+            for each in group.fields
         )
         words = [group.role, group.name, "=", quoted(group.pattern), f"{{ {fields} }}" if fields else ""]
         yield f"{'' if i else 'groups':<11}{' '.join(word for word in words if word)}"

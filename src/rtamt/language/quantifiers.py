@@ -3,7 +3,8 @@
 ::
 
     group      = [ "input" | "output" ] , "group" , word , "=" , '"' , pattern , '"' ,
-                 [ "{" , { type , field , [ "[" , unit , "]" ] , [ ";" ] } , "}" ] , [ ";" ]
+                 [ "{" , { field , [ ";" ] } , "}" ] , [ ";" ]
+    field      = type , name , [ "[" , unit , "]" ] , [ "=" , '"' , recorded , '"' ]
     quantifier = ( "forall" | "exists" | "count" ) , word , "in" , group , [ "where" , different ] , ":" , expression
     different  = word , "!=" , word , { "and" , word , "!=" , word }
 
@@ -42,12 +43,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A declared field of the members of a group: its type as written, the type of its values, its unit."""
+    """A declared field of the members of a group: its type as written, the type of its values, its unit.
+
+    ``name``: as recorded. ``called``: in formulas, if that is another name.
+    """
 
     name: str
     type: str = "float"
     values: ValueType | None = None
     unit: str = ""
+    called: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,9 +309,9 @@ def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
         if name in parser.scope.groups and name not in parser.scope:
             raise parser.error(f"'{name}' is a group; quantify over it: forall v in {name}: ...", span)
         return None
-    known = [each.name for each in group.fields]
+    known = {each.called or each.name: each for each in group.fields}
     if not path:
-        such = f"{name}.{known[0] if known else 'x'}"
+        such = f"{name}.{next(iter(known), 'x')}"
         such = such if NAME.fullmatch(such) else quoted(such)
         raise parser.error(
             f"'{name}' is a member of '{group.name}'; name one of its fields, such as {such}", span
@@ -317,7 +322,8 @@ def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
             span,
             NameInFormulaError,
         )
-    return FieldOf(name, span, group.values(path), variable, path, group)
+    recorded = known[path].name if known else path
+    return FieldOf(name, span, group.values(recorded), variable, recorded, group)
 
 
 def quantifiers(*formulas: Formula) -> tuple[Apply, ...]:

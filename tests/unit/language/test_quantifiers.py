@@ -6,6 +6,7 @@ import pickle
 
 import pytest
 
+import rtamt
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
 from rtamt.language.formula import Var, variables
 from rtamt.language.parsing.specfile import parse_document
@@ -222,4 +223,35 @@ DECLARATIONS = [
 def test_what_is_wrong_with_a_group_is_one_sentence(text, message):
     with pytest.raises(SpecificationError) as error:
         parse_document(text)
+    assert error.value.message == message
+
+
+def test_a_field_may_be_recorded_under_another_name():
+    head = 'group cars = "car_*" { float x [m] = "pose.x"; bool on }; '
+    spec = rtamt.parse(head + "always forall v in cars: v.on -> v.x > 3")
+    assert str(spec) == "always(forall v in cars: v.on -> v.x > 3)"
+    assert rtamt.parse(head + str(spec)).formula == spec.formula
+    data = {"car_1.pose.x": [5.0, 4.0], "car_1.on": [True, True]}
+    assert spec.evaluate(data).robustness == 1
+    bounded = rtamt.parse(head + "forall v in cars: v.on -> v.x > 3").monitor()
+    assert bounded.update(0.0, **{"car_1.pose.x": 5.0, "car_1.on": True}) == 2
+    (finding,) = rtamt.parse(head + "input float t [s] forall v in cars: v.x > t").warnings
+    assert finding.code == "RT301"
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        (
+            "float x = 3",
+            "expected the recorded name of 'x', what follows the member of 'cars', in double quotes, "
+            "such as \"pose.x\"; got '3'",
+        ),
+        ('float x = "a" float y = "a"', "two fields of 'cars' are recorded as 'a'"),
+        ('float x = "a"', "'a' is not a field of 'cars'; fields: x"),
+    ],
+)
+def test_what_is_wrong_with_the_recorded_name_of_a_field_is_one_sentence(fields, message):
+    with pytest.raises(SpecificationError) as error:
+        rtamt.parse(f'group cars = "car_*" {{ {fields} }}; forall v in cars: v.a > 3')
     assert error.value.message == message

@@ -105,7 +105,7 @@ class DeclarationParser(ImportParser):
         return True
 
     def _fields(self, group: str) -> tuple[Field, ...]:
-        """``"{" , { type , field , [ "[" , unit , "]" ] , [ ";" ] } , "}"``."""
+        """``"{" , { type , name , [ "[" , unit , "]" ] , [ "=" , recorded name ] , [ ";" ] } , "}"``."""
         opening = self.next()
         found: dict[str, Field] = {}
         while not self.accept("}"):
@@ -123,7 +123,11 @@ class DeclarationParser(ImportParser):
             if token.name in found:
                 raise self.error(f"'{group}' has two fields called '{token.name}'", token.span)
             unit = self._unit(token)
-            found[token.name] = Field(token.name, type_name.text, self._type(type_name.text), unit)
+            recorded = self._recorded(group, token.name) if self.accept("=") else token.name
+            if recorded in [each.name for each in found.values()]:
+                raise self.error(f"two fields of '{group}' are recorded as '{recorded}'", token.span)
+            called = "" if recorded == token.name else token.name
+            found[token.name] = Field(recorded, type_name.text, self._type(type_name.text), unit, called)
             self.accept(";")
         if not found:
             raise self.error(
@@ -132,6 +136,17 @@ class DeclarationParser(ImportParser):
                 opening.span,
             )
         return tuple(found.values())
+
+    def _recorded(self, group: str, field: str) -> str:
+        """Take the recorded name of a field."""
+        token = self.next()
+        if token.kind != "quoted" or not token.name.strip() or not token.name.isprintable():
+            raise self.error(
+                f"expected the recorded name of '{field}', what follows the member of '{group}', in double quotes, "
+                f'such as "pose.x"; got {token}',
+                token.span,
+            )
+        return token.name
 
     def _taken_names(self) -> set[str]:
         """Return the names of what a text declares or defines, apart from variables."""
