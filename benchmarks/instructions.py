@@ -3,11 +3,11 @@
     python benchmarks/instructions.py            # print the table; exit code 1 where a path exceeds its budget
     python benchmarks/instructions.py --renew    # `make budget`: write the budget for this compiler and this Python
 
-Counts depend neither on the machine nor on its load, since valgrind presents the same processor everywhere. They depend
-on the compiler and on Python: the file has a table for each pair, and another Python is compared by the paths of the core
-alone. Each path runs with N and with 2N repetitions in one process; the difference is what N of them need, without
-start-up. The libraries of C and of numpy are left out: their versions are not ours to choose, and what the allocator
-does depends on the length of the environment.
+Counts depend neither on the machine nor on its load, since valgrind presents the same processor everywhere. They
+depend on the compiler and on Python: the file has a table for each pair, and with another Python the paths of the
+core alone are compared. Each path runs with N and with 2N repetitions in one process; the difference is what N of them
+need, without start-up. The libraries of C and of numpy are left out: their versions are not ours to choose, and what
+the allocator does depends on the length of the environment.
 """
 
 from __future__ import annotations
