@@ -89,7 +89,7 @@ def _lower(graph: Graph, formula: Formula, *, only_start: bool) -> None:
 def _above_predicates(formula: Formula) -> set[Formula]:
     """Return the parts of a formula that only take minima, maxima and negations of predicates, or of such parts."""
     parts, found = {formula}, set()
-    for node in reversed(list(postorder(formula))):
+    for node in reversed(postorder(formula)):
         if node in parts and connects(node):
             found.add(node)
             parts.update(children(node))

@@ -134,8 +134,11 @@ class Lowering(ABC):
 
     def align(self, indices: list[int]) -> list[int]:
         """Delay operands until all have the largest lag; constants have no lag."""
-        lag = max((self.lag(i) for i in indices), default=0)
-        return [self.delayed(i, lag) for i in indices]
+        if len(indices) < 2:
+            return indices
+        lags = [self.instructions[i].lag for i in indices]
+        lag = max(lags)
+        return [i if own == lag else self.delayed(i, lag) for i, own in zip(indices, lags, strict=True)]
 
     def delayed(self, index: int, lag: int) -> int:
         """Return the same value known later: slots move, time does not."""
@@ -156,9 +159,10 @@ class Lowering(ABC):
 
     def whole(self, bound: Fraction) -> int:
         """Return a bound in steps."""
-        count = bound / self.period
-        assert count.denominator == 1, "bounds are checked before compilation"
-        return count.numerator
+        period = self.period  # a division of fractions costs ten times as much
+        count, rest = divmod(bound.numerator * period.denominator, bound.denominator * period.numerator)
+        assert rest == 0, "bounds are checked before compilation"
+        return count
 
     def steps(self, bound: Fraction) -> int:
         """Return a bound in steps, clipped to the length of the trace."""
@@ -172,7 +176,9 @@ class Lowering(ABC):
         begin, end = node.interval.begin, node.interval.end
         first = self.steps(begin)
         # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
-        return first, None if end is None else first + self.steps(end - begin)
+        if end is None or self.clip is None:
+            return first, None if end is None else self.whole(end)
+        return first, first + self.steps(end - begin)
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 

@@ -17,8 +17,10 @@ each use the previous one twice has 10¹⁸ nodes. Every traversal must visit ea
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
+from rtamt.language.equal_nodes import EqualNodes, representative
 from rtamt.language.value_types import Boolean, Enumeration
 
 if TYPE_CHECKING:
@@ -43,6 +45,10 @@ class Span(NamedTuple):
 
     start: int
     end: int
+
+
+#: A span of a pair, in half the time of calling Span.
+span_of: Callable[[tuple[int, int]], Span] = partial(tuple.__new__, Span)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +105,7 @@ class Formula:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A flat list of the nodes: pickle would recurse to the depth of the formula.
-        nodes = tuple(postorder(self))
+        nodes = postorder(self)
         places = {id(node): i for i, node in enumerate(nodes)}
         return _restored, (tuple([_flat(node, places) for node in nodes]),)
 
@@ -163,7 +169,7 @@ class Apply(Formula):
     _hash: int = field(init=False, repr=False)
     _size: int = field(init=False, repr=False)
     #: The class of nodes that were found equal to this one.
-    _class: _Class = field(init=False, repr=False)
+    _class: EqualNodes = field(init=False, repr=False)
     #: The nodes below in postorder: a formula is walked many times.
     _below: tuple[Formula, ...] = field(init=False, repr=False)
 
@@ -192,7 +198,7 @@ class Apply(Formula):
             return NotImplemented
         pairs: list[tuple[Formula, Formula]] = [(self, other)]
         # Sound only if everything turns out equal; then it is kept, so that each shared node is compared once.
-        assumed: dict[_Class, _Class] = {}
+        assumed: dict[EqualNodes, EqualNodes] = {}
         while pairs:
             a, b = pairs.pop()
             if a is b:
@@ -237,38 +243,18 @@ def _lacking(formula: Apply, name: str) -> Iterator[Apply]:
             yield stack.pop()
 
 
-class _Class:
-    """A class of nodes that were found equal; a union-find in which ``joined`` points to the parent class.
-
-    It references no node, so that a formula does not keep alive the formulas to which it was compared.
-    """
-
-    __slots__ = ("joined",)
-
-    def __init__(self) -> None:
-        self.joined: _Class | None = None
-
-
-def _class_of(node: Apply, assumed: Mapping[_Class, _Class]) -> _Class:
+def _class_of(node: Apply, assumed: Mapping[EqualNodes, EqualNodes]) -> EqualNodes:
     """Return the class of a node, by known and by assumed equalities."""
     try:
         known = node._class
     except AttributeError:
-        known = _Class()
+        known = EqualNodes()
         _store_class(node, known)
-    found = _last(known)
+    found = representative(known)
     if found is not known:
         _store_class(node, found)
     while (other := assumed.get(found)) is not None:
-        found = _last(other)
-    return found
-
-
-def _last(found: _Class) -> _Class:
-    while (above := found.joined) is not None:
-        if above.joined is not None:
-            found.joined = above.joined  # path halving
-        found = above
+        found = representative(other)
     return found
 
 
@@ -301,40 +287,41 @@ def children(formula: Formula) -> tuple[Formula, ...]:
     return formula.args if isinstance(formula, Apply) else ()
 
 
-def postorder(*formulas: Formula) -> Iterator[Formula]:
-    """Yield every distinct node object below and including ``formulas``, operands first.
+def postorder(*formulas: Formula) -> tuple[Formula, ...]:
+    """Return every distinct node object below and including ``formulas``, operands first.
 
     Several formulas that share nodes are walked in time proportional to the number of nodes.
     """
     if len(formulas) != 1:
-        yield from _distinct(formulas)
-        return
+        return _distinct(formulas)
     (formula,) = formulas
-    if isinstance(formula, Apply):
-        try:
-            below = formula._below
-        except AttributeError:
-            below = _distinct(formula.args)
-            if len(below) <= _KEPT:
-                _store_below(formula, below)
-        yield from below
-    yield formula
+    if not isinstance(formula, Apply):
+        return formulas
+    try:
+        below = formula._below
+    except AttributeError:
+        below = _distinct(formula.args)
+        if len(below) <= _KEPT:
+            _store_below(formula, below)
+    return (*below, formula)
 
 
 def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
     seen: set[int] = set()
     found: list[Formula] = []
-    stack: list[tuple[Formula, bool]] = [(formula, False) for formula in reversed(formulas)]
+    stack: list[Formula | None] = list(formulas[::-1])
+    opened: list[Formula] = []  # their operands come before the next None
     while stack:
-        node, ready = stack.pop()
-        if ready:
-            found.append(node)
+        node = stack.pop()
+        if node is None:
+            found.append(opened.pop())
         elif id(node) not in seen:
             seen.add(id(node))
             if isinstance(node, Apply):
-                stack.append((node, True))
-                stack.extend([(operand, False) for operand in reversed(node.args)])
+                opened.append(node)
+                stack.append(None)
+                stack += node.args[::-1]
             else:
                 found.append(node)
     return tuple(found)

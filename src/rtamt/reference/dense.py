@@ -288,7 +288,7 @@ def _ahead(node: Formula, tick: Fraction) -> int | None:
 def _read(formula: Formula, last: int, tick: Fraction) -> dict[int, int | None]:
     """Return, by identity of each sub-formula, how far values up to ``last`` of the whole formula read it."""
     limits: dict[int, int | None] = {id(formula): last}
-    for node in reversed(list(postorder(formula))):  # whoever reads a node comes before it
+    for node in reversed(postorder(formula)):  # whoever reads a node comes before it
         limit, ahead = limits[id(node)], _ahead(node, tick)
         reach = None if limit is None or ahead is None else limit + ahead
         for operand in children(node):

@@ -107,7 +107,7 @@ def _operands(node: Formula) -> tuple[Formula, ...]:
 def _parts(core: Formula) -> list[Formula]:
     """Return the formula and its parts, operands first."""
     wanted = {core}
-    for node in reversed(list(postorder(core))):
+    for node in reversed(postorder(core)):
         if node in wanted:
             wanted.update(_operands(node))
     return [node for node in dict.fromkeys(postorder(core)) if node in wanted]

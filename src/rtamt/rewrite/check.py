@@ -11,7 +11,7 @@ from rtamt.language.formula import Apply, Const, Formula, Interval, children, po
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
-from rtamt.language.units.durations import format_duration
+from rtamt.language.units.durations import format_duration, is_less
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
 
@@ -85,7 +85,7 @@ def check_bounds(
                     node.interval.span or node.span,
                 )
         whole = closed(node.interval, step)
-        if whole.end is not None and whole.end < whole.begin:
+        if whole.end is not None and is_less(whole.end, whole.begin):
             raise BoundError(
                 f"the interval {interval_text(node.interval)} is empty: with a {unit.setting} of "
                 f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",

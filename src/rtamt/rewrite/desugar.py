@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, Span, children, fold, folds, postorder
+from rtamt.language.formula import Apply, Formula, Span, fold, folds, postorder
 from rtamt.rewrite.truth import rebuilt, with_truths
 
 if TYPE_CHECKING:
@@ -89,14 +89,14 @@ def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
         return node
     if node.op.expansion is None or node.op.kernel is not None:
         return rebuilt(node, args)
-    expanded = node.op.expansion(*args, node.interval)
-    return desugar_below(stamped(expanded, args, node.span), args)
+    span = node.span
 
+    def step(inner: Formula, below: tuple[Formula, ...]) -> Formula:
+        if not isinstance(inner, Apply):
+            return inner
+        return expand(Apply(inner.op, below, inner.interval, span), below)
 
-def desugar_below(formula: Formula, done: tuple[Formula, ...]) -> Formula:
-    """Desugar the nodes of an expansion above its operands; ``done`` holds the operands."""
-    stop = {id(arg) for arg in done}
-    return _rebuild_above(formula, stop, expand)
+    return _rebuild_above(node.op.expansion(*args, node.interval), set(map(id, args)), step)
 
 
 def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) -> Formula:
@@ -117,10 +117,13 @@ def _rebuild_above(
 
     def rebuild(node: Formula) -> Formula:
         # Expansions are a few nodes deep, so plain recursion is safe here.
-        if id(node) in stop:
+        key = id(node)
+        if key in stop:
             return node
-        if id(node) not in done:
-            done[id(node)] = step(node, tuple(rebuild(child) for child in children(node)))
-        return done[id(node)]
+        made = done.get(key)
+        if made is None:
+            args = node.args if isinstance(node, Apply) else ()
+            made = done[key] = step(node, tuple([rebuild(child) for child in args]))
+        return made
 
     return rebuild(formula)

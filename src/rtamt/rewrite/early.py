@@ -67,7 +67,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     # Parents first: the instants at which a node is read, by its identity and sign.
     spans: dict[tuple[int, int], _Span] = {(id(core), 1): _PRESENT}
     uses: dict[str, list[_Use]] = {name: [] for name in variables(core)}
-    for node in reversed(list(postorder(core))):
+    for node in reversed(postorder(core)):
         for sign in (1, -1):
             span = spans.get((id(node), sign))
             if span is None or not variables(node):

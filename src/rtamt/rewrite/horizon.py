@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import lcm
 
-from rtamt.language.formula import Apply, Formula, children, fold, postorder
+from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
-
-_NONE = Fraction(0)
 
 
 def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
@@ -22,33 +21,48 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     Fraction(15, 1)
     """
     formula = spelled_out(formula)
-    return horizons(formula, period)[id(formula)]
+    parts, found = _counted(formula, period)
+    deepest = found[id(formula)]
+    return None if deepest is None else Fraction(deepest, parts)
 
 
 def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
     """Return the horizon of each sub-formula by its identity; ``formula``: see :func:`spelled_out`."""
-    found: dict[int, Fraction | None] = {}
+    parts, found = _counted(formula, period)
+    return {key: None if depth is None else Fraction(depth, parts) for key, depth in found.items()}
 
-    def step(node: Formula, below: list[Fraction | None]) -> Fraction | None:
-        deepest = _NONE
-        for depth in below:
-            if depth is None:
-                return None
-            if depth is not deepest:  # fractions are slow to compare
-                deepest = max(deepest, depth)
-        if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE:
-            return deepest
-        if node.op.bounds is Bounds.NONE:
-            return None if node.op.reach is None else deepest + node.op.reach * period
-        if node.interval is None and node.op.bounds is Bounds.DURATION:
-            return deepest + period
-        if node.interval is None or node.interval.end is None:
-            return None
-        return deepest + node.interval.end
 
-    for node in postorder(formula):
-        found[id(node)] = step(node, [found[id(operand)] for operand in children(node)])
-    return found
+def _counted(formula: Formula, period: Fraction) -> tuple[int, dict[int, int | None]]:
+    """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add."""
+    nodes = postorder(formula)
+    intervals = [node.interval for node in nodes if isinstance(node, Apply) and node.interval is not None]
+    parts = lcm(period.denominator, *{each.end.denominator for each in intervals if each.end is not None})
+    step = period.numerator * (parts // period.denominator)
+    found: dict[int, int | None] = {}
+    for node in nodes:
+        deepest: int | None = 0
+        if isinstance(node, Apply):
+            for operand in node.args:
+                depth = found[id(operand)]
+                if depth is None or deepest is None:
+                    deepest = None
+                elif depth > deepest:
+                    deepest = depth
+            if deepest is not None and node.op.tense is Tense.FUTURE:
+                own = _own(node, parts, step)
+                deepest = None if own is None else deepest + own
+        found[id(node)] = deepest
+    return parts, found
+
+
+def _own(node: Apply, parts: int, step: int) -> int | None:
+    """Return how far ahead of its operands an operator reads; ``step``: one sample."""
+    if node.op.bounds is Bounds.NONE:
+        return None if node.op.reach is None else node.op.reach * step
+    if node.interval is None:
+        return step if node.op.bounds is Bounds.DURATION else None
+    end = node.interval.end
+    return None if end is None else end.numerator * (parts // end.denominator)
 
 
 def reach(formula: Formula, step: Fraction) -> int:

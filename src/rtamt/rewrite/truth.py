@@ -128,6 +128,7 @@ def _replaced(
 
 def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
     """Return the node over new operands; the same object if they are the same objects."""
-    if all(new is old for new, old in zip(args, node.args, strict=True)):
-        return node
-    return Apply(node.op, args, node.interval, node.span)
+    for new, old in zip(args, node.args, strict=True):
+        if new is not old:
+            return Apply(node.op, args, node.interval, node.span)
+    return node

@@ -6,6 +6,7 @@ module          purpose
 lexer           text to tokens
 grammar         rules shared by parser and printer: chaining, signs, nesting depth
 parser          tokens to a formula, and the grammar of formulas
+lookahead       which words are operators, and which are names
 typed_parser    members of enumerations and ``x in {...}`` in formulas
 intervals       bounds of temporal operators: units, exact values, errors
 names           a position in a text, and what a name there stands for

@@ -7,12 +7,12 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
-from rtamt.language.formula import Interval, Span
+from rtamt.language.formula import Interval, Span, span_of
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.parsing.grammar import INFINITY
-from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
+from rtamt.language.parsing.lexer import is_numeral
 from rtamt.language.parsing.templates import bound, constants_of
-from rtamt.language.units.durations import UNITS, exact
+from rtamt.language.units.durations import UNITS, exact, is_less
 from rtamt.language.value_types import BOOLEAN
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from rtamt.language.parsing.lexer import Token
     from rtamt.language.parsing.parser import FormulaParser
 
-    #: A number of units (None: infinite), the unit as written, and the indices of its tokens.
-    Bound = tuple[Fraction | None, str, tuple[int, int]]
+    #: A number of units (None: infinite), the unit as written, the name if it is one, and the indices of its tokens.
+    Bound = tuple[Fraction | None, str, str | None, tuple[int, int]]
 
 _UNTIMED, _LASTING, _REQUIRED = Bounds.NONE, Bounds.DURATION, Bounds.REQUIRED
 _NAMED = frozenset(("name", "quoted"))
@@ -47,8 +47,9 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
     if op.bounds is _UNTIMED:
         raise parser.error(f"'{texts[at]}' takes no interval", _span(parser, first, first))
     parser.index = first + 1
-    begin, begin_unit, begin_tokens = _bound(parser)
+    begin, begin_unit, name, begin_tokens = _bound(parser)
     end, end_unit, end_tokens = begin, begin_unit, begin_tokens
+    names = [] if name is None else [name]
     separator = texts[parser.index]
     if op.bounds is not _LASTING:
         if separator not in _SEPARATORS:
@@ -56,7 +57,8 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
                 f"expected ':' or ',' and an upper bound, got {parser.token}", parser.token.span
             )
         parser.index += 1
-        end, end_unit, end_tokens = _bound(parser)
+        end, end_unit, name, end_tokens = _bound(parser)
+        names += [] if name is None else [name]
     elif separator in _SEPARATORS:
         raise parser.error(
             f"'{texts[at]}' takes one duration, such as {texts[at]}[5], got {parser.token}", parser.token.span
@@ -87,9 +89,8 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
     else:
         if end_unit:
             end *= UNITS[end_unit]
-        if end <= begin and (end < begin or begin_open or end_open):
-            raise _nothing_between(parser, _span(parser, first, last), reverse=end < begin)
-    names = [parser.tokens[k].name for k in range(first, last) if is_name(texts[k]) or is_quoted(texts[k])]
+        if is_less(end, begin) or ((begin_open or end_open) and end == begin):
+            raise _nothing_between(parser, _span(parser, first, last), reverse=is_less(end, begin))
     constants = constants_of(parser, names) if names else ()
     span = _span(parser, first, last)
     return Interval(begin, end, begin_unit, end_unit, span, constants, begin_open, end_open)
@@ -97,7 +98,7 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
 
 def _span(parser: FormulaParser, first: int, last: int) -> Span:
     """Return the position of the tokens from ``first`` to ``last``."""
-    return Span(parser.starts[first], parser.ends[last])
+    return span_of((parser.starts[first], parser.ends[last]))
 
 
 def _nothing_between(parser: FormulaParser, span: Span, *, reverse: bool) -> SpecificationError:
@@ -158,7 +159,7 @@ def _bound(parser: FormulaParser) -> Bound:
     negative = texts[at] == "-"
     at += negative
     value: Fraction | None
-    unit = ""
+    unit, name = "", None
     parser.index = at + 1 if texts[at] else at  # the end is never consumed
     if is_numeral(texts[at]):
         value = _literal(parser, at)
@@ -174,6 +175,7 @@ def _bound(parser: FormulaParser) -> Bound:
             value /= divisor
     elif parser.tokens[at].kind in _NAMED:
         token = parser.tokens[at]
+        name = token.name
         stands_for = bound(parser, token.name, token.span)
         value, unit = stands_for or (_constant(parser, token), parser.scope.units.get(token.name, ""))
         if unit and unit not in UNITS:
@@ -195,19 +197,19 @@ def _bound(parser: FormulaParser) -> Bound:
             BoundError,
         )
     if texts[parser.index] in _AFTER:
-        return value, unit, tokens
-    name, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
-    if name.text in UNITS and unit:
+        return value, unit, name, tokens
+    follows, after = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
+    if follows.text in UNITS and unit:
         raise parser.error(
-            f"'{token.name}' has a unit already, {unit}; leave out the unit here", name.span, BoundError
+            f"'{name}' has a unit already, {unit}; leave out the unit here", follows.span, BoundError
         )
-    if name.text in UNITS and value is not None:
+    if follows.text in UNITS and value is not None:
         unit = parser.next().text
-    elif name.kind == "name" and after.text in _AFTER:
+    elif follows.kind == "name" and after.text in _AFTER:
         raise parser.error(
-            f"'{name.text}' is not a unit of time{choices(name.text, UNITS, 'units')}", name.span
+            f"'{follows.text}' is not a unit of time{choices(follows.text, UNITS, 'units')}", follows.span
         )
-    return value, unit, tokens
+    return value, unit, name, tokens
 
 
 def _literal(parser: FormulaParser, at: int) -> Fraction:

@@ -8,7 +8,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
-from rtamt.language.formula import Const, Formula, Parameter, Span, Var
+from rtamt.language.formula import Const, Formula, Parameter, Span, Var, span_of
 from rtamt.language.operators import Fixity, Language
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import INFINITY, sign
@@ -95,7 +95,7 @@ class NameParser:
             last = self._last_of_path()
             text = self.text[self.starts[first] : self.ends[last]]
         self.index = last + 1
-        return self._meaning(text, Span(self.starts[first], self.ends[last]))
+        return self._meaning(text, span_of((self.starts[first], self.ends[last])))
 
     def _last_of_path(self) -> int:
         """Return the index of the last token of the name here: ``a/b`` is a name only if it is declared."""
@@ -172,7 +172,8 @@ class NameParser:
         if plain:
             if name == INFINITY:
                 return Const(inf, span)
-            self._not_an_operator(name, span)
+            if name in self.language.openings or name in self.language.infixes:
+                self._not_an_operator(name, span)
         if self.scope.variables is None:
             return Var(name, span)
         raise self._undeclared(name, span)

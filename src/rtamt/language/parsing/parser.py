@@ -24,12 +24,11 @@ is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` 
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import islice, pairwise
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span
+from rtamt.language.formula import Apply, Const, Formula, Span, span_of
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort, Tense
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import (
@@ -44,10 +43,10 @@ from rtamt.language.parsing.grammar import (
 )
 from rtamt.language.parsing.intervals import parse_interval
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
+from rtamt.language.parsing.lookahead import LookaheadParser
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.templates import Template, parse_use
-from rtamt.language.parsing.typed_parser import TypedParser
-from rtamt.language.quantifiers import begins_quantifier, parse_quantifier
+from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
 
 if TYPE_CHECKING:
@@ -65,13 +64,10 @@ _UNTIMED = Bounds.NONE
 _OPENING = frozenset("([")
 
 
-class FormulaParser(TypedParser):
+class FormulaParser(LookaheadParser):
     """One method for each production of the grammar, in addition to those of names."""
 
     # ---- productions ---------------------------------------------------------------------------
-
-    #: The word of a choice that ends the operand here, which is no operand itself.
-    _awaited: str | None = None
 
     def formula(self) -> Formula:
         """Parse a top-level expression, whatever the depth of the caller's stack."""
@@ -135,7 +131,7 @@ class FormulaParser(TypedParser):
         text = self.texts[at]
         if is_numeral(text):
             return self.number()
-        if begins_quantifier(self):
+        if text in QUANTIFIERS and begins_quantifier(self):
             return parse_quantifier(self)
         after = self.texts[at + 1] if text else ""
         op = self._opening(text)
@@ -179,7 +175,7 @@ class FormulaParser(TypedParser):
         at = self.index
         self.index += 1
         value = float(self.texts[at])
-        span = Span(self.starts[at], self.ends[at])
+        span = span_of((self.starts[at], self.ends[at]))
         if isinf(value):
             raise self.error(
                 f"{self.texts[at]} is larger than every double; for infinity write {INFINITY}", span
@@ -300,66 +296,6 @@ class FormulaParser(TypedParser):
                 f"put parentheses around it: {by} ({token.text} ...)",
                 token.span,
             )
-
-    # ---- looking ahead -------------------------------------------------------------------------
-
-    def _applies(self, at: int) -> bool:
-        """Return whether the word at this token, spelled like a prefix operator, is an operator."""
-        after = self.tokens[at + 1]
-        if after.text in ("[", "("):
-            return True
-        if after.kind == "symbol" and self.tokens[at].text in self.scope:
-            # `G - 3` with a variable G is a difference; without one, always(-3).
-            return self.language.infix(after.text) is None and self.opens(at + 1)
-        return self.opens(at + 1)
-
-    def opens(self, at: int) -> bool:
-        """Return whether an operand can begin at this token.
-
-        In a run of words spelled like infix operators, a word is an operator if the next token begins an operand,
-        and a name otherwise: ``G U x`` is until, ``G U >= 3`` is always.
-        """
-        end = at
-        while self._is_infix_word(end):
-            end += 1
-        token = self.tokens[end]
-        op = self.language.opening(token.text)
-        opens = token.text != self._awaited and (
-            token.kind in ("name", "number", "quoted")
-            or token.text == "("
-            or (token.text == "[" and end > at)
-            or (op is not None and op.fixity is Fixity.PREFIX)
-            or self._begins_topic(end)
-        )
-        return opens == ((end - at) % 2 == 0)
-
-    def _begins_choice(self, at: int) -> bool:
-        """Return whether the ``if`` at this token begins a choice, for a variable of that name cannot stand there."""
-        if self.tokens[at].text in self.scope:
-            return False
-        after = self.tokens[at + 1]
-        if after.text == self._awaited:
-            return False
-        if self.language.infix(after.text) is None:
-            return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
-        # `if - x then` has no other reading, for two operands are adjacent.
-        depth = 0
-        for place, (before, text) in enumerate(pairwise(islice(self.texts, at + 1, None)), at + 1):
-            depth += (before in ("(", "[")) - (before in (")", "]"))
-            if depth < 0 or before in (";", "="):
-                return False
-            if depth == 0 and text == THEN and self._ends_operand(self.tokens[place]):
-                return True
-        return False
-
-    def _ends_operand(self, token: Token) -> bool:
-        if token.kind == "name":
-            return self.language.infix(token.text) is None and self.language.opening(token.text) is None
-        return token.kind in ("number", "quoted") or token.text == ")"
-
-    def _is_infix_word(self, at: int) -> bool:
-        token = self.tokens[at]
-        return token.kind == "name" and self.language.infix(token.text) is not None
 
     def _signed(self, op: Operator) -> float | None:
         """Consume and return the number whose sign is the minus just read, if there is one."""

@@ -6,7 +6,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, Var
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.names import NameParser
@@ -49,7 +49,7 @@ class TypedParser(NameParser):
         span: Place | None = None,
     ) -> Apply:
         """Apply an operator to operands as their types demand. ``places``: where the operands are written."""
-        whole = tuple.__new__(Span, span or (places[0][0], places[-1][1]))  # half the cost of calling Span
+        whole = span_of(span or (places[0][0], places[-1][1]))
         if op.presence and not isinstance(args[0], Var):
             raise self.error(
                 f"'{op.spellings[0]}' takes a variable, whose samples may be missing; "
