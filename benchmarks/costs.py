@@ -6,13 +6,16 @@ drift of the machine's speed affects all of them equally.
 
 from __future__ import annotations
 
+import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -197,12 +200,49 @@ def dense_online(text: str) -> Callable[[], float]:
     return run
 
 
-def parsing() -> float:
-    """Parse a formula of 1 000 characters: ms."""
-    unit = "always[0:5]((req >= 3) -> eventually[0:5](gnt >= 3))"
-    text = " and ".join([unit] * 18)[:1000]
-    text = text[: text.rindex(" and ")].ljust(1000)
-    return per(1, lambda: parse_formula(text)) / 1e6
+#: A conjunction of 1 141 characters, in which no two parts are equal.
+LONG = " and ".join(
+    f"always[0:{5 + k}]((req{k} >= {k}.5) -> eventually[0:{3 + k}](gnt{k % 5} >= {k}))" for k in range(18)
+)
+
+
+def of_processor(call: Callable[[], object], count: int) -> Callable[[], float]:
+    """Call something ``count`` times: ms of processor time a call."""
+
+    def run() -> float:
+        start = time.process_time_ns()
+        for _ in range(count):
+            call()
+        return (time.process_time_ns() - start) / count / 1e6
+
+    return run
+
+
+def of_command(*argv: str) -> Callable[[], float]:
+    """Run the command line in a process of its own: seconds of processor time, Python's start included."""
+
+    def run() -> float:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, "-m", "rtamt", *argv], check=True, capture_output=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    return run
+
+
+def small_check() -> Callable[[], float]:
+    """``rtamt check`` of a CSV file of 100 rows."""
+    folder = tempfile.TemporaryDirectory()
+    spec, trace = Path(folder.name, "limit.stl"), Path(folder.name, "x.csv")
+    spec.write_text("always(x <= 4)\n")
+    trace.write_text("time,x\n" + "".join(f"{t},{t % 3}\n" for t in range(100)))
+    command = of_command("check", str(spec), str(trace))
+
+    def run() -> float:
+        assert folder.name, "kept until the last run"
+        return command()
+
+    return run
 
 
 def importing() -> float:
@@ -265,7 +305,23 @@ def rows() -> list[Row]:
             for text in ("always[0:5](a >= 0)", "always[0:1000](a >= 0)", "b until[0:100] a")
         ),
         *(Row(f"memory {text}", "doubles/sample", 2.5, partial(memory, text)) for text in memories),
-        Row("parse 1 000 characters", "ms", 1, parsing),
+        *(
+            Row(f"parse {name}", "ms", target, of_processor(partial(rtamt.parse, text), count))
+            for name, text, target, count in (
+                ("a >= 3", "a >= 3", None, 500),
+                ("always[0:5](a >= 3)", "always[0:5](a >= 3)", None, 500),
+                ("1 100 characters", LONG, 0.5, 50),
+            )
+        ),
+        Row(
+            "parse 1 100 characters and monitor",
+            "ms",
+            1,
+            of_processor(lambda: rtamt.parse(LONG).monitor(), 20),
+        ),
+        Row("rtamt --help", "s of CPU", 0.1, of_command("--help")),
+        Row("rtamt lint", "s of CPU", 0.1, of_command("lint", "examples/request_grant/spec.stl")),
+        Row("rtamt check of a CSV file of 100 rows", "s of CPU", 0.2, small_check()),
         Row("import rtamt beyond numpy", "s", 0.15, importing),
     ]
 
