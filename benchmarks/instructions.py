@@ -181,6 +181,18 @@ def evaluate_batch() -> Callable[[int], None]:
     return run
 
 
+def evaluate_arrays() -> Callable[[int], None]:
+    """``spec.evaluate_batch`` of an array with 100 traces of 100 samples: a trace."""
+    spec = rtamt.parse(TWO)
+    data = {name: column.reshape(100, 100) for name, column in noise(10_000).items()}
+
+    def run(n: int) -> None:
+        for _ in range(n // 100):
+            spec.evaluate_batch(data)
+
+    return run
+
+
 def parse_and_monitor() -> Callable[[int], None]:
     """``rtamt.parse(text).monitor()``."""
 
@@ -255,6 +267,7 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "evaluate, 100 samples": (20, evaluate(100)),
     "evaluate, 10000 samples": (4, evaluate(10_000)),
     "evaluate_batch, a trace of 100 samples": (100, evaluate_batch),
+    "evaluate_batch, an array, a trace of 100 samples": (1000, evaluate_arrays),
     "parse and monitor": (4, parse_and_monitor),
     "parse 900 characters": (2, parse),
     **{
