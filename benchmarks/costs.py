@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from calls import CALLS
 
 import rtamt
 from rtamt.compiler.plan import compile_program
@@ -304,6 +305,7 @@ def rows() -> list[Row]:
             Row(f"dense online update(t, a=x), {text}", "ns/call", 600, dense_online(text))
             for text in ("always[0:5](a >= 0)", "always[0:1000](a >= 0)", "b until[0:100] a")
         ),
+        *(Row(name, unit, target, prepare()) for name, unit, target, prepare in CALLS),
         *(Row(f"memory {text}", "doubles/sample", 2.5, partial(memory, text)) for text in memories),
         *(
             Row(f"parse {name}", "ms", target, of_processor(partial(rtamt.parse, text), count))

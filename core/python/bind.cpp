@@ -8,6 +8,7 @@
 #include "offline.hpp"
 #include "online.hpp"
 #include "recording.hpp"
+#include "tick_points.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -63,6 +64,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_offline(m, exceptions);
     rtamt::python::add_evaluator(m, exceptions);
     rtamt::python::add_recording(m);
+    rtamt::python::add_tick_points(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace rtamt::python {
 
@@ -20,7 +21,7 @@ namespace {
     if (buffer.format() != 'd' || view.ndim != 1) {
         throw std::invalid_argument("A column is not an array of doubles.");
     }
-    if (static_cast<std::size_t>(view.shape[0]) != count) {
+    if (std::cmp_not_equal(view.shape[0], count)) {
         throw std::invalid_argument("A column has " + std::to_string(view.shape[0]) +
                                     " samples where " + std::to_string(count) + " are expected.");
     }
@@ -170,7 +171,7 @@ std::optional<discrete::Failure> Evaluator::evaluate(std::span<const double* con
     return failure;
 }
 
-void add_evaluator(nb::module_& m, const Exceptions& exceptions) {
+void add_evaluator(const nb::module_& m, const Exceptions& exceptions) {
     nb::class_<Evaluator>(m, "Evaluator", "Runs a program without calls over whole traces.")
         .def(
             "__init__",

@@ -66,6 +66,6 @@ class Evaluator {
                                                             std::span<double* const> outputs);
 };
 
-void add_evaluator(nb::module_& module, const Exceptions& exceptions);
+void add_evaluator(const nb::module_& module, const Exceptions& exceptions);
 
 } // namespace rtamt::python

@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace rtamt::python {
@@ -30,14 +30,14 @@ template <class Item>
 bool copy_items(const Py_buffer& view, double* out) noexcept {
     const auto* bytes = static_cast<const std::byte*>(view.buf);
     const Py_ssize_t count = view.shape[0];
-    std::int64_t wrong = 0; // as wide as a double, for a loop of vector instructions
+    std::uint64_t wrong = 0; // as wide as a double, for a loop of vector instructions
     const auto copy = [&](Py_ssize_t step) {
         for (Py_ssize_t i = 0; i < count; ++i) {
             Item item; // NOLINT(*-pro-type-member-init,*-init-variables): memcpy writes it
             std::memcpy(&item, bytes + i * step, sizeof(Item));
             const auto number = static_cast<double>(item);
             out[i] = number;
-            wrong |= -static_cast<std::int64_t>(std::isnan(number));
+            wrong |= static_cast<std::uint64_t>(std::isnan(number));
         }
     };
     constexpr auto next = static_cast<Py_ssize_t>(sizeof(Item));
@@ -100,7 +100,7 @@ Given::Given(const NumPy& numpy, nb::object object) noexcept : object_(std::move
 bool Given::copy(double* out) const noexcept {
     if (buffer_) return copy_buffer(buffer_, out);
     const nb::ft_object_guard guard(object_);
-    if (static_cast<std::size_t>(sequence_size(object_.ptr())) != *count_) return false;
+    if (std::cmp_not_equal(sequence_size(object_.ptr()), *count_)) return false;
     for (std::size_t i = 0; i < *count_; ++i) {
         PyObject* item = sequence_item(object_.ptr(), static_cast<Py_ssize_t>(i));
         if (!PlainNumbers::read(item, out[i])) return false;

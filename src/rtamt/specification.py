@@ -200,7 +200,9 @@ class Specification(OnlineSpecification):
                 signal, findings = findings_apart(outputs, recording, self._signals_of)
                 parts = requirements_of(self, findings, query.semantics)
                 return Result(self, recording, signal, query.semantics, parts)
-        return Result(self, recording, self._evaluators(query.formulas, recording)[0], query.semantics)
+        return Result(
+            self, recording, self._evaluators.signals(query.formulas, recording)[0], query.semantics
+        )
 
     def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""

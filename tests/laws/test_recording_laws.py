@@ -7,6 +7,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
+import polars as pl
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -110,6 +113,41 @@ def test_what_the_core_reads_is_what_the_general_conversion_reads(
     for name in ("x", "y"):
         assert bits(read.columns[name]) == bits(expected.columns[name])
         assert not np.shares_memory(read.columns[name], np.asarray(data[name]))
+
+
+@settings(max_examples=150)
+@given(recordings(), st.sampled_from([pd, pl]), st.sampled_from(["x", "note", "stamp"]), st.booleans())
+def test_a_frame_is_read_as_the_general_conversion_reads_it(
+    data: dict[str, Any], library: Any, other: str, large: bool
+) -> None:
+    if large:
+        data = {
+            name: np.resize(np.asarray(values, float), 5000) for name, values in data.items() if len(values)
+        }
+    try:
+        frame = library.DataFrame({other: [1.0] * len(next(iter(data.values()), [])), **data})
+    except Exception:  # noqa: BLE001 - of the library: it has no such columns
+        return
+    domain = Discrete()
+    read = outcome(lambda: ENGINE.read(frame, ("x", "y"), domain))
+    if read is None:
+        return
+    expected = outcome(lambda: domain.record(frame, ("x", "y")))
+    if isinstance(read, str):
+        assert read == expected
+        return
+    assert (read.period, read.inferred) == (expected.period, expected.inferred)
+    assert bits(read.times) == bits(expected.times)
+    assert all(bits(read.columns[name]) == bits(expected.columns[name]) for name in ("x", "y"))
+
+
+@pytest.mark.parametrize("library", [pd, pl])
+@pytest.mark.parametrize("n", [5, 5000])
+def test_the_core_reads_plain_frames(library: Any, n: int) -> None:
+    frame = library.DataFrame(
+        {"time": np.arange(n) * 0.1, "x": np.arange(n), "y": np.ones(n), "z": np.ones(n)}
+    )
+    assert ENGINE.read(frame, ("x", "y"), Discrete()) is not None
 
 
 @given(st.data(), st.integers(1, 12))

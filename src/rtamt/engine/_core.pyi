@@ -395,6 +395,14 @@ class Evaluator:
         Return as many values of each output, and the first trace with an undefined value, or -1.
         """
 
+class TickPoints:
+    """The base of signals whose class has ``_events``, ticks and then values as bytes, and ``_scale``, their times."""
+
+    __slots__ = ()
+
+    def points(self) -> list[tuple[Any, float]]:
+        """Return (time, value) pairs of Python's own numbers."""
+
 def read_columns(
     data: Any,
     names: Sequence[str],

@@ -59,12 +59,20 @@ if TYPE_CHECKING:
     MonitorBase = _core.MonitorBase
     DenseMonitorBase = _core.DenseMonitorBase
     EarlyMonitorBase = _core.EarlyMonitorBase
+    TickPoints = _core.TickPoints
     read_columns = _core.read_columns
 else:
     try:
-        from rtamt.engine._core import DenseMonitorBase, EarlyMonitorBase, MonitorBase, read_columns
+        from rtamt.engine._core import (
+            DenseMonitorBase,
+            EarlyMonitorBase,
+            MonitorBase,
+            TickPoints,
+            read_columns,
+        )
     except ImportError:
         MonitorBase = DenseMonitorBase = EarlyMonitorBase = _TakenByPython
+        TickPoints = object
         read_columns = _read_by_python
 
 

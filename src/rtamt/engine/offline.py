@@ -63,14 +63,16 @@ class Evaluators:
         self._evaluators: dict[Any, Callable[[Any], Sequence[Any]]] = {}
         # The last formulas and step of a recording without bounds, and their evaluator: to look them up in the
         # dictionary takes as long as to evaluate a short trace.
-        self._last: (
-            tuple[tuple[Formula, ...], Fraction, tuple[str, ...], Callable[[Any], Sequence[Any]]] | None
-        ) = None
+        self._last: tuple[tuple[Formula, ...], Fraction, tuple[str, ...], Any] | None = None
 
     def __reduce__(self) -> tuple[type[Evaluators], tuple[str]]:
         return Evaluators, (self._backend,)  # a copy compiles anew
 
     def __call__(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
+        """As :meth:`signals`."""
+        return self.signals(formulas, recording)
+
+    def signals(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
         last = self._last
         if (
@@ -84,10 +86,11 @@ class Evaluators:
         if recording.bounds and (asked := presences(*formulas)):
             formulas = tuple(map(tracked, formulas))
             recording = recording.with_presence({name: channel_of(name) for name in asked})
-        evaluator = self._evaluator(formulas, recording)
+        evaluator: Any = self._evaluator(formulas, recording)
         if recording.bounds:
             return list(evaluator(recording))
-        self._last = formulas, recording.step, tuple(recording.columns), evaluator
+        # Python calls a method faster than an object.
+        self._last = formulas, recording.step, tuple(recording.columns), evaluator.__call__
         return recording.signals(evaluator(recording))
 
     def rows(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
@@ -31,9 +30,6 @@ if TYPE_CHECKING:
     Samples = tuple[TickArray, FloatArray]
 
 
-_ONE = struct.Struct("=qd").unpack
-
-
 class TickSignal(Signal):
     """A signal with lazily created arrays: most online updates report one point or none.
 
@@ -52,13 +48,9 @@ class TickSignal(Signal):
     def __len__(self) -> int:
         return len(self._events) // 16
 
-    def points(self) -> list[tuple[Any, float]]:
-        """Return (time, value) pairs; a single point, the common case, needs no array."""
-        rate = self._scale.rate
-        if rate is None or len(self._events) != 16:
-            return super().points()
-        tick, value = _ONE(self._events)
-        return [(tick / rate, value)]  # of two integers: rounded once
+    def _many_points(self) -> list[tuple[Any, float]]:
+        """Return what :meth:`points` returns, where that is not a single point at a plain number."""
+        return Signal.points(self)
 
     @property
     def times(self) -> NDArray[Any]:

@@ -354,7 +354,7 @@ def test_each_chunk_is_normalised_once(monkeypatch):
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_robustness_and_verdicts_of_all_requirements_come_from_one_program(time, monkeypatch):
     spec = rtamt.parse("require A: always(x >= 3); require B: eventually(y >= x)", time=time)
-    owner, name = (core(), "dense_evaluate") if time == "dense" else (Run, "__call__")
+    owner, name = (core(), "dense_evaluate") if time == "dense" else (Run, "over")
     runs = []
     run = getattr(owner, name)
     monkeypatch.setattr(owner, name, lambda *args: runs.append(args) or run(*args))

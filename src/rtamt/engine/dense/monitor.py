@@ -9,7 +9,7 @@ import numpy as np
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
 from rtamt.engine.discrete.apart import Apart
-from rtamt.engine.native import DenseMonitorBase
+from rtamt.engine.native import DenseMonitorBase, TickPoints
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
@@ -31,6 +31,12 @@ if TYPE_CHECKING:
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.dense_arrays import Samples
+
+
+class UpdateSignal(TickPoints, TickSignal):
+    """What an update made known, as the compiled monitor reports it."""
+
+    __slots__ = ()
 
 
 class DenseMonitor(DenseMonitorBase, OnlineMonitor):
@@ -235,7 +241,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     def _set_time_scale(self, scale: TimeScale) -> None:
         """Set the time scale of the back end, so that it reads plain times itself."""
         if scale.ticks_in_1 is not None:
-            self._backend.set_time_scale(TickSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")
+            self._backend.set_time_scale(UpdateSignal, scale, float(scale.ticks_in_1), scale.kind == "whole")
 
     def _chunk(self, columns: dict[str, tuple[Any, Any]], scale: TimeScale) -> dict[str, Samples]:
         so_far = zip(self.input_names, self._backend.counts, self._backend.last_times, strict=True)

@@ -51,20 +51,21 @@ class Evaluator:
 
     def __call__(self, trace: DiscreteTrace) -> list[FloatArray]:
         """Return the robustness of each formula at each of the n samples of the trace."""
-        plan, runs = self.plan(len(trace))
+        n = len(trace)
+        plan, runs = self.plan(n)
         columns = trace.columns
         if not plan.stages:
-            return runs[0](columns, trace, plan, self._asked)
+            return runs[0].over(columns, n, trace, plan, self._asked)
         columns = dict(columns)
         for stage, run in zip(plan.stages, runs, strict=False):  # the last run is that of the program
-            values = run(columns, trace, plan, self._asked)
+            values = run.over(columns, n, trace, plan, self._asked)
             for scan in stage.scans:
                 operands = [values[i] for i in scan.outputs]
                 if scan.kind == DEFINED:
                     columns[scan.name] = defined(scan, operands, trace, plan)
                 else:
                     columns[scan.name] = core().scan(scan.kind, *operands)
-        return runs[-1](columns, trace, plan, self._asked)
+        return runs[-1].over(columns, n, trace, plan, self._asked)
 
     def rows(self, columns: Mapping[str, FloatArray]) -> FloatArray | None:
         """Return the robustness of the only formula at each sample of many traces, a row each, of the same length.
@@ -128,23 +129,24 @@ class Run:
         # Calls have a state of their own, which belongs to one run.
         self._evaluator = None if program.calls else core().Evaluator(program.code())
 
-    def __call__(
+    def over(
         self,
         columns: Mapping[str, FloatArray],
+        n: int,
         trace: DiscreteTrace,
         plan: Plan,
         asked: Sequence[Formula],
     ) -> list[FloatArray]:
-        """Return the values of each output; the plan was made for the formulas that are ``asked``."""
+        """Return n values of each output; ``trace``, ``plan`` and the formulas that are ``asked``: for errors."""
         program = self._program
         inputs = [columns[name] for name in program.inputs]
         values: list[FloatArray]
         try:
             if self._evaluator is not None:
-                values = self._evaluator.run(inputs, len(trace))
+                values = self._evaluator.run(inputs, n)
             else:
                 calls = calls_of(program, SampleDriver)
-                values = core().evaluate(program.code(), inputs, len(trace), calls)
+                values = core().evaluate(program.code(), inputs, n, calls)
         except (RuntimeError, core().Undefined) as error:
             raise failed(error, program, trace, plan, asked) from None
         return values

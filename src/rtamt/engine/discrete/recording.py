@@ -10,15 +10,22 @@ from rtamt.engine.native import read_columns
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
 from rtamt.signals.regular import RegularTimes
+from rtamt.signals.time_columns import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _SECOND = Fraction(1)
+#: The numbers of a frame that may all be copied to read some of them.
+_SMALL = 4096
 
 
 def read_discrete(data: Any, names: Sequence[str], domain: Discrete) -> DiscreteTrace | None:
     """Return the trace that ``record_discrete`` makes of these data; None where it has to convert or reject them."""
+    if data.__class__ is not dict:
+        data = _columns_of(data, names)
+        if data is None:
+            return None
     period = domain.period
     found = read_columns(
         data, names, TIME, None if period is None else float(period), float(domain.tolerance)
@@ -30,6 +37,22 @@ def read_discrete(data: Any, names: Sequence[str], domain: Discrete) -> Discrete
         period = period or _SECOND
         return DiscreteTrace(RegularTimes(count, period), columns, period)
     return DiscreteTrace(times, columns, period or _decimal(inferred), period is None)
+
+
+def _columns_of(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
+    """Return the columns of a frame of pandas or polars as arrays; None for anything else."""
+    kind = type(data)
+    library = kind.__module__.partition(".")[0]
+    if kind.__name__ != "DataFrame" or library not in ("pandas", "polars"):
+        return None
+    columns = list(data.columns)
+    wanted = [name for name in (TIME, *names) if name in columns]
+    if len(wanted) != len(columns) or wanted[0] != TIME:
+        check_frame(data, TIME, names)
+    if library == "pandas" and len(data.index) * len(columns) <= _SMALL and len(set(columns)) == len(columns):
+        values = data.to_numpy()  # a frame takes longer to return a column than an evaluation of it takes
+        return {name: values[:, columns.index(name)] for name in wanted}
+    return {name: data[name].to_numpy() for name in wanted}
 
 
 @lru_cache(64)
