@@ -54,7 +54,7 @@ void Engine::pulses(std::uint32_t index, int reg) {
         if (run->end >= end) break;
         from = run->end + 1;
     }
-    std::ranges::stable_sort(steps, {}, &Shift::tick);
+    std::ranges::sort(steps, {}, &Shift::tick);
     const double sign = reg == 0 ? 1.0 : -1.0;
     const Runs& mine = state.own[static_cast<std::size_t>(reg)];
     const double before = open && t + own.high > 0 ? sign * mine.at(t - 1).value : 0.0;
