@@ -54,7 +54,7 @@ PyObject* points(PyObject* self, PyObject* /*unused*/) noexcept {
     const auto rate = nb::steal(PyObject_GetAttr(scale.ptr(), names().rate.ptr()));
     if (!rate.is_valid()) return nullptr;
     if (size != one || !PyLong_CheckExact(rate.ptr())) {
-        return PyObject_CallMethodNoArgs(self, names().many_points.ptr());
+        return PyObject_CallMethodObjArgs(self, names().many_points.ptr(), nullptr);
     }
     const char* memory = bytes_memory(events.ptr());
     std::int64_t tick = 0;
