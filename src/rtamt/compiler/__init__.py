@@ -9,6 +9,7 @@ shared     programs and plans that are compiled once for all values of parameter
 graph      the graph that gives verdicts and bounds before the horizon, and its nodes
 early      formulas to that graph, and their values at the start of the trace
 causation  the parts of formulas in that graph, of which causation is computed
+hoist      constants out of windows and delays, which can then be shared
 passes     the passes over a program, and how to leave them out
 program    the program: instructions, serialisation, disassembly
 metadata   names, period and labels stored with a program
