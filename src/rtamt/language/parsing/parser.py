@@ -60,6 +60,8 @@ if TYPE_CHECKING:
 
 
 _UNTIMED = Bounds.NONE
+#: In which nothing is declared.
+_FREE = Scope()
 #: What follows an operator, a function, a table or the use of a template.
 _OPENING = frozenset("([")
 
@@ -355,18 +357,21 @@ def parse_formula(
     >>> parse_formula("G >= 3 and s >= 1") == parse_formula("((G) >= 3) & (s >= 1.0)")
     True
     """
-    scope = Scope(
-        constants or {},
-        definitions or {},
-        variables,
-        templates=templates or {},
-        parameters=parameters,
-        types=types or {},
-        enumerations=enumerations or {},
-        tables=tables or {},
-        groups=groups or {},
-        units=units or {},
-    )
+    scope = _FREE
+    declared = constants or definitions or templates or types or enumerations or tables or groups
+    if variables is not None or declared:
+        scope = Scope(
+            constants or {},
+            definitions or {},
+            variables,
+            templates=templates or {},
+            parameters=parameters,
+            types=types or {},
+            enumerations=enumerations or {},
+            tables=tables or {},
+            groups=groups or {},
+            units=units or {},
+        )
     parser = FormulaParser(text, language, unit, scope)
     formula = parser.formula()
     formula = parser.standing_alone(formula, Span(0, parser.tokens[parser.index - 1].end), named=True)
