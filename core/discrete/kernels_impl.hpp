@@ -9,6 +9,7 @@
 #include "running.hpp"
 #include "shift.hpp"
 #include "since.hpp"
+#include "steady_window.hpp"
 #include "until.hpp"
 #include "window.hpp"
 
@@ -39,10 +40,11 @@ struct Make {
     }
     template <class Algebra>
     [[nodiscard]] Pointer slide() const {
-        using Value = typename Algebra::Value;
-        return std::make_unique<Slide<Algebra>>(lag, static_cast<std::size_t>(at.n),
-                                                static_cast<Value*>(state),
-                                                static_cast<Value*>(journal), at.lag);
+        using M = Joined<Algebra>;
+        if constexpr (has_steady<M>) {
+            if (is_steady()) return sliding<Sliding<M, SteadyWindow<M>>, M>();
+        }
+        return sliding<Sliding<M>, M>();
     }
     template <class Algebra>
     [[nodiscard]] Pointer running() const {
@@ -62,7 +64,11 @@ struct Make {
     }
     template <ValueDomain D>
     [[nodiscard]] Pointer until() const {
-        return with_ring<Until<D>, ClampOf<D>>();
+        using M = UntilSteps<D>;
+        if constexpr (has_steady<M>) {
+            if (is_steady()) return sliding<Sliding<M, SteadyWindow<M>>, M>();
+        }
+        return sliding<Sliding<M>, M>();
     }
 
     template <ValueDomain D, bool least>
@@ -72,6 +78,20 @@ struct Make {
     }
 
   private:
+    // Only monitors have updates that may not take long, and they compute with real numbers.
+    template <Monoid M>
+    static constexpr bool has_steady =
+        M::associative && std::same_as<typename M::Value, Real::Value>;
+
+    [[nodiscard]] bool is_steady() const noexcept { return at.steady && at.n >= narrowest_steady; }
+
+    template <class Kernel, Monoid M>
+    [[nodiscard]] Pointer sliding() const {
+        using Element = typename M::Element;
+        return std::make_unique<Kernel>(lag, static_cast<std::size_t>(at.n),
+                                        static_cast<Element*>(state),
+                                        static_cast<Element*>(journal), at.lag);
+    }
     template <class Ringed, class Element, class... Arguments>
     [[nodiscard]] Pointer with_ring(const Arguments&... arguments) const {
         return std::make_unique<Ringed>(lag, static_cast<std::size_t>(at.n), arguments...,

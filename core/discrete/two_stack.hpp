@@ -281,8 +281,8 @@ class TwoStack {
     }
 };
 
-// The kernel of a sliding window.
-template <Monoid M>
+// The kernel of a sliding window, over two stacks or in constant time (steady_window.hpp).
+template <Monoid M, class Window = TwoStack<M>>
 class Sliding final : public Kernel {
   public:
     using Element = typename M::Element;
@@ -291,7 +291,7 @@ class Sliding final : public Kernel {
     // `lag`: of the result; it may be less than that of the operand for windows of the past alone.
     Sliding(std::int64_t operand_lag, std::size_t width, Element* ring, Element* journal,
             std::int64_t lag = 0) noexcept
-        : Kernel(operand_lag), stack_(width, ring, journal), lag_(lag) {}
+        : Kernel(operand_lag), window_(width, ring, journal), lag_(lag) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(lag());
@@ -299,21 +299,21 @@ class Sliding final : public Kernel {
         // Before their first sample the operands leave nothing behind: the window starts with it.
         fill_values(out, present.begin, M::result(M::identity));
         const Operands<M> in{a<Value>(), b<Value>()};
-        stack_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
-        stack_.expire(out + present.end, block.count - present.end);
+        window_.push(in.from(present.begin), out + present.begin, present.end - present.begin);
+        window_.expire(out + present.end, block.count - present.end);
         if constexpr (M::partial) {
             return first_undefined<typename M::Domain>(out, block.until_end(present, lag_));
         }
         return defined;
     }
 
-    void reset() noexcept override { stack_.reset(); }
-    void checkpoint(std::size_t count) noexcept override { stack_.checkpoint(count); }
-    void rollback() noexcept override { stack_.rollback(); }
-    void transfer(Snapshot& snapshot) override { stack_.transfer(snapshot); }
+    void reset() noexcept override { window_.reset(); }
+    void checkpoint(std::size_t count) noexcept override { window_.checkpoint(count); }
+    void rollback() noexcept override { window_.rollback(); }
+    void transfer(Snapshot& snapshot) override { window_.transfer(snapshot); }
 
   private:
-    TwoStack<M> stack_;
+    Window window_;
     std::int64_t lag_;
 };
 

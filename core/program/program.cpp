@@ -22,6 +22,7 @@ static_assert(std::numeric_limits<double>::is_iec559, "programs store IEEE 754 d
 constexpr std::string_view magic = "RTAMTPRG";
 constexpr std::uint16_t version = 1;
 constexpr std::size_t header_size = 32;
+constexpr std::uint32_t worst_case_option = 1;
 constexpr std::size_t record_size = 40;
 constexpr std::size_t checksum_size = 4;
 // Every input takes memory when the program runs, whether or not an instruction reads it: the final
@@ -40,6 +41,7 @@ struct Header {
     std::uint32_t inputs = 0;
     std::uint32_t outputs = 0;
     std::uint32_t note = 0;
+    std::uint32_t options = 0;
 };
 
 Header read_header(Reader& reader, std::size_t size) {
@@ -61,7 +63,10 @@ Header read_header(Reader& reader, std::size_t size) {
     header.inputs = reader.take<std::uint32_t>();
     header.outputs = reader.take<std::uint32_t>();
     header.note = reader.take<std::uint32_t>();
-    if (reader.take<std::uint32_t>() != 0) refuse("a reserved byte of its header is not zero");
+    header.options = reader.take<std::uint32_t>();
+    if (header.options > worst_case_option) {
+        refuse("it has unknown options (" + std::to_string(header.options) + ")");
+    }
     if (header.without >= 4) {
         refuse("it leaves out unknown passes (" + std::to_string(header.without) + ")");
     }
@@ -168,6 +173,9 @@ class Checker {
             break;
         case Count::width:
             bounded("width", n, dense_ ? 0 : 1);
+            if (program_.worst_case && instruction_.opcode == Opcode::slide_sum) {
+                fail("is a sum over a window, which takes longer at some samples");
+            }
             break;
         case Count::rank:
             bounded("width", n, 1);
@@ -262,12 +270,17 @@ Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain,
     Program program;
     program.domain = domain;
     program.without = header.without;
+    program.worst_case = header.options == worst_case_option;
+    if (program.worst_case && domain == Domain::dense) {
+        refuse("it is for the worst case, which there is in discrete time only");
+    }
     program.calls = std::move(calls);
     program.inputs = header.inputs;
     program.instructions.reserve(header.instructions);
     for (std::size_t index = 0; index < header.instructions; ++index) {
         program.instructions.push_back(read_instruction(reader, index));
         Checker(program, index).check();
+        program.instructions.back().steady = program.worst_case;
     }
     program.outputs.reserve(header.outputs);
     for (std::size_t place = 0; place < header.outputs; ++place) {

@@ -11,7 +11,7 @@
 //         16  u32    number of inputs
 //         20  u32    number of outputs
 //         24  u32    length of the note
-//         28  u32    0
+//         28  u32    options, a bit each: 1 worst case
 //         32         instructions, 40 bytes each: u8 opcode, 3 B 0, u32 a, u32 b, u32 0,
 //                    i64 n, f64 x, i64 lag; an operand that is not used is 0xFFFFFFFF
 //                    outputs, one u32 instruction index each
@@ -55,6 +55,7 @@ struct Instruction {
     std::int64_t n = 0; // index of an input or a call, distance of a shift, or width of a window
     double x = 0.0;     // value of a constant, or what a shift yields where there is no sample
     std::int64_t lag = 0;
+    bool steady = false; // if it is a window, every sample costs the same
 };
 
 // A kernel from outside the core, and the instructions that it reads. The caller that runs the
@@ -73,6 +74,7 @@ struct Program {
     std::string note;
     Domain domain = Domain::discrete;
     std::uint8_t without = 0; // passes to leave out
+    bool worst_case = false;  // instructions are steady
 
     [[nodiscard]] bool applies(Pass pass) const noexcept {
         return (without & static_cast<std::uint8_t>(pass)) == 0;

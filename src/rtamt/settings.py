@@ -70,6 +70,7 @@ class DiscreteSettings(OnlineSettings, total=False):
 
     period: Duration | None
     tolerance: float | None
+    worst_case: bool
 
 
 class DenseSettings(OnlineSettings, total=False):
@@ -85,6 +86,15 @@ class IntervalSettings(DiscreteSettings, DenseSettings, total=False):
     ranges: Mapping[str, Any] | None
     lateness: Duration | None
     on_correction: str | None
+
+
+def require_samples(domain: TimeDomain, *, worst_case: bool) -> None:
+    """Raise :class:`UsageError` if constant time a sample is asked for where there are no samples."""
+    if worst_case and domain.continuous:
+        raise UsageError(
+            "worst_case=True needs discrete time: in dense time a window may hold any number of changes; "
+            "leave it out, or use time='discrete'"
+        )
 
 
 def check_language(language: Language) -> None:

@@ -15,7 +15,7 @@ from rtamt.language.records import Sort
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifier_streams import Splitting
 from rtamt.rewrite.semantics import apply_semantics
-from rtamt.settings import watched_of
+from rtamt.settings import require_samples, watched_of
 from rtamt.specification_groups import QuantifiedText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 
@@ -127,6 +127,7 @@ class OnlineSpecification(QuantifiedText):
         on_correction: str | None = None,
         episodes: bool = False,
         explain: bool = False,
+        worst_case: bool = False,
     ) -> OnlineMonitor:
         """Return an online monitor; for dense time if selected here or in :func:`parse`.
 
@@ -151,7 +152,9 @@ class OnlineSpecification(QuantifiedText):
         (``"eager"``, ``"interval"``). ``lateness``: how late a sample may arrive (``"interval"``); without it,
         the samples of each variable must arrive in order in dense time. ``on_correction``: whether to ``"reject"`` or
         ``"replay"`` a sample that contradicts an earlier one (``"interval"``). ``episodes``: whether the monitor
-        records runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``explain``: whether it
+        records runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``worst_case``: for real-time
+        use, whether no update may take longer than others, whatever the bounds (``"delayed"``, discrete time); the
+        results are the same, and sums over windows are rejected. ``explain``: whether it
         keeps samples, so that ``monitor.explain(verdict)`` can return those that decided a verdict (``"eager"``).
 
         >>> import rtamt
@@ -167,7 +170,7 @@ class OnlineSpecification(QuantifiedText):
         None 2.0 -3.0
         """
         given = {"at": at, "ranges": ranges, "lateness": lateness, "on_correction": on_correction}
-        given |= {"episodes": episodes or None, "explain": explain or None}
+        given |= {"episodes": episodes or None, "explain": explain or None, "worst_case": worst_case or None}
         settings: dict[str, Any] = {name: setting for name, setting in given.items() if setting is not None}
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
@@ -192,6 +195,7 @@ class OnlineSpecification(QuantifiedText):
             **settings,
         )
         domain = self._domain_for(time, period, tolerance, resolution).online
+        require_samples(domain, worst_case=worst_case)
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
         make = engine_of(domain).monitor if mode.name == DELAYED else monitor_of(mode, domain)
         monitor = make(
@@ -295,13 +299,15 @@ class OnlineSpecification(QuantifiedText):
         resolution: Duration | None = None,
         semantics: Semantics | None = None,
         verdict: str = DELAYED,
+        worst_case: bool = False,
     ) -> Program:
         """Compile the requirement to a standalone program, which the core runs without Python.
 
         Its outputs are ``robustness`` (ρ, or that of ``semantics``) and ``verdict`` (+inf where the
         formula holds, -inf where it does not); for several requirements these refer to their conjunction, and each has
         its own, ``robustness.R1`` and ``verdict.R1``. The parameters and named constants of the specification are
-        parameters of the program, except those that bound an interval. Settings and errors as for :meth:`monitor`.
+        parameters of the program, except those that bound an interval. Settings, errors and
+        ``worst_case`` as for :meth:`monitor`.
 
         With ``verdict="interval"`` its outputs are bounds at the start of the trace, valid for every continuation:
         ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that
@@ -317,14 +323,15 @@ class OnlineSpecification(QuantifiedText):
         self.require_no_groups("a compiled program")
         domain = self._domain_for(time, period, None, resolution).online
         chosen = self._semantics(semantics)
-        if mode_of(verdict, {}).name != DELAYED:
+        require_samples(domain, worst_case=worst_case)
+        if mode_of(verdict, {"worst_case": True} if worst_case else {}).name != DELAYED:
             if verdict != "interval":
                 raise UsageError(f"verdict='{verdict}' cannot be compiled; choose from {DELAYED}, interval")
             applied = self._apply_semantics(self.formula, chosen)
             return bounds_program(self.formula, domain, applied=applied, text=self.text, name=self.name)
         several = self.requirements if len(self.requirements) > 1 else {}
         parts = {name: one._outputs(chosen) for name, one in several.items()}
-        return carried_program(
+        program = carried_program(
             self.formula,
             applied=self._apply_semantics(self.formula, chosen),
             parts=parts,
@@ -332,6 +339,7 @@ class OnlineSpecification(QuantifiedText):
             text=self.text,
             name=self.name,
         )
+        return program.for_worst_case() if worst_case else program
 
 
 def _monitor(

@@ -93,7 +93,7 @@ inline std::vector<std::uint8_t> bytes_of(const Program& program) {
     put(bytes, program.inputs);
     put(bytes, static_cast<std::uint32_t>(program.outputs.size()));
     put(bytes, static_cast<std::uint32_t>(program.note.size()));
-    put(bytes, std::uint32_t{0});
+    put(bytes, static_cast<std::uint32_t>(program.worst_case));
     for (const Instruction& instruction : program.instructions) {
         put(bytes, static_cast<std::uint32_t>(instruction.opcode));
         put(bytes, instruction.a);

@@ -132,6 +132,15 @@ def add_verdict_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_worst_case_option(parser: argparse.ArgumentParser) -> None:
+    """Add the choice of constant time a sample."""
+    parser.add_argument(
+        "--worst-case",
+        action="store_true",
+        help="for real-time use: no sample takes longer than others, whatever the bounds (discrete time)",
+    )
+
+
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the options for the column and unit of timestamps; ``what``: a column, or a key."""
     group = options(parser, READING)

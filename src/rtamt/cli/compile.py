@@ -8,6 +8,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     add_verdict_option,
+    add_worst_case_option,
     read_specification,
     write_output,
 )
@@ -39,6 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     add_time_option(parser)
     add_verdict_option(parser)
+    add_worst_case_option(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="the file to write, such as spec.rtamt")
     parser.add_argument("--dump", action="store_true", help="list the instructions")
 
@@ -48,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None and not args.dump:
         raise UsageError("nothing to do: give -o FILE to write the program, or --dump to list it")
     spec = read_specification(args, args.time)
-    program = spec.compile(verdict=args.verdict)
+    program = spec.compile(verdict=args.verdict, worst_case=args.worst_case)
     if args.output is not None:
         code = program.to_bytes()
         write_output(args.output, code)

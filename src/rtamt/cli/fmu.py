@@ -10,6 +10,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_time_option,
     add_verdict_option,
+    add_worst_case_option,
     read_specification,
 )
 from rtamt.cli.parser import OK
@@ -38,6 +39,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     add_time_option(parser)
     add_verdict_option(parser)
+    add_worst_case_option(parser)
     parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the FMU to write, FILE.fmu")
     parser.add_argument(
         "--fmi", type=int, choices=(2, 3), default=2, help="the version: FMI 2.0 or 3.0 (default: 2)"
@@ -46,6 +48,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the FMU."""
-    fmi.export(read_specification(args, args.time), args.output, version=args.fmi, verdict=args.verdict)
+    fmi.export(
+        read_specification(args, args.time),
+        args.output,
+        version=args.fmi,
+        verdict=args.verdict,
+        worst_case=args.worst_case,
+    )
     say(f"{args.output}: FMI {args.fmi}.0, co-simulation, {Path(args.output).stat().st_size / 1024:.0f} KiB")
     return OK

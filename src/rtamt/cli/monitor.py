@@ -17,6 +17,7 @@ from rtamt.cli.command import (
     add_specification_options,
     add_stamp_options,
     add_time_option,
+    add_worst_case_option,
     json_number,
     read_specification,
     stamp_text,
@@ -124,6 +125,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="with --verdict eager, print the samples that decided each verdict",
     )
+    add_worst_case_option(parser)
     parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
     )
@@ -236,6 +238,7 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
             f"--live draws the robustness; leave it out, or use --verdict {DELAYED} or --verdict interval"
         )
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
+    settings |= {"worst_case": True} if args.worst_case else {}
     monitor: Any = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
     if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)

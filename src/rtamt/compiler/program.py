@@ -25,6 +25,7 @@ from rtamt.compiler.passes import bits_of, without_of
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
+from rtamt.language.printing.printer import excerpt
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 
@@ -145,6 +146,8 @@ class Program:
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     #: Passes of the core that are left out (``passes.py``).
     without: frozenset[str] = frozenset()
+    #: Whether no sample takes longer than others, whatever the windows.
+    worst_case: bool = False
 
     @property
     def lags(self) -> tuple[int, ...]:
@@ -169,6 +172,20 @@ class Program:
         origin = self.origins[place]
         return None if origin is None else with_values([origin], self.parameters)[0]
 
+    def for_worst_case(self) -> Program:
+        """Return the program whose windows take the same time at every sample.
+
+        Raises :class:`UsageError` if it has a sum over a window.
+        """
+        for instruction, origin in zip(self.instructions, self.origins, strict=True):
+            if instruction.opcode == "slide_sum":
+                assert origin is not None
+                raise UsageError(
+                    f"worst_case=True does not take '{excerpt(origin)}', a sum over a window: it is added in blocks, "
+                    f"so that some samples take longer; leave worst_case out"
+                )
+        return replace(self, worst_case=True)
+
     def to_bytes(self) -> bytes:
         """Serialise the program for execution outside Python.
 
@@ -189,7 +206,13 @@ class Program:
     def _code(self) -> bytes:
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = _DOMAINS.index(self.domain)
-        counts = (len(self.instructions), len(self.inputs), len(self.outputs), len(note), 0)
+        counts = (
+            len(self.instructions),
+            len(self.inputs),
+            len(self.outputs),
+            len(note),
+            int(self.worst_case),
+        )
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
         for ins in self.instructions:
             a = NO_OPERAND if ins.a is None else ins.a
@@ -216,7 +239,7 @@ class Program:
         code = bytes(code)
         if len(code) < _HEADER.size + _CHECKSUM or not code.startswith(MAGIC):
             raise damaged(f"it does not begin with '{MAGIC.decode()}'")
-        _, version, domain, bits, size, inputs, outputs, length, _ = _HEADER.unpack_from(code)
+        _, version, domain, bits, size, inputs, outputs, length, options = _HEADER.unpack_from(code)
         if version != _VERSION:
             raise damaged(f"its format has version {version}, and this is for version {_VERSION}")
         expected = _HEADER.size + _RECORD.size * size + 4 * outputs + length + _CHECKSUM
@@ -230,6 +253,8 @@ class Program:
         without = without_of(bits)
         if without is None:
             raise damaged(f"it leaves out unknown passes ({bits})")
+        if options > 1:
+            raise damaged(f"it has unknown options ({options})")
         records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
         instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
         end = len(body) - length
@@ -238,7 +263,14 @@ class Program:
             raise damaged("it has an output that is no instruction")
         metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
         return Program(
-            instructions, names, places, period, domain=_DOMAINS[domain], metadata=metadata, without=without
+            instructions,
+            names,
+            places,
+            period,
+            domain=_DOMAINS[domain],
+            metadata=metadata,
+            without=without,
+            worst_case=bool(options),
         )
 
     def disassemble(self) -> str:

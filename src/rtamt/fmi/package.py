@@ -42,6 +42,7 @@ def export(
     resolution: Duration | None = None,
     semantics: Semantics | None = None,
     verdict: str = DELAYED,
+    worst_case: bool = False,
 ) -> None:
     """Write a requirement's monitor as a Functional Mock-up Unit for co-simulation.
 
@@ -64,7 +65,12 @@ def export(
         )
     path = Path(path)
     program = spec.compile(
-        time=time, period=period, resolution=resolution, semantics=semantics, verdict=verdict
+        time=time,
+        period=period,
+        resolution=resolution,
+        semantics=semantics,
+        verdict=verdict,
+        worst_case=worst_case,
     )
     code = program.to_bytes()
     name = spec.name or path.stem

@@ -36,7 +36,11 @@ MODES: Mapping[str, Mode] = MappingProxyType(
     {
         mode.name: mode
         for mode in (
-            Mode("delayed", "the robustness at each sample, one horizon later", settings=("episodes",)),
+            Mode(
+                "delayed",
+                "the robustness at each sample, one horizon later",
+                settings=("episodes", "worst_case"),
+            ),
             Mode(
                 "eager",
                 "whether the formula holds at each sample, as soon as no later sample can change it",

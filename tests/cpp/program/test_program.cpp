@@ -121,7 +121,7 @@ TEST_CASE("header is checked") {
     CHECK(with(10, 1) == refused("it is for dense time, and discrete time is wanted here"));
     CHECK(with(10, 7) == refused("it is for the unknown time domain 7"));
     CHECK(with(11, 4) == refused("it leaves out unknown passes (4)"));
-    CHECK(with(28, 1) == refused("a reserved byte of its header is not zero"));
+    CHECK(with(28, 2) == refused("it has unknown options (2)"));
     CHECK(with(15, 255).starts_with(refused("").substr(0, 39) + "it has "));
     CHECK(with(33, 1) == refused("a reserved byte of instruction 0 is not zero"));
     CHECK(with(32 + 12, 1) == refused("a reserved byte of instruction 0 is not zero"));
@@ -222,4 +222,22 @@ TEST_CASE("outputs are checked") {
     CHECK(refusal_of([](Program& p) { p.outputs.clear(); }) == refused("it has no output"));
     CHECK(refusal_of([](Program& p) { p.outputs[1] = 6; }) ==
           refused("output 1 is instruction 6 of 6"));
+}
+
+TEST_CASE("windows of a program for the worst case are steady and not of sums") {
+    programs::Builder builder;
+    const auto x = builder.input();
+    builder.output(builder.unary(Opcode::slide_min, x, 3, 0));
+    Program program = builder.program();
+    CHECK(!Program::parse(bytes_of(program)).instructions.back().steady);
+    program.worst_case = true;
+    CHECK(Program::parse(bytes_of(program)).instructions.back().steady);
+    program.instructions.back().opcode = Opcode::slide_sum;
+    CHECK(refusal(bytes_of(program)) ==
+          refused("instruction 1 (slide_sum) is a sum over a window, which takes longer at some "
+                  "samples"));
+    program.domain = Domain::dense;
+    const Bytes dense = bytes_of(program);
+    CHECK(thrown<std::invalid_argument>([&] { (void)Program::parse(dense, Domain::dense); }) ==
+          refused("it is for the worst case, which there is in discrete time only"));
 }

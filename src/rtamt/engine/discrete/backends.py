@@ -13,6 +13,7 @@ from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
 from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.errors import UsageError
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.outcomes import BoundedSignal
@@ -52,9 +53,12 @@ class CompiledDiscrete(Compiled):
         strict: bool = True,
         unit: Fraction = _SECOND,
         parts: bool = False,
+        worst_case: bool = False,
     ) -> SampleProgram:
-        """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
-        return SampleProgram(formulas, inputs, domain, ignored, strict=strict, unit=unit, parts=parts)
+        """See :class:`Backend`; the other arguments are those of :class:`SampleProgram`."""
+        return SampleProgram(
+            formulas, inputs, domain, ignored, strict=strict, unit=unit, parts=parts, worst_case=worst_case
+        )
 
     def memory(self, program: Program) -> int:
         """See :class:`Backend`."""
@@ -92,15 +96,19 @@ class DefinedDiscrete(Defined):
         strict: bool = True,
         unit: Fraction = _SECOND,
         parts: bool = False,
+        worst_case: bool = False,
     ) -> SampleDefinition:
         """See :class:`Backend`; the other arguments are those of :class:`SampleDefinition`."""
+        if worst_case:
+            raise UsageError("worst_case=True needs the compiled core; leave out backend='python'")
         return SampleDefinition(formulas, inputs, domain, strict=strict, unit=unit)
 
 
 class SampleProgram(CompiledSession):
     """Formulas as a program of the compiled core.
 
-    ``parts``: whether :meth:`part` is called, for which the value of every instruction is kept.
+    ``parts``: whether :meth:`part` is called, for which the value of every instruction is kept. ``worst_case``: whether
+    no sample may take longer than others.
     """
 
     def __init__(
@@ -113,10 +121,13 @@ class SampleProgram(CompiledSession):
         strict: bool,
         unit: Fraction,
         parts: bool,
+        worst_case: bool,
     ) -> None:
         assert domain.period is not None
         without = frozenset(PASSES) if parts else frozenset()
         program = Shape.of(formulas).program(domain.period, inputs, without=without)
+        if worst_case:
+            program = program.for_worst_case()
         super().__init__(formulas, program)
         self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
 

@@ -74,6 +74,7 @@ class Monitor(MonitorBase, OnlineMonitor):
         unit: str | None = None,
         requirements: Sequence[Formula] = (),  # noqa: ARG002 - in discrete time they start together
         episodes: bool = False,
+        worst_case: bool = False,
     ) -> None:
         domain = domain.online
         period = domain.period
@@ -93,7 +94,9 @@ class Monitor(MonitorBase, OnlineMonitor):
         # the number is larger.
         self._news: tuple[int, list[Signal]] = (0, [])
         self._times = CallerTimes(None if unit is None else check_unit(unit), period, self._oldest)
-        self._session = BACKENDS[backend].session(self._formulas, self.input_names, domain)
+        self._session = BACKENDS[backend].session(
+            self._formulas, self.input_names, domain, worst_case=worst_case
+        )
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
