@@ -135,7 +135,7 @@ class _StreamScope(Scope):
             lag = horizon(given, period)
             assert lag is not None
             name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"
-            keep = _past(desugar(given), period)
+            keep = _keep(_past(desugar(given), period), inner.found)
             known = Quantified(binder, node.op.name, given, name, lag, keep, tuple(inner.found))
             self.found.append(known)
         column = Var(known.column, node.span)
@@ -155,6 +155,12 @@ class _StreamScope(Scope):
     def absent(self) -> set[str | None]:
         """Return the variables whose members may be absent; None: everything, after the end of the stream."""
         return set(self.bound) or {None}
+
+
+def _keep(past: Fraction | None, inside: list[Quantified]) -> Fraction | None:
+    """Return how long a member matters that is gone: what the quantifiers inside have of it matters too."""
+    known = [each.keep + each.lag for each in inside if each.keep is not None]
+    return None if past is None or len(known) < len(inside) else past + max(known, default=Fraction(0))
 
 
 def _past(core: Formula, period: Fraction) -> Fraction | None:

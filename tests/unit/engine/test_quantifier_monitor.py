@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import time
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -60,6 +61,50 @@ def test_a_member_that_is_gone_is_dropped_when_it_cannot_matter_any_more():
     unbounded = spec("forall v in cars: once(v.x > 0)").monitor()
     given = [unbounded.update(t, **({"car_1.x": 3.0 - t} if t in (0, 15) else {})) for t in range(16)]
     assert given[15] == 3
+
+
+BODIES = [
+    "forall v in cars: minimum[1:4](v.x) > 2",
+    "forall v in cars: forall w in cars: once(v.x > 3)",
+    "forall v in cars: exists w in cars: delay[1s](v.x) < w.x",
+    "exists v in cars: (forall w in cars where v != w: historically[2:6](w.x > y)) or once[0:1](v.x > 0)",
+    "(count v in cars: (count w in cars: eventually[0:2](held(v.x, w.x > y) > 1)) > 1) > 1",
+]
+
+
+@pytest.mark.parametrize("time_domain", ["discrete", "dense"])
+@pytest.mark.parametrize("body", BODIES)
+def test_a_member_that_returns_after_a_long_absence_still_has_what_matters(body, time_domain):
+    rng = np.random.default_rng(17)
+    formula = rtamt.parse(f"{CARS}({body}) and y > -50", time=time_domain, period="1s", resolution="1s")
+    for _ in range(20):
+        y = rng.integers(-3, 5, 24).astype(float).tolist()
+        columns = {
+            f"car_{k}.x": [
+                x if here else None
+                for x, here in zip(
+                    rng.integers(-3, 5, 24).astype(float).tolist(),
+                    np.repeat(rng.random(8) < 0.4, 3),
+                    strict=True,
+                )
+            ]
+            for k in range(2)
+        }
+        times, monitor, found = list(range(24)), formula.monitor(), []
+        for begin, end in pairwise([0, *sorted(rng.choice(np.arange(1, 24), 6, replace=False)), 24]):
+            part = {name: xs[begin:end] for name, xs in {"y": y, **columns}.items()}
+            if time_domain == "dense":
+                part = {name: (times[begin:end], xs) for name, xs in part.items()}
+            found += monitor.update_many(part).points()
+        found += monitor.finish().points()
+        data = {"y": y, **columns}
+        if time_domain == "dense":
+            data = {name: (times, xs) for name, xs in data.items()}
+        expected = formula.evaluate(data).signal
+        values = dict(found)
+        held = [values[max(at for at in values if at <= t)] for t in times]
+        whole = dict(expected.points())
+        assert held == [whole[max(at for at in whole if at <= t)] for t in times]
 
 
 def test_a_new_member_compiles_nothing_in_dense_time_either(monkeypatch):

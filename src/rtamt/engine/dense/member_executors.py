@@ -129,8 +129,11 @@ class _Running:
     def step(self, part: Part, values: Mapping[str, Steps], own: Member | None) -> Steps:
         """Take a part of the stream; return what the member gives at the instants that are known now."""
         plan, begin = self.plan, self.birth
-        absent = own is None or not own.channel.values[-1]
-        self.gone = (part.end if self.gone is None else self.gone) if absent else None
+        present = own is not None and own.channel.values.any()  # somewhere in the part
+        if own is not None and own.channel.values[-1]:
+            self.gone = None
+        elif self.gone is None or present:
+            self.gone = part.end
         mine = dict(values)
         mine[plan.channel] = constant(0.0, part.end) if own is None else own.channel
         for field, name in plan.fields.items():
