@@ -142,6 +142,22 @@ def test_a_number_has_no_boolean_in_its_place(text):
     assert text[caught.value.span.start - 15 :].startswith("false")
 
 
+@pytest.mark.parametrize("declared", ["", "bool p float x ", "def f(a) = p or a > 0\n"])
+@pytest.mark.parametrize(
+    ("text", "operator", "literal"),
+    [
+        ("delay(true)", "delay", "true"),
+        ("(if x > 0 then true else false) and x > 1", "if", "true"),
+    ],
+)
+def test_true_and_false_are_no_numbers_unless_beside_a_boolean(declared, text, operator, literal):
+    with pytest.raises(ParseError) as caught:
+        rtamt.parse(declared + text)
+    assert caught.value.message.startswith(
+        f"'{operator}' takes a number, and '{literal}' is a formula, true or false"
+    )
+
+
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize(
     ("text", "holds"),

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, span_of
-from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort, Tense
+from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import (
     ELSE,
@@ -46,6 +46,7 @@ from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.lookahead import LookaheadParser
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.templates import Template, parse_use
+from rtamt.language.parsing.type_rules import takes_number
 from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
 
@@ -235,13 +236,7 @@ class FormulaParser(LookaheadParser):
         sort = op.operands[min(position, len(op.operands) - 1)]
         if op.strict and sort is Sort.NUMBER and not is_number(operand):
             end = self.tokens[self.index - 1].end
-            written = self.text[start:end]
-            how_long = "" if op.tense is Tense.NONE else f", or duration({written}) for how long it holds"
-            raise self.error(
-                f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
-                f"write a signal or arithmetic, such as (if {written} then 1 else 0){how_long}",
-                Span(start, end),
-            )
+            raise self.error(takes_number(op, self.text[start:end]), Span(start, end))
         return operand
 
     def choice(self, op: Operator, power: int, under: Operator | None) -> Formula:

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
-from rtamt.language.operators import STL, Sort
+from rtamt.language.operators import STL, Sort, Tense
 from rtamt.language.parsing.grammar import is_literal, is_number
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN, LITERALS, UNKNOWN, Ambiguous, Enumeration
@@ -171,8 +171,10 @@ def _resolved(operand: Formula, one: Enumeration) -> Formula:
 
 
 def _refuse_literals(op: Operator, args: Sequence[Formula], types: Sequence[PartType], texts: Texts) -> None:
-    """Refuse ``delay(x, false)`` of a number."""
+    """Refuse ``delay(x, false)`` of a number, and ``delay(true)``: a literal is a Boolean beside one."""
     kept = [k for k in op.keeps if k < len(args)]
+    if kept and all(is_literal(args[k]) for k in kept):
+        raise MistypedError(takes_number(op, texts(kept[0])), kept[0])
     other = next((k for k in kept if types[k] is None), None)
     for k in kept:
         if is_literal(args[k]) and other is not None:
@@ -190,6 +192,15 @@ def _refuse_formulas(args: Sequence[Formula], types: Sequence[PartType], texts: 
             raise MistypedError(
                 f"'{texts(k)}' is a formula, and == compares numbers; write {other} <-> {texts(k)}, or {other} alone"
             )
+
+
+def takes_number(op: Operator, written: str) -> str:
+    """Return the message for a formula as an operand of an operator that takes a number."""
+    how_long = "" if op.tense is Tense.NONE else f", or duration({written}) for how long it holds"
+    return (
+        f"'{op.spellings[0]}' takes a number, and '{written}' is a formula, true or false; "
+        f"write a signal or arithmetic, such as (if {written} then 1 else 0){how_long}"
+    )
 
 
 def no_formula(text: str, type_: PartType, member: MemberText) -> str:
