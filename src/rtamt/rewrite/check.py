@@ -155,14 +155,19 @@ def _check_sums(formula: Formula, step: Fraction, text: str | None, unit: BoundU
         reach[id(node)] = far
 
 
-def check_online(formula: Formula, text: str | None = None) -> None:
-    """Raise :class:`BoundError` at the first operator with an unbounded future, which is never known online."""
+def check_online(formula: Formula, text: str | None = None, *, group: str | None = None) -> None:
+    """Raise :class:`BoundError` at the first operator with an unbounded future, which is never known online.
+
+    ``group``: of the members over which the formula is quantified.
+    """
     node = unbounded_future(formula)
     if node is not None:
+        verdicts = "monitor its bounds or verdicts (verdict='interval', 'eager')"
+        known = f"name the members, which must be present throughout: spec.over({{'{group}': [...]}}), and {verdicts}"
         raise BoundError(
-            f"'{node.op.name}' without an upper bound needs the whole future and cannot be monitored online; "
-            f"give it a bound, such as {node.op.name}[0:10], evaluate the finished trace offline, "
-            "or monitor its bounds or verdicts (verdict='interval', 'eager')",
+            f"'{node.op.name}' without an upper bound needs the whole future{' of each member' if group else ''} "
+            f"and cannot be monitored online; give it a bound, such as {node.op.name}[0:10], evaluate the finished "
+            f"trace offline, or {known if group else verdicts}",
             text,
             node.span,
         )

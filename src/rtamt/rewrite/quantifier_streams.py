@@ -131,7 +131,7 @@ class _StreamScope(Scope):
             None,
         )
         if known is None:
-            check_online(given, self.splitting.text)
+            check_online(given, self.splitting.text, group=binder.group.name)
             lag = horizon(given, period)
             assert lag is not None
             name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"

@@ -98,6 +98,8 @@ def test_watched_requirements_have_bounds_and_dates_are_kept():
 
 def test_an_unbounded_operator_inside_a_quantifier_is_one_sentence():
     with pytest.raises(
-        SpecificationError, match="'eventually' without an upper bound needs the whole future"
+        SpecificationError,
+        match=r"'eventually' without an upper bound needs the whole future of each member and cannot be monitored "
+        r"online; .*, or name the members, which must be present throughout: spec.over\({'cars': \[\.\.\.\]}\)",
     ):
         spec("always forall v in cars: eventually(v.x > 0)").monitor(verdict="interval")
