@@ -164,6 +164,6 @@ def _results(requirements: list[Requirement], trace: str, reading: Reading) -> d
             raise CommandError(outcome.error)
     if not found:
         raise CommandError(
-            f"{shown(trace)}: nothing was checked, since the recording has none of the signals"
+            f"{shown(trace)}: nothing was checked: every requirement reads signals that the recording lacks"
         )
     return found

@@ -156,7 +156,9 @@ def exit_code(outcomes: Sequence[Outcome]) -> int:
     checked = {outcome.trace for outcome in outcomes if not outcome.unchecked}
     for trace in dict.fromkeys(outcome.trace for outcome in outcomes):
         if trace not in checked:
-            complain(f"{trace}: nothing was checked, since the recording has none of the signals")
+            complain(
+                f"{trace}: nothing was checked: every requirement reads signals that the recording lacks"
+            )
     unchecked = any(outcome.trace not in checked for outcome in outcomes)
     return max(ERROR if unchecked else OK, *(CODES[outcome.verdict] for outcome in outcomes))
 
