@@ -235,9 +235,10 @@ class OnlineSpecification(QuantifiedText):
         unfit += ["time_unit="] if time_unit is not None and not domain.continuous else []
         unfit += [f"time='{domain.name}'"] if make is None and not early else []
         for what in unfit:
+            named = ", ".join(f"'{group}': [...]" for group in sorted(self.groups))
             raise UsageError(
                 f"a monitor of quantifiers has no {what}; name the members, which must be present throughout: "
-                f"spec.over({{'{next(iter(self.groups))}': [...]}}).monitor(...)"
+                f"spec.over({{{named}}}).monitor(...)"
             )
         roles = dict(self.roles)
         for each in quantifiers(*self._all_formulas):

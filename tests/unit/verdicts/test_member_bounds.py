@@ -11,7 +11,7 @@ import pytest
 import rtamt
 from rtamt import Interval
 from rtamt.compiler.graph import Graph
-from rtamt.errors import EvaluationError, SpecificationError, TraceError
+from rtamt.errors import EvaluationError, SpecificationError, TraceError, UsageError
 
 inf = float("inf")
 CARS = 'group cars = "car_*"; '
@@ -103,3 +103,12 @@ def test_an_unbounded_operator_inside_a_quantifier_is_one_sentence():
         r"online; .*, or name the members, which must be present throughout: spec.over\({'cars': \[\.\.\.\]}\)",
     ):
         spec("always forall v in cars: eventually(v.x > 0)").monitor(verdict="interval")
+
+
+def test_what_bounds_of_members_do_not_have_is_rejected_with_all_groups_to_name():
+    parsed = rtamt.parse("""
+        group cars = "car_*"
+        group bats = "bat_*"
+        forall v in cars: forall w in bats: v.x > w.x""")
+    with pytest.raises(UsageError, match=r"no ranges=; .*spec\.over\({'bats': \[...\], 'cars': \[...\]}\)"):
+        parsed.monitor(verdict="interval", ranges={"car_1.x": (0, 1)})
