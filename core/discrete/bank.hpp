@@ -1,4 +1,4 @@
-// The registers of one sort: a block of values for each instruction that is a number, or a formula.
+// The registers of one sort, numbers or formulas: a block of values each.
 //
 // Memory: a value a register until grow(), then a block. Cost: checkpoint() and rollback() copy a
 // value for each register that a failed update overwrites.
@@ -23,17 +23,13 @@ class Bank {
         return rows_++;
     }
 
-    // A new register that samples of an input are copied to.
-    [[nodiscard]] std::uint32_t add_input(std::uint32_t instruction, std::size_t column) {
-        inputs_.push_back({instruction, rows_, column, nullptr});
-        return add();
+    // Has samples of an input copied to a register.
+    void take_input(std::uint32_t row, std::uint32_t instruction, std::size_t column) {
+        inputs_.push_back({instruction, row, column, nullptr});
     }
 
-    // A register that is filled with one value.
-    [[nodiscard]] std::uint32_t add_constant(const Value& value) {
-        constants_.push_back({rows_, value});
-        return add();
-    }
+    // Has a register filled with one value.
+    void fill(std::uint32_t row, const Value& value) { constants_.push_back({row, value}); }
 
     // Has checkpoint() remember what the last slot of a register held.
     void protect(std::uint32_t row) { fragile_.push_back({row, nullptr, {}}); }

@@ -104,7 +104,8 @@ class BasicExecutor {
     // Why the last step() failed.
     [[nodiscard]] Failure failure() const noexcept { return failure_; }
 
-    // What an instruction's register held at the last slot; nothing before the first one.
+    // What an instruction's register held at the last slot; nothing before the first one, or if the
+    // register is used again (Wiring::keeps).
     [[nodiscard]] std::optional<Formula> last(std::uint32_t instruction) const noexcept
         requires UniformDomain<D>;
 
@@ -117,6 +118,10 @@ class BasicExecutor {
     bool finished_ = false;
     Failure failure_{};
 
+    [[nodiscard]] std::size_t longest_block() const noexcept {
+        // Without registers long ones cost less, as long as the columns stay in the second cache.
+        return zero_copy_ && zero_copy_->complete() ? 4096 : wiring_.capacity();
+    }
     void checkpoint(std::size_t count) noexcept;
     void rollback() noexcept;
     void load(Columns columns, std::size_t offset, const Block& block) noexcept;

@@ -20,6 +20,16 @@ namespace detail {
     return std::max<std::int64_t>(slot - lag, 0);
 }
 
+// Of undefined values at one place the first instruction's: the others can only follow from it.
+struct FirstUndefined {
+    std::size_t place = Kernel::defined;
+    std::uint32_t instruction = 0;
+
+    [[nodiscard]] bool operator<(const FirstUndefined& other) const noexcept {
+        return place < other.place || (place == other.place && instruction < other.instruction);
+    }
+};
+
 } // namespace detail
 
 template <ValueDomain D>
@@ -84,17 +94,22 @@ void BasicExecutor<D>::load(Columns columns, std::size_t offset, const Block& bl
 // Returns whether no value is undefined.
 template <ValueDomain D>
 bool BasicExecutor<D>::run_guarded(const Block& block) noexcept {
-    const auto failed = wiring_.units().run_guarded(
-        Kernel::defined, [&](const Unit& unit) { return unit.kernel->run(block); });
+    using detail::FirstUndefined;
+    const auto failed = wiring_.units().run_guarded(FirstUndefined{}, [&](const Unit& unit) {
+        const std::size_t place = unit.kernel->run(block);
+        if (place == Kernel::defined) [[likely]] {
+            return FirstUndefined{};
+        }
+        return FirstUndefined{place, unit.kernel->culprit(unit.instruction)};
+    });
     if (!failed) [[likely]] {
         return true;
     }
-    const auto [culprit, first] = *failed;
-    const std::uint32_t instruction = culprit->instruction;
-    failure_ = {instruction,
-                block.slot + static_cast<std::int64_t>(first) -
-                    program().instructions[instruction].lag,
-                Fault(culprit->kernel->fault())};
+    const auto& [unit, first] = *failed;
+    failure_ = {first.instruction,
+                block.slot + static_cast<std::int64_t>(first.place) -
+                    program().instructions[first.instruction].lag,
+                Fault(unit->kernel->fault())};
     return false;
 }
 
@@ -160,7 +175,7 @@ bool BasicExecutor<D>::advance(Columns columns, std::size_t count, Outputs outpu
             slot_ += static_cast<std::int64_t>(skipped);
             continue;
         }
-        const Block block{slot_, std::min(count - offset, wiring_.capacity()), samples_};
+        const Block block{slot_, std::min(count - offset, longest_block()), samples_};
         load(columns, offset, block);
         bind_buffers(columns, offset, block, start, outputs);
         if (!run_guarded(block) && !checked) return false;
@@ -284,9 +299,13 @@ std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t c
                                                   Outputs outputs) {
     const auto rest = static_cast<std::size_t>(program().latest());
     if (slot_ != 0) reset();
-    reserve(std::max(count, rest));
     if constexpr (UniformDomain<D>) {
-        if (!zero_copy_) zero_copy_.emplace(program(), wiring_.kernels());
+        if (!zero_copy_) zero_copy_.emplace(program(), wiring_.reads(), wiring_.writes());
+    }
+    if (zero_copy_ && zero_copy_->complete()) {
+        wiring_.run_long_blocks();
+    } else {
+        reserve(std::max(count, rest));
     }
     if (!advance(columns, count, outputs, false)) return failure_;
     samples_ = slot_;
@@ -310,7 +329,7 @@ std::optional<typename BasicExecutor<D>::Formula>
 BasicExecutor<D>::last(std::uint32_t instruction) const noexcept
     requires UniformDomain<D>
 {
-    if (slot_ == 0) return std::nullopt;
+    if (slot_ == 0 || !wiring_.keeps(instruction)) return std::nullopt;
     return wiring_.value(instruction, last_);
 }
 

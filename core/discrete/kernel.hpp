@@ -73,6 +73,12 @@ class Kernel {
     // What went wrong where run() returns a place and no value is undefined: null but for calls.
     [[nodiscard]] virtual const char* fault() const noexcept { return nullptr; }
 
+    // Which instruction's value is undefined where run() returns a place, given the one whose
+    // register is written.
+    [[nodiscard]] virtual std::uint32_t culprit(std::uint32_t instruction) const noexcept {
+        return instruction;
+    }
+
     // Writes or reads what the samples so far have left behind; not between checkpoint() and
     // rollback().
     virtual void transfer(Snapshot& snapshot) = 0;
@@ -84,10 +90,10 @@ class Kernel {
         out_ = out;
     }
 
-    // One of these alone; the others stay.
-    void read_a(const void* a) noexcept { a_ = a; }
-    void read_b(const void* b) noexcept { b_ = b; }
-    void write(void* out) noexcept { out_ = out; }
+    // Where the address of one of them is kept.
+    [[nodiscard]] const void** a_cell() noexcept { return &a_; }
+    [[nodiscard]] const void** b_cell() noexcept { return &b_; }
+    [[nodiscard]] void** out_cell() noexcept { return &out_; }
 
   protected:
     template <class Value>

@@ -15,44 +15,64 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 namespace rtamt::discrete {
 
+// Where a kernel keeps the address of an operand, which is the value of an instruction.
+struct Read {
+    const void** cell;
+    std::uint32_t operand;
+    bool once; // of a constant, which has one value and no register
+};
+
+// Where a kernel keeps the address of its result, the value of an instruction.
+struct Write {
+    void** cell;
+    std::uint32_t instruction;
+};
+
 class ZeroCopy {
   public:
-    ZeroCopy() = default;
-
-    ZeroCopy(const Program& program, std::span<const std::unique_ptr<Kernel>> kernels)
+    // Given what kernels read and write, but for calls.
+    ZeroCopy(const Program& program, std::span<const Read> reads, std::span<const Write> writes)
         : reads_input_(program.instructions.size(), true), written_(program.outputs.size(), false) {
         std::vector<std::size_t> uses(program.instructions.size(), 0);
         for (const std::uint32_t output : program.outputs) {
             ++uses[output];
             reads_input_[output] = false;
         }
-        for (std::size_t i = 0; i < kernels.size(); ++i) {
-            const Instruction& instruction = program.instructions[i];
+        bool registers = !program.calls.empty();
+        for (const Instruction& instruction : program.instructions) {
+            registers = registers || instruction.lag != 0;
             program.each_operand(instruction, [&](std::uint32_t operand) {
                 ++uses[operand];
                 if (instruction.opcode == Opcode::call) reads_input_[operand] = false;
             });
         }
-        for (std::size_t i = 0; i < kernels.size(); ++i) {
-            const Instruction& instruction = program.instructions[i];
-            if (!kernels[i] || instruction.opcode == Opcode::call) continue;
-            read(program, *kernels[i], instruction.a, &Kernel::read_a);
-            read(program, *kernels[i], instruction.b, &Kernel::read_b);
+        for (const auto& [cell, operand, once] : reads) {
+            const Instruction& input = program.instructions[operand];
+            if (input.opcode == Opcode::input && reads_input_[operand]) {
+                readers_.push_back({cell, static_cast<std::size_t>(input.n)});
+            } else {
+                registers = registers || !once;
+            }
         }
+        std::vector<void**> cells(program.instructions.size(), nullptr);
+        for (const auto& [cell, instruction] : writes)
+            cells[instruction] = cell;
         for (std::size_t output = 0; output < program.outputs.size(); ++output) {
             const std::uint32_t i = program.outputs[output];
-            if (!kernels[i] || program.instructions[i].opcode == Opcode::call || uses[i] > 1) {
-                continue;
-            }
-            writers_.push_back({kernels[i].get(), output, program.instructions[i].lag});
+            if (cells[i] == nullptr || uses[i] > 1) continue;
+            writers_.push_back({cells[i], output, program.instructions[i].lag});
         }
+        complete_ = !registers && !readers_.empty() && writers_.size() == writes.size() &&
+                    writers_.size() == program.outputs.size();
     }
+
+    // Whether no register is looked at: blocks may be longer than these.
+    [[nodiscard]] bool complete() const noexcept { return complete_; }
 
     // Whether an input's register is not looked at.
     [[nodiscard]] bool skips(std::uint32_t input) const noexcept {
@@ -71,25 +91,23 @@ class ZeroCopy {
                       Place&& place, Register&& home) noexcept {
         if (!columns.empty()) {
             for (const Reader& reader : readers_)
-                (reader.kernel->*reader.read)(columns[reader.column] + offset);
+                *reader.cell = columns[reader.column] + offset;
         }
         for (const Writer& writer : writers_) {
             const Range present = block.present(writer.lag);
             const bool whole = present.begin == 0 && present.end == block.count;
             written_[writer.output] = whole;
-            writer.kernel->write(whole ? place(writer.output, writer.lag) : home(writer.output));
+            *writer.cell = whole ? place(writer.output, writer.lag) : home(writer.output);
         }
     }
 
   private:
-    using Read = void (Kernel::*)(const void*) noexcept;
     struct Reader {
-        Kernel* kernel;
-        Read read;
+        const void** cell;
         std::size_t column;
     };
     struct Writer {
-        Kernel* kernel;
+        void** cell;
         std::size_t output;
         std::int64_t lag;
     };
@@ -97,13 +115,7 @@ class ZeroCopy {
     std::vector<Writer> writers_;
     std::vector<bool> reads_input_; // by instruction: kernels of ours alone read it
     std::vector<bool> written_;     // by output
-
-    void read(const Program& program, Kernel& kernel, std::uint32_t operand, Read side) {
-        if (operand == no_operand || !reads_input_[operand]) return;
-        const Instruction& input = program.instructions[operand];
-        if (input.opcode != Opcode::input) return;
-        readers_.push_back({&kernel, side, static_cast<std::size_t>(input.n)});
-    }
+    bool complete_ = false;
 };
 
 } // namespace rtamt::discrete

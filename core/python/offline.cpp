@@ -4,6 +4,8 @@
 #include "../dense/scan.hpp"
 #include "../discrete/executor.hpp"
 #include "../discrete/scan.hpp"
+#include "../program/fusion.hpp"
+#include "../program/liveness.hpp"
 #include "../program/program.hpp"
 #include "../values/interval.hpp"
 #include "arrays.hpp"
@@ -48,6 +50,19 @@ std::vector<Result> evaluate(const nb::bytes& bytes, const std::vector<Column>& 
         raise_undefined(exceptions, held, failure->instruction, failure->sample, failure->fault);
     }
     return results.hand_over();
+}
+
+using Place = std::pair<std::optional<std::uint32_t>, std::optional<std::uint32_t>>;
+
+std::vector<Place> layout(const Program& program) {
+    const Fusion fusion = fused(program);
+    const Registers found = registers(program, fusion);
+    std::vector<Place> places(program.instructions.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (fusion.chained[i]) places[i].first = fusion.roots[i];
+        if (found.rows[i] != no_register) places[i].second = found.rows[i];
+    }
+    return places;
 }
 
 // The same of bounds: columns of (lower, upper), n of each.
@@ -275,6 +290,15 @@ void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
         },
         nb::arg("program"), nb::arg("calls") = nb::list(),
         "Bytes of state of a new monitor of this program, but for the calls in it.");
+    m.def(
+        "layout",
+        [](const nb::bytes& program, const nb::list& calls) {
+            const Calls held(calls);
+            return layout(parse(program, Domain::discrete, held.sites()));
+        },
+        nb::arg("program"), nb::arg("calls") = nb::list(),
+        "What the passes make of a program in discrete time: for each instruction the root of the "
+        "chain that it is computed in, and its register, None where there is none.");
     m.def(
         "dense_evaluate",
         [exceptions](const nb::bytes& program, const std::vector<EventColumn>& columns,

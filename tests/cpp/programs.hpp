@@ -49,6 +49,11 @@ class Builder {
         program_.domain = rtamt::Domain::dense;
         return *this;
     }
+    // Without passes, so that every value stays in a register of its own.
+    Builder& plain() {
+        program_.without = 3;
+        return *this;
+    }
     // The same values, known `distance` slots later.
     std::uint32_t later(std::uint32_t a, std::int64_t distance) {
         return unary(Opcode::shift, a, distance, lag(a) + distance);
@@ -88,7 +93,8 @@ inline std::vector<std::uint8_t> bytes_of(const Program& program) {
     for (const char letter : std::string("RTAMTPRG"))
         put(bytes, static_cast<std::uint8_t>(letter));
     put(bytes, std::uint16_t{1});
-    put(bytes, static_cast<std::uint16_t>(program.domain));
+    put(bytes, static_cast<std::uint8_t>(program.domain));
+    put(bytes, program.without);
     put(bytes, static_cast<std::uint32_t>(program.instructions.size()));
     put(bytes, program.inputs);
     put(bytes, static_cast<std::uint32_t>(program.outputs.size()));

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.compiler.passes import PASSES
+from rtamt.compiler.passes import LOADED, PASSES
 from rtamt.compiler.program import MAGIC, Program
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
-from rtamt.verdicts.standalone import check_code
+from rtamt.verdicts.standalone import check_code, layout
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,8 +58,23 @@ def listing(program: Program) -> Iterator[str]:
 
 
 def after_passes(program: Program) -> Iterator[str]:
-    """Return the instructions of a program as it is run, and the passes that it went through, line by line."""
-    yield f"passes     {', '.join(name for name in PASSES if name not in program.without)}"
+    """Return the passes that a program goes through, and what they make of its instructions, line by line."""
+    left_out = {*program.without, *(LOADED if program.domain.continuous else ())}
+    yield f"passes     {', '.join(name for name in PASSES if name not in left_out) or 'none'}"
     yield "program"
-    for line in program.disassemble().splitlines():
-        yield f"  {line}"
+    lines = program.disassemble().splitlines()
+    width = max(len(line) for line in lines)
+    notes = [""] * len(lines) if program.domain.continuous else _places(program)
+    for line, note in zip(lines, notes, strict=True):
+        yield f"  {line:{width}}  {note}".rstrip()
+
+
+def _places(program: Program) -> list[str]:
+    """Return where the core computes and keeps the value of each instruction."""
+    places = []
+    for root, register in layout(program):
+        if register is not None:
+            places.append(f"register {register}")
+        else:
+            places.append("in place" if root is None else f"fused into %{root}")
+    return places

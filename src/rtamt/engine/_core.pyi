@@ -435,6 +435,12 @@ def scan(
 def memory(program: bytes, calls: _Calls = ...) -> int:
     """Bytes of state of a new monitor of this program."""
 
+def layout(program: bytes, calls: _Calls = ...) -> list[tuple[int | None, int | None]]:
+    """What the passes make of a program in discrete time.
+
+    For each instruction: the root of the chain that it is computed in, and its register, None where there is none.
+    """
+
 def dense_evaluate(
     program: bytes, columns: Sequence[_Events], extra: int = 0, calls: _Calls = ...
 ) -> list[_Events]:

@@ -13,6 +13,7 @@ from rtamt.compiler.plan import compile_program
 from rtamt.compiler.program import Instruction, Program
 from rtamt.engine.engine import engine_of
 from rtamt.engine.native import core
+from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
 from rtamt.language.parameters import bounds_of
@@ -163,6 +164,17 @@ def check_code(program: Program, code: bytes) -> None:
 def state_bytes(program: Program, domain: TimeDomain, backend: str) -> int | None:
     """Return the size of a monitor's state; None where it depends on the samples, or without the compiled core."""
     return engine_of(domain).backends[backend].memory(program)
+
+
+def layout(program: Program) -> list[tuple[int | None, int | None]]:
+    """Return what the passes make of each instruction of a program in discrete time.
+
+    That is the root of the chain that it is computed in, and its register, None where there is none.
+    """
+    places: list[tuple[int | None, int | None]] = core().layout(
+        program.code(), calls_of(program, SampleDriver)
+    )
+    return places
 
 
 def _with_parameters(formula: Formula, structural: frozenset[str]) -> Formula:

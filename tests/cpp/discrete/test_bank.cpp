@@ -9,7 +9,8 @@ using rtamt::discrete::Bank;
 TEST_CASE("registers keep their last slot when they grow") {
     Bank<double> bank;
     const auto a = bank.add();
-    const auto c = bank.add_constant(7.5);
+    const auto c = bank.add();
+    bank.fill(c, 7.5);
     bank.settle(1);
     *bank.at(a) = 3.0;
     CHECK((*bank.at(c) == 7.5 && bank.bytes() == 16));
@@ -22,8 +23,10 @@ TEST_CASE("registers keep their last slot when they grow") {
 
 TEST_CASE("samples go to the registers of their inputs") {
     Bank<double> bank;
-    const auto b = bank.add_input(5, 1);
-    const auto a = bank.add_input(6, 0);
+    const auto b = bank.add();
+    const auto a = bank.add();
+    bank.take_input(b, 5, 1);
+    bank.take_input(a, 6, 0);
     bank.settle(1);
     const std::vector<double> row{1.0, 2.0};
     bank.load(row.data());

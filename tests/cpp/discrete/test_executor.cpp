@@ -152,7 +152,7 @@ TEST_CASE("steps and chunks can be mixed and reset forgets everything") {
     const auto b = builder.input();
     const auto change = builder.pointwise(Opcode::sub, a, builder.unary(Opcode::shift, a, 1, 0, 0));
     const auto until = builder.binary(Opcode::until, change, b, 5, 4);
-    builder.output(builder.unary(Opcode::slide_max, until, 20, 4));
+    builder.plain().output(builder.unary(Opcode::slide_max, until, 20, 4));
     const std::vector<Signal> columns{random.signal(1000, 0), random.signal(1000, 0)};
     const auto expected = oracle::answer(builder.program(), columns, 1000);
     Executor executor(builder.program());
@@ -282,7 +282,8 @@ TEST_CASE("first update that fails leaves a new monitor") {
     const auto a = builder.input();
     const auto b = builder.input();
     const auto most = builder.unary(Opcode::run_max, b, 0, 0);
-    builder.output(builder.pointwise(Opcode::add, most, builder.pointwise(Opcode::sqrt, a)));
+    builder.plain().output(
+        builder.pointwise(Opcode::add, most, builder.pointwise(Opcode::sqrt, a)));
     Executor executor(builder.program());
     const std::vector<double> bad{-1.0, 100.0};
     const std::vector<double> good{4.0, 1.0};

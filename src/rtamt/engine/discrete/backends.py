@@ -137,7 +137,9 @@ class SampleProgram(CompiledSession):
 
     def part(self, monitor: Any, formula: Formula) -> float:
         """Return the value at the last sample of a part without future operators."""
-        return float(monitor.last(self.program.place_of(desugar(formula))))
+        place = self.program.place_of(desugar(formula))
+        instruction = self.program.instructions[place]
+        return instruction.x if instruction.opcode == "const" else float(monitor.last(place))
 
 
 class SampleDefinition(Session):

@@ -1,0 +1,61 @@
+// A chain of pointwise instructions (program/fusion.hpp) as one kernel: the steps of a strip.
+//
+// Members are computed in the order of the program. What the next member takes stays in the
+// accumulator, everything else is stored for a strip. A value that may be NaN is checked unless NaN
+// reaches a member that is; only when one was seen is every member looked at.
+//
+// Cost: that of strip.hpp. Memory: a strip for each constant and each value that is stored.
+#pragma once
+
+#include "../program/fusion.hpp"
+#include "../program/program.hpp"
+#include "kernel.hpp"
+#include "step.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rtamt::discrete {
+
+// The steps of a chain, the operands that they number, and the member that each step computes.
+struct ChainCode {
+    std::vector<Step> steps;
+    std::vector<std::uint32_t> computes; // by step: an instruction that may fail, or no_operand
+    std::vector<std::uint32_t> columns;  // operands that are registers: their instructions
+    std::vector<double> constants;       // operands after these
+    std::size_t stored = 0;              // operands after these
+};
+
+// Makes the code of the chain with these members, in the order of the program.
+[[nodiscard]] ChainCode chain_code(const Program& program, const Fusion& fusion,
+                                   std::span<const std::uint32_t> members);
+
+class Chain final : public Kernel {
+  public:
+    Chain(ChainCode code, std::int64_t lag);
+
+    // The instructions whose registers are read, and where the addresses of these belong.
+    [[nodiscard]] std::span<const std::uint32_t> columns() const noexcept { return code_.columns; }
+    [[nodiscard]] const void** column(std::size_t i) noexcept { return &operands_[i].values; }
+
+    // For blocks of so many slots.
+    void make_room(std::size_t slots);
+
+    std::size_t run(const Block& block) noexcept override;
+    [[nodiscard]] std::uint32_t culprit(std::uint32_t root) const noexcept override;
+    void transfer(Snapshot& /*snapshot*/) override {}
+
+  private:
+    ChainCode code_;
+    std::vector<Operand> operands_;
+    std::vector<double> memory_; // constants, and what steps store
+    std::size_t stride_ = 0;     // of strips in memory
+    std::uint32_t culprit_ = 0;
+
+    [[nodiscard]] Memory memory(std::span<const Step> steps) noexcept;
+    [[nodiscard]] std::size_t first_undefined(Range range) noexcept;
+};
+
+} // namespace rtamt::discrete

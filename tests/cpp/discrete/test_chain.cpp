@@ -1,0 +1,104 @@
+#include "discrete/chain.hpp"
+
+#include "programs.hpp"
+#include "random_programs.hpp"
+#include "ways.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+using programs::Builder;
+using rtamt::Opcode;
+using rtamt::Program;
+using ways::Random;
+using ways::Signal;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+std::vector<std::uint64_t> bits(const std::vector<Signal>& signals) {
+    std::vector<std::uint64_t> bits;
+    for (const Signal& signal : signals) {
+        for (const double value : signal)
+            bits.push_back(std::bit_cast<std::uint64_t>(value));
+    }
+    return bits;
+}
+
+// A program of operations at one instant alone: most of it is one chain.
+Program pointwise(Random& random, int size) {
+    constexpr Opcode opcodes[] = {
+        Opcode::neg, Opcode::abs, Opcode::sqrt,     Opcode::add,      Opcode::sub,
+        Opcode::mul, Opcode::div, Opcode::min,      Opcode::max,      Opcode::holds_gt,
+        Opcode::min, Opcode::max, Opcode::holds_ge, Opcode::holds_eq, Opcode::at_least,
+        Opcode::min, Opcode::exp, Opcode::max,      Opcode::sub,      Opcode::sub};
+    Builder builder;
+    std::vector<std::uint32_t> known{builder.input(), builder.input(), builder.constant(0.0),
+                                     builder.constant(random.number(5))};
+    const auto pick = [&](std::int64_t of) {
+        const auto last = static_cast<std::int64_t>(known.size()) - 1;
+        return known[static_cast<std::size_t>(
+            random.between(std::max<std::int64_t>(0, last + 1 - of), last))];
+    };
+    for (int i = 0; i < size; ++i) {
+        const Opcode opcode = opcodes[random.between(0, std::size(opcodes) - 1)];
+        const auto b = rtamt::info(opcode).operands == 2 ? pick(100) : rtamt::no_operand;
+        known.push_back(random.chance(50) || b == rtamt::no_operand
+                            ? builder.pointwise(opcode, pick(2), b)
+                            : builder.pointwise(opcode, b, pick(2)));
+    }
+    return builder.output(known.back()).program();
+}
+
+} // namespace
+
+TEST_CASE("chains give the bits, and the failures, of instructions one by one") {
+    Random random(31);
+    int failed = 0;
+    for (int round = 0; round < 600; ++round) {
+        Program program = pointwise(random, static_cast<int>(random.between(1, 25)));
+        const auto count = static_cast<std::size_t>(random.between(1, 100));
+        std::vector<Signal> columns{random.signal(count, 0), random.signal(count, 0)};
+        for (Signal& column : columns) {
+            for (double& value : column) {
+                if (random.chance(5)) value = random.chance(50) ? -0.0 : 0.0;
+                if (random.chance(1)) value = random.chance(50) ? inf : -inf;
+            }
+        }
+        std::vector<Signal> outputs;
+        std::vector<Signal> expected;
+        const auto failure = ways::offline(program, columns, count, outputs);
+        program.without = 3;
+        const auto wanted = ways::offline(program, columns, count, expected);
+        CHECK(failure.has_value() == wanted.has_value());
+        if (failure && wanted) {
+            ++failed;
+            CHECK((failure->instruction == wanted->instruction));
+            CHECK(failure->sample == wanted->sample);
+        } else {
+            CHECK(bits(outputs) == bits(expected));
+        }
+    }
+    CHECK((failed > 50 && failed < 550));
+}
+
+TEST_CASE("a chain names the member that is undefined, wherever NaN would end") {
+    Builder builder;
+    const auto a = builder.input();
+    const auto b = builder.input();
+    const auto sum = builder.pointwise(Opcode::add, a, b);
+    const auto margin = builder.pointwise(Opcode::sub, sum, builder.constant(1));
+    builder.output(builder.pointwise(Opcode::max, margin, b));
+    for (const std::size_t count : {1U, 31U, 32U, 90U, 5000U}) {
+        std::vector<Signal> columns{Signal(count, 1.0), Signal(count, 2.0)};
+        columns[0].back() = inf;
+        columns[1].back() = -inf;
+        std::vector<Signal> outputs;
+        const auto failure = ways::offline(builder.program(), columns, count, outputs);
+        REQUIRE(failure.has_value());
+        CHECK(failure->instruction == sum);
+        CHECK(failure->sample == static_cast<std::int64_t>(count) - 1);
+    }
+}
