@@ -16,6 +16,12 @@ DOCUMENTS = [
     ("float x", "       ^", ParseError, "the text has declarations but no formula"),
     ("x y >= 1", "  ^", ParseError, "expected an operator between 'x' and 'y'"),
     ("foo x;", "    ^", ParseError, "expected an operator between 'foo' and 'x'"),
+    (
+        "bool p  rise p",
+        "        ^^^^",
+        NameInFormulaError,
+        "'rise' is not declared; the operator is written rise(...)",
+    ),
     ("flaot x float y x > 1", "^^^^^", ParseError, "'flaot' is not a type; did you mean 'float'?"),
     (
         "enum Mode { A, B }  input Mod m  m == A",

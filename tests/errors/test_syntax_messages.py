@@ -27,6 +27,8 @@ FORMULAS = [
     ("x y", "  ^", ParseError, "expected an operator between 'x' and 'y'"),
     ("x adn y", "  ^^^", ParseError, "expected an operator between 'x' and 'adn'; did you mean 'and'?"),
     ("alway x", "^^^^^", ParseError, "expected an operator between 'alway' and 'x'; did you mean 'always'?"),
+    ("rise p", "     ^", ParseError, "expected '(' after 'rise', got 'p'; write rise(...)"),
+    ("abs 2 > 1", "    ^", ParseError, "expected '(' after 'abs', got '2'; write abs(...)"),
     ("2x", " ^", ParseError, "expected an operator between '2' and 'x'"),
     ("x !y", "  ^", ParseError, "expected an operator between 'x' and '!'"),
     ("x, y", " ^", ParseError, "expected an operator or the end, got ','"),

@@ -89,6 +89,8 @@ def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "th
             hint = f"{near} ({hint.removeprefix('; ')})"
         return f"'{before.text}' is not a function{hint}", before.span
     if token.kind in ("name", "number", "quoted") or token.text == "(" or language.opening(token.text):
+        if token.kind in ("name", "number", "quoted") and is_function(language, before.text):
+            return f"expected '(' after {before}, got {token}; write {before.text}(...)", token.span
         hint, meant = _misspelled(language, before, token)
         return f"expected an operator between {before} and {token}{hint}", meant.span
     return f"expected an operator or {expected}, got {token}", token.span
@@ -139,6 +141,11 @@ def _element(tokens: Tokens, at: int) -> str:
     ):
         name += f".{after[1].text}"
     return name
+
+
+def is_function(language: Language, word: str) -> bool:
+    """Return whether a word is an operator whose operands are in parentheses: ``rise``, ``abs``."""
+    return any(op.fixity is Fixity.FUNCTION and word in op.spellings for op in language)
 
 
 def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, Token]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
 from rtamt.language.operators import Sort
+from rtamt.language.parsing.diagnostics import is_function
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.names import NameParser
 from rtamt.language.parsing.type_rules import (
@@ -181,5 +182,9 @@ class TypedParser(NameParser):
         scope = self.scope
         members = [member for each in scope.enumerations.values() for member in each.names]
         known = ", ".join(sorted(scope.names)[:8]) or "none"
-        hint = did_you_mean(name, [*scope.names, *members]) or f"; declared names: {known}"
+        hint = did_you_mean(name, [*scope.names, *members]) or (
+            f"; the operator is written {name}(...)"
+            if is_function(self.language, name)
+            else f"; declared names: {known}"
+        )
         return self.error(f"'{name}' is not declared{hint}", span, NameInFormulaError)
