@@ -6,6 +6,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from rtamt.language.quantifiers import Declared
 from rtamt.signals.binding import Binding
 from rtamt.signals.trace import Trace
 from rtamt.specification_text import SpecificationText
@@ -102,9 +103,11 @@ class RecordedSpecification(SpecificationText):
         )
 
     @cached_property
-    def _declared(self) -> tuple[str, ...]:
+    def _declared(self) -> Declared:
         """The names that the text declares: data may have them, also where the formula reads none of them."""
-        return tuple(declaration.name for declaration in self.document.declarations)
+        names = frozenset(declaration.name for declaration in self.document.declarations)
+        # Once members are known, data has these.
+        return Declared(names, tuple(self.document.groups.values()) if self.resolved is None else ())
 
 
 def _listed(missing: list[str]) -> str:

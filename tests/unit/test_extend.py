@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -350,3 +352,8 @@ def test_the_header_and_the_cmake_package_are_installed() -> None:
     assert Path(get_include(), "rtamt", "kernel.hpp").is_file()
     assert Path(get_cmake_dir(), "rtamt-config.cmake").is_file()
     assert QUARTERS == 4
+
+
+def test_the_signature_of_parse_does_not_print_every_operator_of_the_language():
+    assert len(str(inspect.signature(rtamt.parse))) < 1000
+    assert re.fullmatch(r"<language of \d+ operators>", repr(STL))

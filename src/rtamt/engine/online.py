@@ -94,7 +94,7 @@ class OnlineMonitor:
         self._formulas = (formula, *(watched.formula for watched in watch))
         self._types = types_of(formula)
         self._output_of = {watched.name: output for output, watched in enumerate(watch, 1)}
-        self._declared = frozenset(declared)
+        self._declared = declared
         self._binding = Binding(self.input_names)
         self._factory = factory
         self._usage = UsageGuard()  # serialises operations of several steps
@@ -139,7 +139,9 @@ class OnlineMonitor:
     @property
     def _unread(self) -> frozenset[str]:
         """Declared variables that the formula does not read; an update may contain them."""
-        return self._declared - {head for name in self.input_names for head in (name, name.split(".")[0])}
+        return frozenset(self._declared) - {
+            head for name in self.input_names for head in (name, name.split(".")[0])
+        }
 
     def _output(self, name: str | Formula) -> int:
         output = self._output_of.get(name)
@@ -156,7 +158,11 @@ class OnlineMonitor:
     def _read_by_formula(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Return the values that the formula reads: fields of objects, without unread variables."""
         heads = {name.split(".")[0] for name in self.input_names}
-        flat = {k: v for k, v in values.items() if k in self.input_names or k not in self._declared | heads}
+        flat = {
+            name: value
+            for name, value in values.items()
+            if name in self.input_names or (name not in heads and name not in self._declared)
+        }
         for name in self.input_names:
             head, *path = name.split(".")
             if path and name not in values and head in values:

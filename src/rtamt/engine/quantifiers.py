@@ -47,7 +47,9 @@ class Plan:
         self.fillers = {name: members.filler(group.values(name)) for name in names}
         self.channel = channel_of(self.variable)
         self.template: Any = template(of)
-        self.inside = [Plan(each, step, template, fields) for each in of.inside]
+        # A quantifier that a condition reads has a column for its robustness and one for whether it holds.
+        read = [each for each in of.inside if each.column in self.template.input_names]
+        self.inside = [Plan(each, step, template, fields) for each in read]
 
     def differs(self, bound: Mapping[str, str], member: str) -> bool:
         """Return whether a member is another one than those that the quantifier keeps apart from it."""
@@ -77,7 +79,7 @@ class QuantifierMonitor:
         self._outer = outer
         self._plans = list(plans)
         self._fields = fields
-        self._declared = frozenset(declared)
+        self._declared = declared
         self._factory = factory
         self._binding = Binding(tuple(names))
         self._watched = tuple(each.name for each in watch)

@@ -16,6 +16,7 @@ data: ``rtamt.rewrite.quantifiers`` replaces quantifiers by conjunctions, disjun
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import inf
@@ -31,7 +32,7 @@ from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.errors import StlError
     from rtamt.language.parsing.lexer import Token
@@ -84,6 +85,30 @@ class Group:
     def values(self, name: str) -> ValueType | None:
         """Return the type of the values of a field, None for numbers."""
         return next((each.values for each in self.fields if each.name == name), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Declared(Collection[str]):
+    """The variables that a text declares; it contains the names that belong to members of its ``groups``, too.
+
+    >>> declared = Declared(frozenset({"ego"}), (Group("cars", "car_*"),))
+    >>> [name in declared for name in ("ego", "car_1", "car_1.x", "truck_1.x")], list(declared)
+    ([True, True, True, False], ['ego'])
+    """
+
+    variables: frozenset[str] = frozenset()
+    groups: tuple[Group, ...] = ()
+
+    def __contains__(self, name: object) -> bool:
+        if name in self.variables:
+            return True
+        return isinstance(name, str) and any(each.matches(name) or each.member(name) for each in self.groups)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.variables)
+
+    def __len__(self) -> int:
+        return len(self.variables)
 
 
 @lru_cache(maxsize=256)

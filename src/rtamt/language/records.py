@@ -366,6 +366,9 @@ class Language:
         """
         return Language.of((*self.operators, *operators))
 
+    def __repr__(self) -> str:
+        return f"<language of {len(self.operators)} operators>"
+
     def __getitem__(self, name: str) -> Operator:
         return self._by_name[name]
 

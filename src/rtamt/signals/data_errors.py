@@ -70,6 +70,17 @@ def missing_sample(name: str, index: int, source: str | None) -> TraceError:
     )
 
 
+def missing_field(member: str, field: str, index: int | None = None) -> TraceError:
+    """Return the error for a field that a member of a stream lacks at a sample; without ``index``, at all of them."""
+    where = "at any sample" if index is None else f"at sample {index}"
+    return TraceError(
+        f"'{member}' has no '{field}' {where}; give '{member}.{field}', or leave out all fields of a member that "
+        f"is absent",
+        variable=f"{member}.{field}",
+        index=index,
+    )
+
+
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
     return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)

@@ -118,7 +118,7 @@ class Stream(ABC):
         chosen = None if semantics is None else semantics_of(semantics)
         self.spec = spec
         self.unit = None if unit is None else check_unit(unit)
-        self.declared = tuple(declaration.name for declaration in spec.document.declarations)
+        self.declared = spec._declared
         self.requirements = {name: Requirement(one, chosen) for name, one in spec.requirements.items()}
         self.samples = 0
         #: Whether the period that was inferred from the first chunk is that of all chunks.

@@ -314,7 +314,7 @@ def test_a_variable_that_the_pattern_matches_is_a_member_in_updates_and_chunks_a
 
 WRONG = [
     ({"ego": 1.0, "cra_1.x": 1.0}, "the formula has no variable 'cra_1.x'; variables: ego, car_*"),
-    ({"car_1.x": 1.0, "car_1.v": 1.0}, "the data has no 'ego'; signals: none"),
+    ({"car_1.x": 1.0, "car_1.v": 1.0}, "the data has no 'ego'; signals: car_1.x, car_1.v"),
     (
         {"ego": 1.0, "car_1.x": 1.0},
         "'car_1' has no 'v' at sample 0; give 'car_1.v', or leave out all fields of a member that is absent",

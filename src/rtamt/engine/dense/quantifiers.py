@@ -15,17 +15,18 @@ from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import check_unit
 from rtamt.signals import arrays, dense_arrays, members
-from rtamt.signals.data_errors import nan_of_members, unknown_variable
+from rtamt.signals.data_errors import missing_field, nan_of_members, unknown_variable
 from rtamt.signals.inexact import gaps_of
 from rtamt.signals.member_chunks import fields_on_own_clocks
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
+    from rtamt.language.quantifiers import Group
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.dense import Dense
     from rtamt.signals.dense_arrays import Samples
@@ -120,8 +121,10 @@ class DenseMemberMonitor(QuantifierMonitor):
         arrays.require_no_unit(data, self._unit)
         data = self._binding.applied(data, partial=True)
         fields = fields_on_own_clocks(data, self._fields)
-        others = [name for name in members.names_of(data) if self._is_of_member(name)]
-        own = dense_arrays.columns_of(data, self.input_names, {*self._declared, *others})
+        unread = {
+            name for name in members.names_of(data) if name in self._declared or self._is_of_member(name)
+        }
+        own = dense_arrays.columns_of(data, self.input_names, unread)
         return self._take({**fields, **own})
 
     @exclusive
@@ -133,6 +136,11 @@ class DenseMemberMonitor(QuantifierMonitor):
         for name in self.input_names:
             if name not in self._inputs.last:
                 raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
+        for group, fields in self._fields.values():
+            for member in dict.fromkeys(self._members_of(group, self._inputs.first)):
+                lacking = self._inputs.lacking([f"{member}.{field}" for field in fields])
+                if lacking is not None:
+                    raise missing_field(member, lacking.removeprefix(f"{member}."))
         end, scale = self._inputs.end, self._scale
         if end is None or scale is None or (self._inputs.frontier is None and self._inputs.start is None):
             self._finished = True
@@ -271,9 +279,8 @@ class DenseMemberMonitor(QuantifierMonitor):
         found: dict[str, dict[str, Any]] = {}
         gone: dict[str, list[str]] = {}
         for name, (group, fields) in self._fields.items():
-            known = {parts_of[0] for column in parts if (parts_of := group.member(column)) is not None}
             found[name] = {}
-            for member in sorted(known):
+            for member in sorted(set(self._members_of(group, parts))):
                 columns = [f"{member}.{field}" for field in fields]
                 gone.setdefault(member, []).extend(columns)
                 if all(column in parts for column in columns):
@@ -281,8 +288,13 @@ class DenseMemberMonitor(QuantifierMonitor):
                     steps = {field: parts[column] for field, column in zip(fields, columns, strict=True)}
                     found[name][member] = member_of(steps, fillers)
         for columns in gone.values():
-            self._inputs.forget([column for column in columns if column not in self.input_names])
+            if self._inputs.lacking(columns) is None:  # else the end of the trace reports what it lacks
+                self._inputs.forget([column for column in columns if column not in self.input_names])
         return found
+
+    @staticmethod
+    def _members_of(group: Group, columns: Iterable[str]) -> list[str]:
+        return [parts[0] for column in columns if (parts := group.member(column)) is not None]
 
     def _signal(self, known: Samples) -> Signal:
         ticks, values = known

@@ -82,6 +82,8 @@ class Inputs:
         self.first: dict[str, int] = {}
         self.last: dict[str, int] = {}
         self.counts: dict[str, int] = {}
+        #: What has had a number, not only the end of a presence.
+        self.valued: set[str] = set()
         self.samples = 0
         #: Up to when samples were cut off, and the latest time of an update.
         self.frontier: int | None = None
@@ -92,6 +94,7 @@ class Inputs:
         twin = copy(self)
         for name in ("pending", "held", "first", "last", "counts"):
             setattr(twin, name, dict(getattr(self, name)))
+        twin.valued = set(self.valued)
         return twin
 
     def take(self, chunk: Mapping[str, Samples], now: int | None) -> None:
@@ -101,6 +104,8 @@ class Inputs:
             self.pending[name] = np.concatenate((waiting[0], ticks)), np.concatenate((waiting[1], values))
             self.first.setdefault(name, int(ticks[0]))
             self.last[name] = int(ticks[-1])
+            if name not in self.valued and not np.isnan(values).all():
+                self.valued.add(name)
             self.counts[name] = self.counts.get(name, 0) + len(ticks)
             self.samples += len(ticks)
             now = self.last[name] if now is None else max(now, self.last[name])
@@ -151,9 +156,16 @@ class Inputs:
         self.frontier = until
         return begin, parts
 
+    def lacking(self, fields: Collection[str]) -> str | None:
+        """Return the first field of a member that never had a sample, while another one had a number."""
+        if self.valued.isdisjoint(fields):
+            return None
+        return next((name for name in fields if name not in self.first), None)
+
     def forget(self, fields: Collection[str]) -> None:
         """Forget the fields of a member that is absent, unless it has later samples."""
         if all(np.isnan(self.held.get(name, np.nan)) and name not in self.pending for name in fields):
             for name in fields:
                 for each in (self.held, self.first, self.last, self.counts):
                     each.pop(name, None)
+                self.valued.discard(name)

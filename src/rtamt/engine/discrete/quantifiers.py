@@ -14,10 +14,9 @@ from rtamt.engine.discrete.member_executors import Executor, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
 from rtamt.engine.usage_guard import exclusive
-from rtamt.errors import TraceError
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays
-from rtamt.signals.data_errors import nan_of_members, unknown_variable
+from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members, unknown_variable
 from rtamt.signals.member_chunks import chunk
 from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
@@ -88,6 +87,9 @@ class SampledMembers(QuantifierMonitor):
             if path and name not in own and head in own:
                 own[name] = arrays.field_of(own[head], head, path, self.samples)
         own = {name: value for name, value in own.items() if name in self.input_names}
+        for name in self.input_names:
+            if name not in own:
+                raise missing_variable(name, tuple(values))
         seconds = arrays.number_of(time)
         stamp = self._next_time() if seconds is None else seconds
         numbers = read_values(own, self.input_names, self.samples, stamp, self._types)
@@ -106,12 +108,7 @@ class SampledMembers(QuantifierMonitor):
         """Return the fields of a member as numbers."""
         for field in fields:
             if field not in sample:
-                raise TraceError(
-                    f"'{member}' has no '{field}' at sample {self.samples}; give '{member}.{field}', or leave "
-                    f"out all fields of a member that is absent",
-                    variable=f"{member}.{field}",
-                    index=self.samples,
-                )
+                raise missing_field(member, field, self.samples)
         names = {field: f"{member}.{field}" for field in fields}
         types = {names[field]: group.values(field) for field in fields if group.values(field) is not None}
         numbers = read_values(
