@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from matplotlib.figure import Figure
 
 import rtamt
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
 
+Time = Literal["discrete", "dense"]
 #: What both traces of a pattern share, and the signals in which they differ: satisfied, violated. A character is a
 #: sample of a Boolean, one second after the one before.
 Example = tuple[dict[str, str], dict[str, str], dict[str, str]]
@@ -64,6 +65,21 @@ EXAMPLES: Mapping[str, Mapping[str, Example]] = {
             {"p": "0010000000"},
         ),
     },
+    "bounded_existence": {
+        "bounded_existence(p, 2)": ({}, {"p": "0110010000"}, {"p": "0110010100"}),
+        "bounded_existence_before(p, 2, r)": ({"r": "0000000100"}, {"p": "0101000101"}, {"p": "0101010000"}),
+        "bounded_existence_after(p, 1, q)": ({"q": "0001000000"}, {"p": "1010010000"}, {"p": "1010010100"}),
+        "bounded_existence_between(p, 1, q, r)": (
+            {"q": "0100000100", "r": "0000010000"},
+            {"p": "1001000101"},
+            {"p": "0101000101"},
+        ),
+        "bounded_existence_until(p, 1, q, r)": (
+            {"q": "0100000100", "r": "0000010000"},
+            {"p": "1001000100"},
+            {"p": "1001000101"},
+        ),
+    },
     "response": {
         "response(p, s)": ({"p": "0100010000"}, {"s": "0001000100"}, {"s": "0001000000"}),
         "response_before(p, s, r)": (
@@ -110,6 +126,114 @@ EXAMPLES: Mapping[str, Mapping[str, Example]] = {
             {"s": "1000000000"},
         ),
     },
+    "response_chain": {
+        "response_chain(p, s, t)": (
+            {"p": "0100010000", "s": "0001001000"},
+            {"t": "0000100010"},
+            {"t": "0000100000"},
+        ),
+        "response_chain_before(p, s, t, r)": (
+            {"r": "0000001000", "p": "0100000010", "s": "0010000000"},
+            {"t": "0000100000"},
+            {"t": "0000000100"},
+        ),
+        "response_chain_after(p, s, t, q)": (
+            {"q": "0001000000", "p": "0100100000", "s": "0010010000"},
+            {"t": "0000000100"},
+            {"t": "0001000000"},
+        ),
+        "response_chain_between(p, s, t, q, r)": (
+            {"q": "0100000000", "r": "0000001000", "p": "0010000100", "s": "0001000000"},
+            {"t": "0000100000"},
+            {"t": "0000000100"},
+        ),
+        "response_chain_until(p, s, t, q, r)": (
+            {"q": "0100001000", "r": "0000010000", "p": "0010000100", "s": "0001000010"},
+            {"t": "0000100001"},
+            {"t": "0000100000"},
+        ),
+    },
+    "chain_response": {
+        "chain_response(s, t, p)": (
+            {"s": "0100000100", "t": "0001000000"},
+            {"p": "0000010000"},
+            {"p": "0010000000"},
+        ),
+        "chain_response_before(s, t, p, r)": (
+            {"r": "0000001000", "s": "0100000000", "t": "0001000000"},
+            {"p": "0000010000"},
+            {"p": "0000000100"},
+        ),
+        "chain_response_after(s, t, p, q)": (
+            {"q": "0010000000", "s": "1001000000", "t": "0100010000"},
+            {"p": "0000000100"},
+            {"p": "0000100000"},
+        ),
+        "chain_response_between(s, t, p, q, r)": (
+            {"q": "0100000000", "r": "0000001000", "s": "0010000000", "t": "0001000000"},
+            {"p": "0000100000"},
+            {"p": "0000000100"},
+        ),
+        "chain_response_until(s, t, p, q, r)": (
+            {"q": "0100001000", "r": "0000010000", "s": "0010000100", "t": "0001000010"},
+            {"p": "0000100001"},
+            {"p": "0000100000"},
+        ),
+    },
+    "precedence_chain": {
+        "precedence_chain(p, s, t)": (
+            {"s": "0100000000", "t": "0001000000"},
+            {"p": "0000100100"},
+            {"p": "0010000100"},
+        ),
+        "precedence_chain_before(p, s, t, r)": (
+            {"r": "0000001000", "s": "0100000000", "t": "0001000000"},
+            {"p": "0000100100"},
+            {"p": "0010000000"},
+        ),
+        "precedence_chain_after(p, s, t, q)": (
+            {"q": "0010000000", "t": "0000010000", "p": "0100000100"},
+            {"s": "0001000000"},
+            {"s": "0100000000"},
+        ),
+        "precedence_chain_between(p, s, t, q, r)": (
+            {"q": "0100000000", "r": "0000000100", "t": "0000100000", "p": "0000010010"},
+            {"s": "0010000000"},
+            {"s": "1000000000"},
+        ),
+        "precedence_chain_until(p, s, t, q, r)": (
+            {"q": "0010000000", "r": "0000000000", "t": "0000010000", "p": "0000000100"},
+            {"s": "0001000000"},
+            {"s": "1000000000"},
+        ),
+    },
+    "chain_precedence": {
+        "chain_precedence(s, t, p)": (
+            {"s": "0001000100", "t": "0000010000"},
+            {"p": "0100000000"},
+            {"p": "0000100000"},
+        ),
+        "chain_precedence_before(s, t, p, r)": (
+            {"r": "0000001000", "s": "0010000000", "t": "0000100000"},
+            {"p": "0100000000"},
+            {"p": "0001000000"},
+        ),
+        "chain_precedence_after(s, t, p, q)": (
+            {"q": "0010000000", "s": "0000010000", "t": "0000000100"},
+            {"p": "0001000000"},
+            {"p": "0100000000"},
+        ),
+        "chain_precedence_between(s, t, p, q, r)": (
+            {"q": "0100000000", "r": "0000000100", "s": "0001000000", "t": "0000010000"},
+            {"p": "0010000000"},
+            {"p": "1000000000"},
+        ),
+        "chain_precedence_until(s, t, p, q, r)": (
+            {"q": "0100000000", "r": "0000000000", "s": "0001000000", "t": "0000010000"},
+            {"p": "0010000000"},
+            {"p": "1000000000"},
+        ),
+    },
     "times": {
         "response_within(p, s, 2s)": ({"p": "0100010000"}, {"s": "0001010000"}, {"s": "0001000010"}),
         "invariance(p, s, 2s)": ({"p": "0100000000"}, {"s": "0111000000"}, {"s": "0110000000"}),
@@ -119,19 +243,23 @@ EXAMPLES: Mapping[str, Mapping[str, Example]] = {
     },
 }
 
-_COLORS = {"q": "#4c78a8", "r": "#b279a2", "p": "#333333", "s": "#e08a2e"}
+_COLORS = {"q": "#4c78a8", "r": "#b279a2", "p": "#333333", "s": "#e08a2e", "t": "#54a24b"}
 _VERDICTS = {True: ("satisfied", "#e7f4e8"), False: ("violated", "#fbe9e7")}
 
 
-def specification(call: str) -> rtamt.Specification:
-    """Return the specification that requires a pattern of the Booleans p, q, r and s."""
-    return rtamt.parse(f'import "patterns.stl" bool p; bool q; bool r; bool s; require R: {call}')
+def specification(*calls: str, time: Time = "discrete") -> rtamt.Specification:
+    """Return the specification that requires patterns of the Booleans p, q, r, s and t."""
+    requirements = "".join(f"\nrequire R{number}: {call}" for number, call in enumerate(calls))
+    return rtamt.parse(
+        f'import "patterns.stl" bool p; bool q; bool r; bool s; bool t;{requirements}', time=time
+    )
 
 
-def signals(trace: Mapping[str, str]) -> dict[str, list[bool]]:
+def signals(trace: Mapping[str, str], time: Time = "discrete") -> dict[str, Sequence[object]]:
     """Return the samples of a trace; a signal that it does not have is false."""
     size = max(map(len, trace.values()))
-    return {name: [value == "1" for value in trace.get(name, "0" * size)] for name in "pqrs"}
+    values = {name: [value == "1" for value in trace.get(name, "0" * size)] for name in "pqrst"}
+    return {name: list(enumerate(each)) if time == "dense" else each for name, each in values.items()}
 
 
 def draw(images: Path) -> None:
@@ -142,7 +270,7 @@ def draw(images: Path) -> None:
         for row, (call, (shared, *different)) in zip(axes, patterns.items(), strict=True):
             for ax, own in zip(row, different, strict=True):
                 _panel(
-                    ax, call, {name: {**shared, **own}[name] for name in "qrps" if name in {**shared, **own}}
+                    ax, call, {name: {**shared, **own}[name] for name in "qrpst" if name in {**shared, **own}}
                 )
         figure.savefig(images / f"patterns_{group}.png", dpi=80)
 

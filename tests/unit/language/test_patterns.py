@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,19 +17,53 @@ import rtamt
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from tools.patterns import Time
+
     Truth = list[bool]
 
+TIMES: tuple[Time, ...] = ("discrete", "dense")
 ROOT = Path(__file__).parents[3]
 LIBRARY = ROOT / "src" / "rtamt" / "library" / "patterns.stl"
 
+#: Parts of the patterns; the page explains them in words.
+HELPERS = {"within_scope", "occurrences", "reaches", "reaches_later"}
+
 #: What a pattern requires of the instants of one scope.
-PATTERNS: dict[str, tuple[str, Callable[[Truth, Truth], bool]]] = {
-    "absence": ("p", lambda p, _s: not any(p)),
-    "universality": ("p", lambda p, _s: all(p)),
-    "existence": ("p", lambda p, _s: any(p)),
-    "response": ("p, s", lambda p, s: all(any(s[t:]) for t in range(len(p)) if p[t])),
-    "precedence": ("p, s", lambda p, s: all(any(s[: t + 1]) for t in range(len(p)) if p[t])),
+PATTERNS: dict[str, tuple[str, Callable[[Truth, Truth, Truth], bool]]] = {
+    "absence": ("p", lambda p, _s, _t: not any(p)),
+    "universality": ("p", lambda p, _s, _t: all(p)),
+    "existence": ("p", lambda p, _s, _t: any(p)),
+    "bounded_existence": (
+        "p, 1",
+        lambda p, _s, _t: sum(p[i] and (i == 0 or not p[i - 1]) for i in _all(p)) <= 1,
+    ),
+    "response": ("p, s", lambda p, s, _t: all(any(s[i:]) for i in _where(p))),
+    "precedence": ("p, s", lambda p, s, _t: all(any(s[: i + 1]) for i in _where(p))),
+    "response_chain": (
+        "p, s, t",
+        lambda p, s, t: all(any(i <= j and any(t[j + 1 :]) for j in _where(s)) for i in _where(p)),
+    ),
+    "chain_response": (
+        "s, t, p",
+        lambda p, s, t: all(any(p[t.index(True, i + 1) :]) for i in _where(s) if any(t[i + 1 :])),
+    ),
+    "precedence_chain": (
+        "p, s, t",
+        lambda p, s, t: all(any(j <= i and any(s[:j]) for j in _where(t)) for i in _where(p)),
+    ),
+    "chain_precedence": (
+        "s, t, p",
+        lambda p, s, t: all(any(p[: i + 1]) for i in _where(s) if any(t[i + 1 :])),
+    ),
 }
+
+
+def _all(p: Truth) -> range:
+    return range(len(p))
+
+
+def _where(p: Truth) -> list[int]:
+    return [i for i, value in enumerate(p) if value]
 
 
 def _next(r: Truth, t: int) -> int | None:
@@ -63,37 +98,49 @@ SCOPES: dict[str, tuple[str, Callable[[Truth, Truth], list[range]]]] = {
     ),
 }
 
-NAMES = [(pattern, scope) for pattern in PATTERNS for scope in SCOPES]
+TRACES = st.lists(st.tuples(*[st.booleans()] * 5), min_size=1, max_size=9).map(
+    lambda rows: dict(zip("pqrst", (list(values) for values in zip(*rows, strict=True)), strict=True))
+)
 
 
-@pytest.mark.parametrize(("pattern", "scope"), NAMES)
-@given(trace=st.lists(st.tuples(*[st.booleans()] * 4), min_size=1, max_size=9))
-def test_a_pattern_holds_where_every_scope_has_it(pattern, scope, trace):
-    operands, holds = PATTERNS[pattern]
-    names, scopes = SCOPES[scope]
-    signals = dict(zip("pqrs", (list(values) for values in zip(*trace, strict=True)), strict=True))
+def _expected(pattern: str, scope: str, signals: dict[str, Truth]) -> bool:
+    holds, scopes = PATTERNS[pattern][1], SCOPES[scope][1]
     within = scopes(signals["q"], signals["r"])
-    expected = all(
-        holds([signals["p"][t] for t in instants], [signals["s"][t] for t in instants]) for instants in within
-    )
-    spec = _spec(f"{pattern}{scope}({operands}{names})")
-    assert spec.evaluate(signals).satisfied is expected
+    return all(holds(*([signals[name][i] for i in instants] for name in "pst")) for instants in within)
 
 
-_SPECS: dict[str, rtamt.Specification] = {}
+@functools.cache
+def _spec(*calls: str, time: Time = "discrete") -> rtamt.Specification:
+    return patterns.specification(*calls, time=time)
 
 
-def _spec(call: str) -> rtamt.Specification:
-    if call not in _SPECS:
-        _SPECS[call] = patterns.specification(call)
-    return _SPECS[call]
+def _in_scopes(pattern: str, operands: str, time: Time) -> rtamt.Specification:
+    return _spec(*(f"{pattern}{scope}({operands}{names})" for scope, (names, _) in SCOPES.items()), time=time)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@given(signals=TRACES)
+def test_a_pattern_holds_where_every_scope_has_it(pattern, signals):
+    result = _in_scopes(pattern, PATTERNS[pattern][0], "discrete").evaluate(signals)
+    satisfied = [part.satisfied for part in result.requirements.values()]
+    assert satisfied == [_expected(pattern, scope, signals) for scope in SCOPES]
+
+
+@given(signals=TRACES)
+def test_bounded_existence_counts_the_same_in_dense_time(signals):
+    steps = {name: list(enumerate(values)) for name, values in signals.items()}
+    result = _in_scopes("bounded_existence", "p, 1", "dense").evaluate(steps)
+    satisfied = [part.satisfied for part in result.requirements.values()]
+    assert satisfied == [_expected("bounded_existence", scope, signals) for scope in SCOPES]
 
 
 @pytest.mark.parametrize("group", patterns.EXAMPLES)
 def test_the_page_shows_a_satisfying_and_a_violating_trace_of_each_pattern(group):
     for call, (shared, *different) in patterns.EXAMPLES[group].items():
-        results = [_spec(call).evaluate(patterns.signals({**shared, **own})) for own in different]
-        assert [result.satisfied for result in results] == [True, False], call
+        for time in TIMES:
+            traces = [patterns.signals({**shared, **own}, time) for own in different]
+            results = [_spec(call, time=time).evaluate(trace) for trace in traces]
+            assert [result.satisfied for result in results] == [True, False], (call, time)
 
 
 def test_the_page_has_every_pattern_with_its_formula():
@@ -101,9 +148,9 @@ def test_the_page_has_every_pattern_with_its_formula():
     library = LIBRARY.read_text(encoding="utf-8").replace("\n    ", " ")
     defined = re.findall(r"^def (\w+)(\(.*?\)) = +(.*)$", library, re.MULTILINE)
     shown = {call.partition("(")[0] for group in patterns.EXAMPLES.values() for call in group}
-    assert {name for name, _, _ in defined} == shown | {"within_scope"}
+    assert {name for name, _, _ in defined} == shown | HELPERS
     for name, parameters, formula in defined:
-        assert name == "within_scope" or f"| `{name}{parameters}` | `{formula}` |" in page
+        assert name in HELPERS or f"| `{name}{parameters}` | `{formula}` |" in page
 
 
 def test_a_pattern_of_margins_has_the_robustness_of_its_worst_instant():
