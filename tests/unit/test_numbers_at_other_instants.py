@@ -65,11 +65,12 @@ def test_dense(text: str, times: list[float], values: list[float], backend: str)
 @pytest.mark.parametrize(
     ("text", "past"),
     [
-        ("ahead[2](x) > x", "x > delay[2](x)"),
+        ("ahead[2](x) > x", "(if once[2:2] true then x else 1) > delay[2](x)"),
         ("minimum[0:2](ahead[1](x)) > 0", "minimum[0:2](if once[1:1] true then x else inf) > 0"),
         (
             "delay[1](ahead[2](x)) > y",
-            "(if once[3:3] true then delay[1](x) else held(x, rise(once[2:2] true))) > delay[2](y)",
+            "(if once[2:2] true then (if once[3:3] true then delay[1](x) else held(x, rise(once[2:2] true))) else 1)"
+            " > delay[2](y)",
         ),
     ],
 )

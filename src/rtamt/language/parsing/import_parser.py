@@ -90,7 +90,7 @@ class ImportParser(RequirementParser):
         try:
             file, text = library.read(token.name)
         except ImportedFileError as error:
-            raise self.error(str(error), token.span) from None
+            raise self._no_file(error, token) from None
         if file not in library.documents:
             library.open.append(file)
             try:
@@ -100,6 +100,9 @@ class ImportParser(RequirementParser):
                 document = other.document(imported=True)
             except SpecificationError as error:
                 raise self._error_in(file, error, token) from None
+            except ImportedFileError as error:
+                outermost = len(library.open) == 1
+                raise (self.error(str(error), token.span) if outermost else error) from None
             finally:
                 library.open.pop()
             names = (
@@ -132,17 +135,23 @@ class ImportParser(RequirementParser):
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})
 
+    def _no_file(self, error: ImportedFileError, token: Token) -> SpecificationError | ImportedFileError:
+        """Return the error of a file that cannot be imported: at the outermost import, else for it."""
+        if not self.library.open:
+            return self.error(str(error), token.span)
+        line, column = line_and_column(self.text, token.start)
+        return ImportedFileError(f"{called(self.library.open[-1])}, line {line}, column {column}: {error}")
+
     def _error_in(self, file: str, error: SpecificationError, token: Token) -> SpecificationError:
-        """Return the error of an imported file at the import: where it is in the file, but no line of the file.
+        """Return the error of an imported file at the import: where it is in the file, and no word of the file.
 
         The file may belong to someone else than who reads the message.
         """
         message = error.message
-        if (
-            error.text is not None and error.span is not None
-        ):  # not yet placed in a file that this one imports
+        if error.text is not None and error.span is not None:  # else placed by a file that this one imports
             line, column = line_and_column(error.text, error.span.start)
-            message = f"{called(file)}, line {line}, column {column}: {message}"
+            name = called(file)
+            message = f"{name} has an error in line {line}, column {column}: 'rtamt lint {name}' shows it"
         outermost = len(self.library.open) == 1
         return self.error(message, token.span, type(error)) if outermost else type(error)(message)
 

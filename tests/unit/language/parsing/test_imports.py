@@ -163,7 +163,7 @@ MESSAGES = [
     ('import "lib/patterns.stl" near = v > 3', "'near' is defined twice (it is imported from 'patterns.stl')"),
     ('import "lib/patterns.stl" import "other.stl" near',
      "'target' is in 'patterns.stl' and in 'other.stl'; rename one of them"),
-    ('import "wrong.stl" near', "wrong.stl, line 1, column 11: expected an operand after '>', got the end of the text"),
+    ('import "wrong.stl" near', "wrong.stl has an error in line 1, column 11: 'rtamt lint wrong.stl' shows it"),
     ('input float x import "lib/limits.stl" x > 3', "imports stand at the beginning, before declarations"),
     ('import "lib/limits.stl"', "the text has declarations but no formula"),
 ]  # fmt: skip
@@ -179,33 +179,26 @@ def test_messages(folder, text, message):
 
 
 WRONG = [
-    ("near = x >", 11, "expected an operand after '>', got the end of the text", rtamt.ParseError),
-    (
-        "far = x > 3 # secret",
-        13,
-        "unexpected character '#'; a comment begins with //",
-        rtamt.ParseError,
-    ),
-    (
-        "const float secret = 3 [m]; near = always[0:secret](x > 3)",
-        45,
-        "'secret' is in m, and a bound",
-        rtamt.BoundError,
-    ),
+    ("near = x >", 11, rtamt.ParseError),
+    ("SECRET root:x:0", 8, rtamt.ParseError),
+    ("far = x > 3 # secret", 13, rtamt.ParseError),
+    ("const float secret = 3 [m]; near = always[0:secret](x > 3)", 45, rtamt.BoundError),
 ]
 
 
 @pytest.mark.parametrize("through", [False, True])
-@pytest.mark.parametrize(("line", "column", "message", "kind"), WRONG)
-def test_errors_in_imported_files_show_the_import_and_no_line_of_the_file(
-    folder, line, column, message, kind, through
+@pytest.mark.parametrize(("line", "column", "kind"), WRONG)
+def test_errors_in_imported_files_show_the_import_and_no_word_of_the_file(
+    folder, line, column, kind, through
 ):
     (folder / "wrong.stl").write_text(f"const float c = 3\n{line}")
     (folder / "through.stl").write_text('import "wrong.stl"  const float hidden = 3')
     path = "through.stl" if through else "wrong.stl"
     with pytest.raises(kind) as caught:
         loaded(folder, f'\nimport "{path}" near')
-    assert caught.value.message.startswith(f"wrong.stl, line 2, column {column}: {message}")
+    assert caught.value.message == (
+        f"wrong.stl has an error in line 2, column {column}: 'rtamt lint wrong.stl' shows it"
+    )
     marks = " " * 7 + "^" * (len(path) + 2)
     assert (
         str(caught.value)
