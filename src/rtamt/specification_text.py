@@ -229,7 +229,14 @@ class SpecificationText:
         >>> monitor = spec.with_formula(spec.pastified()).monitor()
         >>> monitor.update(0.0, req=5, gnt=2)
         -1.0
+
+        Raises :class:`UsageError` for anything but a formula.
         """
+        if not isinstance(formula, Formula):
+            raise UsageError(
+                f"with_formula takes a formula, such as spec.pastified(), got {type(formula).__name__}; "
+                f"rtamt.parse reads text"
+            )
         return replace(self, document=self.document.with_formula(formula))
 
     @property

@@ -56,6 +56,14 @@ def test_a_formula_is_found_by_an_equal_one_and_watched_once():
     assert monitor[rtamt.parse("req>=3").formula] == 2.0
 
 
+@pytest.mark.parametrize("other", ["x > 2", None, SPEC.pastified])
+def test_with_formula_takes_no_text(other):
+    with pytest.raises(
+        rtamt.UsageError, match=r"with_formula takes a formula, such as spec\.pastified\(\), got"
+    ):
+        SPEC.with_formula(other)
+
+
 def test_a_specification_of_another_formula_is_pickled_with_that_formula():
     spec = SPEC.with_formula(SPEC.pastified())
     twin = pickle.loads(pickle.dumps(spec))  # noqa: S301 - our own
