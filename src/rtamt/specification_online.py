@@ -240,6 +240,7 @@ class OnlineSpecification(QuantifiedText):
                 f"a monitor of quantifiers has no {what}; name the members, which must be present throughout: "
                 f"spec.over({{{named}}}).monitor(...)"
             )
+        domain.check(self.formula, self.text)
         roles = dict(self.roles)
         for each in quantifiers(*self._all_formulas):
             assert each.op.binder is not None

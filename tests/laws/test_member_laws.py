@@ -187,6 +187,24 @@ def test_bounds_of_members_contain_the_robustness_and_meet_it_at_the_horizon(dat
             return
 
 
+@given(quantified_formulas(), scenes(3), traces(("y",), min_size=3, max_size=3))
+def test_an_error_of_an_evaluation_contains_no_internal_names(formula, cars, own):
+    spec = rtamt.parse(HEAD + str(formula))
+    data = {"y": own["y"].tolist(), **cars}
+    for evaluate in (spec.evaluate, spec.monitor().update_many):
+        message = error_of(evaluate, data)
+        assert "#" not in message
+        assert '"valid(' not in message
+
+
+def error_of(evaluate, data) -> str:
+    try:
+        evaluate(data)
+    except EvaluationError as error:
+        return str(error)
+    return ""
+
+
 @given(quantified_formulas(unbounded_future=True))
 def test_a_quantified_formula_prints_and_comes_back_from_a_pickle(formula):
     again = rtamt.parse(HEAD + str(formula)).formula

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Formula, Span, fold, folds, postorder
 from rtamt.rewrite.truth import rebuilt, with_truths
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+
+
+class SourceSpan(Span):
+    """The span of a node that a rewriting has made, with the formula of the text that the node stands for."""
+
+    source: Formula
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Span, tuple(self)  # only messages need the formula, which may be deep
 
 
 def desugar(formula: Formula) -> Formula:
@@ -34,7 +43,8 @@ def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
     >>> print(written(parse_formula("3 - x"), [formula]), "|", written(parse_formula("y"), [formula]))
     x < 3 | y
     """
-    return as_written(formulas).get(core, core)
+    found = as_written(formulas).get(core, core)
+    return found.span.source if isinstance(found.span, SourceSpan) else found
 
 
 def as_written(formulas: Iterable[Formula]) -> dict[Formula, Formula]:
@@ -107,6 +117,22 @@ def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) 
         return Apply(node.op, args, node.interval, span) if isinstance(node, Apply) else node
 
     return _rebuild_above(formula, stop, stamp)
+
+
+def standing_for(source: Formula, formula: Formula, operands: tuple[Formula, ...]) -> Formula:
+    """Return a formula whose nodes above the operands stand for ``source`` in messages."""
+    if source.span is None:
+        return formula
+    span = SourceSpan(*source.span)
+    span.source = source
+
+    def stamp(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        here = node.span is None or node.span == span
+        return Apply(node.op, args, node.interval, span) if here else rebuilt(node, args)
+
+    return _rebuild_above(formula, {id(operand) for operand in operands}, stamp)
 
 
 def _rebuild_above(

@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import reduce
 from math import inf
+from operator import is_not
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,7 @@ from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.language.unwritten import PRESENT, WHERE_PRESENT
 from rtamt.language.value_types import BOOLEAN
+from rtamt.rewrite.desugar import standing_for
 from rtamt.rewrite.partial import may_fail
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.truth import rebuilt
@@ -117,6 +119,8 @@ class Scope(Known):
     def resolved(self, formula: Formula) -> Formula:
         """Return a formula inside these quantifiers; shared nodes are resolved once."""
         done: dict[int, Formula] = {}
+        #: What messages name: the same as if members were present throughout, with the quantifiers inside.
+        plain: dict[int, Formula] = {}
         stack = [formula]
         while stack:
             node = stack[-1]
@@ -126,7 +130,16 @@ class Scope(Known):
                 stack += missing
                 continue
             stack.pop()
-            done[id(node)] = self._step(node, tuple([done[id(arg)] for arg in args]))
+            cut = tuple([done[id(arg)] for arg in args])
+            made = self._step(node, cut)
+            plain[id(node)] = node if isinstance(node, Apply) else made
+            if isinstance(node, Apply) and args:
+                uncut = tuple([plain[id(arg)] for arg in args])
+                plain[id(node)] = made
+                if self.present is not None or any(map(is_not, uncut, cut)):
+                    plain[id(node)] = whole = rebuilt(node, uncut)
+                    made = standing_for(whole, made, cut if self.present is None else (*cut, self.present))
+            done[id(node)] = made
         return done[id(formula)]
 
     def _step(self, node: Formula, args: tuple[Formula, ...]) -> Formula:

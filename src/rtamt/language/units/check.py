@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from rtamt.language.formula import Apply, Const, Var, postorder
+from rtamt.language.formula import Apply, Const, Var, fold, postorder
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.quantifiers import FieldOf
 from rtamt.language.records import Tense
@@ -70,8 +70,14 @@ constant in s"
 
 
 def _called(operand: Formula) -> str:
-    """Return an operand for a message, a constant by its name."""
-    return (operand.name if isinstance(operand, Const) else None) or excerpt(operand)
+    """Return an operand for a message, constants by their names."""
+
+    def named(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if isinstance(node, Apply):
+            return Apply(node.op, args, node.interval, node.span)
+        return Var(node.name) if isinstance(node, Const) and node.name and node.type is None else node
+
+    return excerpt(fold(operand, named))
 
 
 def _leaf(node: Formula, units: Mapping[str, Quantity]) -> Measure:

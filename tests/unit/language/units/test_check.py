@@ -79,6 +79,11 @@ FITTING = [
 ]
 
 
+def test_a_misfit_names_a_constant_inside_an_operand():
+    (finding,) = findings("v < 3 * band")
+    assert finding.message.startswith("'v' is in m/s and '3 * band' is in K,")
+
+
 @pytest.mark.parametrize("formula", FITTING)
 def test_units_that_fit(formula):
     assert found(formula) == []
