@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tools import patterns
+from tools.pattern_examples import EXAMPLES
 
 import rtamt
 
@@ -98,6 +99,53 @@ SCOPES: dict[str, tuple[str, Callable[[Truth, Truth], list[range]]]] = {
     ),
 }
 
+#: What a pattern with times requires of a scope of a trace, of which p and s are given, for a duration of two samples.
+TIMED: dict[str, tuple[str, Callable[[Truth, Truth, range], bool]]] = {
+    "existence_within": ("p, 2s", lambda p, _s, scope: any(p[i] for i in scope[:3])),
+    "response_within": (
+        "p, s, 2s",
+        lambda p, s, scope: all(any(s[j] for j in _window(scope, i)) for i in scope if p[i]),
+    ),
+    "precedence_within": (
+        "p, s, 2s",
+        lambda p, s, scope: all(any(s[j] for j in scope if i - 2 <= j <= i) for i in scope if p[i]),
+    ),
+    "invariance": (
+        "p, s, 2s",
+        lambda p, s, scope: all(all(s[j] for j in _window(scope, i)) for i in scope if p[i]),
+    ),
+    "recurrence": (
+        "p, 2s",
+        lambda p, _s, scope: all(any(p[j] for j in _window(scope, i)) or _ends(p, scope, i) for i in scope),
+    ),
+    "minimum_duration": (
+        "p, 2s",
+        lambda p, _s, scope: all(all(p[j] for j in _window(scope, i)) for i in scope if _becomes_true(p, i)),
+    ),
+    "maximum_duration": (
+        "p, 2s",
+        lambda p, _s, scope: all(
+            not all(p[j] for j in _window(scope, i)) or _ends(p, scope, i)
+            for i in scope
+            if _becomes_true(p, i)
+        ),
+    ),
+}
+
+
+def _window(scope: range, i: int) -> list[int]:
+    return [j for j in scope if i <= j <= i + 2]
+
+
+def _ends(p: Truth, scope: range, i: int) -> bool:
+    """Whether an r, and not the end of the trace, ends the scope within the duration after i."""
+    return scope.stop < len(p) and scope.stop <= i + 2
+
+
+def _becomes_true(p: Truth, i: int) -> bool:
+    return p[i] and (i == 0 or not p[i - 1])
+
+
 TRACES = st.lists(st.tuples(*[st.booleans()] * 5), min_size=1, max_size=9).map(
     lambda rows: dict(zip("pqrst", (list(values) for values in zip(*rows, strict=True)), strict=True))
 )
@@ -126,6 +174,18 @@ def test_a_pattern_holds_where_every_scope_has_it(pattern, signals):
     assert satisfied == [_expected(pattern, scope, signals) for scope in SCOPES]
 
 
+@pytest.mark.parametrize("pattern", TIMED)
+@given(signals=TRACES)
+def test_a_pattern_with_times_holds_where_every_scope_has_it(pattern, signals):
+    operands, holds = TIMED[pattern]
+    result = _in_scopes(pattern, operands, "discrete").evaluate(signals)
+    satisfied = [part.satisfied for part in result.requirements.values()]
+    assert satisfied == [
+        all(holds(signals["p"], signals["s"], scope) for scope in scopes(signals["q"], signals["r"]))
+        for _, scopes in SCOPES.values()
+    ]
+
+
 @given(signals=TRACES)
 def test_bounded_existence_counts_the_same_in_dense_time(signals):
     steps = {name: list(enumerate(values)) for name, values in signals.items()}
@@ -134,9 +194,9 @@ def test_bounded_existence_counts_the_same_in_dense_time(signals):
     assert satisfied == [_expected("bounded_existence", scope, signals) for scope in SCOPES]
 
 
-@pytest.mark.parametrize("group", patterns.EXAMPLES)
+@pytest.mark.parametrize("group", EXAMPLES)
 def test_the_page_shows_a_satisfying_and_a_violating_trace_of_each_pattern(group):
-    for call, (shared, *different) in patterns.EXAMPLES[group].items():
+    for call, (shared, *different) in EXAMPLES[group].items():
         for time in TIMES:
             traces = [patterns.signals({**shared, **own}, time) for own in different]
             results = [_spec(call, time=time).evaluate(trace) for trace in traces]
@@ -147,7 +207,7 @@ def test_the_page_has_every_pattern_with_its_formula():
     page = (ROOT / "docs" / "reference" / "patterns.md").read_text(encoding="utf-8")
     library = LIBRARY.read_text(encoding="utf-8").replace("\n    ", " ")
     defined = re.findall(r"^def (\w+)(\(.*?\)) = +(.*)$", library, re.MULTILINE)
-    shown = {call.partition("(")[0] for group in patterns.EXAMPLES.values() for call in group}
+    shown = {call.partition("(")[0] for group in EXAMPLES.values() for call in group}
     assert {name for name, _, _ in defined} == shown | HELPERS
     for name, parameters, formula in defined:
         assert name in HELPERS or f"| `{name}{parameters}` | `{formula}` |" in page
