@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.quantifiers import Declared
 from rtamt.signals.binding import Binding
+from rtamt.signals.sampling import without_values
 from rtamt.signals.trace import Trace
 from rtamt.specification_text import SpecificationText
 
@@ -69,7 +70,8 @@ class RecordedSpecification(SpecificationText):
     def unchecked(self, names: Collection[str] | Trace) -> dict[str, str]:
         """Return the requirements that cannot be checked on a recording with these signals, each with the reason.
 
-        These are the requirements that read an ``optional`` variable of which the recording has no recorded name.
+        These are the requirements that read an ``optional`` variable of which the recording has no recorded name or,
+        if it is a trace and the text contains ``skip nan``, no sample but NaN.
 
         >>> import rtamt
         >>> spec = rtamt.parse('''
@@ -82,12 +84,16 @@ class RecordedSpecification(SpecificationText):
         >>> spec.unchecked(["z"])
         {'BAT': "no 'battery_status.voltage_v' or 'battery.voltage'"}
         """
-        known = {*names, *(names.aliases if isinstance(names, Trace) else ())}
+        aliases = names.aliases if isinstance(names, Trace) else {}
+        empty = without_values(names, self.sampling) if isinstance(names, Trace) else frozenset()
+        recorded = {*names, *aliases}
+        known = recorded - empty - {alias for alias, name in aliases.items() if name in empty}
         lacking = {}
         for name in sorted(self.optional - known):
             columns = self._recorded_names.get(name, (name,))
             if known.isdisjoint(columns):
-                lacking[name] = " or ".join(f"'{column}'" for column in columns)
+                only_nan = " other than NaN" if name in recorded or not recorded.isdisjoint(columns) else ""
+                lacking[name] = " or ".join(f"'{column}'" for column in columns) + only_nan
         return {
             name: _listed([lacking[each] for each in one.input_names if each in lacking])
             for name, one in self.requirements.items()

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
+    from numpy.typing import NDArray
+
     from rtamt.language.parsing.sampling import Sampling
 
 
@@ -65,12 +67,7 @@ def _without_nan(trace: Trace) -> Trace:
     channels, losses = {}, []
     for name in trace:
         channel = channels[name] = trace.channel(name)
-        if channel.values.dtype.kind == "f":
-            bad = np.isnan(channel.values)
-        else:
-            bad = np.array(
-                [isinstance(value, float) and isnan(value) for value in channel.values.tolist()], bool
-            )
+        bad = _nan(channel.values)
         if not bad.any() or channel.times is None:
             continue
         first, count = int(bad.argmax()), int(bad.sum())
@@ -78,6 +75,20 @@ def _without_nan(trace: Trace) -> Trace:
         losses.append(f"left out, NaN: {count:,} sample{'s' * (count != 1)} of {name}, the first at {at}")
         channels[name] = replace(channel, times=channel.times[~bad], values=channel.values[~bad])
     return trace.with_channels(channels, losses)
+
+
+def without_values(trace: Trace, rule: Sampling | None) -> frozenset[str]:
+    """Return the signals of a trace all of whose samples a rule leaves out."""
+    if rule is None or not rule.skip_nan:
+        return frozenset()
+    return frozenset(name for name in trace if _nan(trace.channel(name).values).all())
+
+
+def _nan(values: NDArray[Any]) -> NDArray[np.bool_]:
+    if values.dtype.kind == "f":
+        found: NDArray[np.bool_] = np.isnan(values)
+        return found
+    return np.array([isinstance(value, float) and isnan(value) for value in values.tolist()], bool)
 
 
 def _has_times(samples: Any) -> bool:

@@ -216,3 +216,18 @@ def test_a_pack_and_a_file_are_checked_together(run, write):
     answer = run("check", "driving", "mine.stl", "drive.csv", "--json")
     rows = [json.loads(line) for line in answer.out.splitlines()]
     assert [row["requirement"] for row in rows if "unchecked" not in row] == ["LIMIT-1", "mine.stl"]
+
+
+def test_a_requirement_whose_optional_signal_is_only_nan_is_unchecked(run, write):
+    table = write("flight.csv", "time,set,c\n0,nan,2\n1,nan,2\n2,nan,3\n")
+    text = (
+        'optional input float a = "set.old" or "set"\ninput float c\nsample 1s hold skip nan\n'
+        "require A: always(a > 0)\nrequire C: always(c > 0)\n"
+    )
+    answer = run("check", write("flight.stl", text), table)
+    assert answer.code == 0
+    assert "not checked: no 'set.old' or 'set' other than NaN" in answer.out
+    assert "1 satisfied, 1 unchecked" in answer.out
+    assert rtamt.parse(text).unchecked(rtamt.read(table, skip_nan=["set"])) == {
+        "A": "no 'set.old' or 'set' other than NaN"
+    }
