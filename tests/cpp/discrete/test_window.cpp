@@ -113,7 +113,7 @@ namespace {
 double extreme(oracle::Random& random) {
     if (random.chance(10)) return random.chance(50) ? -0.0 : 0.0;
     if (random.chance(10)) return random.chance(50) ? infinity : -infinity;
-    return random.between(-50, 50) / 2.0;
+    return static_cast<double>(random.between(-50, 50)) / 2.0;
 }
 
 template <class Algebra>
