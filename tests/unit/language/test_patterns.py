@@ -99,31 +99,31 @@ SCOPES: dict[str, tuple[str, Callable[[Truth, Truth], list[range]]]] = {
     ),
 }
 
-#: What a pattern with times requires of a scope of a trace, of which p and s are given, for a duration of two samples.
+#: What a pattern with times requires of a scope of a trace, of which p and s are given, for a duration of one sample.
 TIMED: dict[str, tuple[str, Callable[[Truth, Truth, range], bool]]] = {
-    "existence_within": ("p, 2s", lambda p, _s, scope: any(p[i] for i in scope[:3])),
+    "existence_within": ("p, 1s", lambda p, _s, scope: any(p[i] for i in scope[:2])),
     "response_within": (
-        "p, s, 2s",
+        "p, s, 1s",
         lambda p, s, scope: all(any(s[j] for j in _window(scope, i)) for i in scope if p[i]),
     ),
     "precedence_within": (
-        "p, s, 2s",
-        lambda p, s, scope: all(any(s[j] for j in scope if i - 2 <= j <= i) for i in scope if p[i]),
+        "p, s, 1s",
+        lambda p, s, scope: all(any(s[j] for j in scope if i - 1 <= j <= i) for i in scope if p[i]),
     ),
     "invariance": (
-        "p, s, 2s",
+        "p, s, 1s",
         lambda p, s, scope: all(all(s[j] for j in _window(scope, i)) for i in scope if p[i]),
     ),
     "recurrence": (
-        "p, 2s",
+        "p, 1s",
         lambda p, _s, scope: all(any(p[j] for j in _window(scope, i)) or _ends(p, scope, i) for i in scope),
     ),
     "minimum_duration": (
-        "p, 2s",
+        "p, 1s",
         lambda p, _s, scope: all(all(p[j] for j in _window(scope, i)) for i in scope if _becomes_true(p, i)),
     ),
     "maximum_duration": (
-        "p, 2s",
+        "p, 1s",
         lambda p, _s, scope: all(
             not all(p[j] for j in _window(scope, i)) or _ends(p, scope, i)
             for i in scope
@@ -134,12 +134,12 @@ TIMED: dict[str, tuple[str, Callable[[Truth, Truth, range], bool]]] = {
 
 
 def _window(scope: range, i: int) -> list[int]:
-    return [j for j in scope if i <= j <= i + 2]
+    return [j for j in scope if i <= j <= i + 1]
 
 
 def _ends(p: Truth, scope: range, i: int) -> bool:
     """Whether an r, and not the end of the trace, ends the scope within the duration after i."""
-    return scope.stop < len(p) and scope.stop <= i + 2
+    return scope.stop < len(p) and scope.stop <= i + 1
 
 
 def _becomes_true(p: Truth, i: int) -> bool:
