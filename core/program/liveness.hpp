@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace rtamt {
@@ -88,7 +89,8 @@ struct Lifetime {
     for (std::uint32_t i = 0; i < units.size(); ++i) {
         if (needed[i]) lifetimes.push_back({i, first[i], last[i]});
     }
-    std::ranges::stable_sort(lifetimes, {}, &Lifetime::first);
+    const auto place = [](const Lifetime& each) { return std::pair(each.first, each.instruction); };
+    std::ranges::sort(lifetimes, {}, place);
     return lifetimes;
 }
 
