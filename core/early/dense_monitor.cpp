@@ -33,6 +33,7 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     }
     if (!settings.origin.empty()) {
         origin_.emplace(std::move(settings.origin), engine_, settings.causes.has_value());
+        engine_.find_beyond(origin_->read_forever());
     }
     if (settings.causes) {
         causes_.emplace(std::move(*settings.causes), engine_, origin_.value(), true);
@@ -78,7 +79,8 @@ std::optional<DenseMonitor::Failure> DenseMonitor::learn(Tick at, std::optional<
     if (begins) failure = engine_.wrong_constant();
     if (!failure) {
         engine_.settle_inputs(samples_.settled());
-        failure = engine_.learn(observations_);
+        const Tick newest = samples_.start() ? *samples_.newest() - start() : -1;
+        failure = engine_.learn(observations_, newest, samples_.ended());
     }
     if (failure) {
         failure->tick += start();

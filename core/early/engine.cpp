@@ -34,6 +34,7 @@ Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
         for (const Bounds& range : ranges_)
             inputs_.push_back({Runs(0, range.lower), Runs(0, -range.upper)});
     }
+    find_beyond({});
     (void)propagate(true); // what has no value before it is seen is not known
     clear();
 }
@@ -62,8 +63,9 @@ void Engine::begin(Tick newest) noexcept {
     clear();
     seen_before_ = seen_;
     seen_ = std::max(seen_, newest);
-    for (Totals& totals : totals_)
-        totals.undefined_before = totals.undefined;
+    if (!partial_) return;
+    for (State& state : nodes_)
+        state.undefined_before = state.undefined;
 }
 
 void Engine::clear() noexcept {
@@ -83,11 +85,12 @@ std::optional<Engine::Failure> Engine::attempt(std::optional<Failure> failure) {
 void Engine::revert() {
     for (const Undo& undo : std::views::reverse(journal_))
         undo.runs->set(undo.l, undo.r, undo.old);
-    for (Totals& totals : totals_) {
+    for (Totals& totals : totals_)
         totals.forget();
-        totals.undefined = totals.undefined_before;
-    }
+    for (State& state : nodes_)
+        state.undefined = state.undefined_before;
     seen_ = seen_before_;
+    ended_ = false;
     clear();
 }
 
@@ -143,11 +146,10 @@ void Engine::know(std::span<const Observation> observations) {
     }
 }
 
-std::optional<Engine::Failure> Engine::learn(std::span<const Observation> observations) {
-    Tick newest = seen_;
-    for (const Observation& observation : observations)
-        newest = std::max(newest, observation.l);
+std::optional<Engine::Failure> Engine::learn(std::span<const Observation> observations, Tick newest,
+                                             bool ended) {
     begin(newest);
+    ended_ = ended;
     journaling_ = partial_;
     know(observations);
     for (const Observation& observation : observations) {
@@ -196,7 +198,8 @@ std::optional<Engine::Failure> Engine::wrong_constant() {
 
 // Computes an atom again wherever its inputs may have changed. It fails where its operands are
 // known exactly, or will not be known better; what has no value for other operands, or for those
-// that are only supposed, may still get one.
+// that are only supposed, may still get one. Behind the newest sample no operand is known that has
+// no such value at that sample too.
 std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r, bool supposed) {
     State& state = nodes_[index];
     const auto& steps = node(index).steps;
@@ -221,7 +224,7 @@ std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick
             }
         }
         const std::uint32_t wrong = enclose(steps, row_, bounds_);
-        if (wrong != none && exact && !supposed) return Failure{index, wrong, t};
+        if (wrong != none && exact && !supposed && t <= seen_) return Failure{index, wrong, t};
         const Bounds result = bounds_[steps.size() - 1];
         lift(state, 0, t, end, result.lower);
         lift(state, 1, t, end, -result.upper);
@@ -246,7 +249,7 @@ std::optional<Engine::Failure> Engine::remap(std::uint32_t index, Tick l, Tick r
             lift(state, 0, t, end, result.lower);
             lift(state, 1, t, end, -result.upper);
         } else if (first.lower == first.upper && second.lower == second.upper) {
-            return Failure{index, 0, t};
+            if (const auto failure = fails(index, t)) return failure;
         }
         if (end >= forever) break;
         t = end + 1;
@@ -275,6 +278,7 @@ std::optional<Engine::Failure> Engine::propagate(bool first) {
         if (own.kind == Kind::atom) {
             if (first) (void)relearn(i, 0, forever);
         } else if (own.kind == Kind::map) {
+            if (reached(i, nodes_[i].undefined)) return Failure{i, 0, nodes_[i].undefined};
             std::optional<Failure> failure;
             if (first) failure = remap(i, 0, forever);
             for (int reg = 0; reg < 2 && !first; ++reg) {
@@ -388,6 +392,7 @@ void Engine::transfer(Snapshot& snapshot) {
         state.own[1].transfer(snapshot);
         snapshot.item(state.from);
         snapshot.item(state.keep);
+        snapshot.item(state.undefined);
         snapshot.require(state.own[0].front() <= std::max<Tick>(0, state.keep) &&
                          state.own[1].front() <= std::max<Tick>(0, state.keep));
     }
@@ -395,8 +400,6 @@ void Engine::transfer(Snapshot& snapshot) {
         registers[0].transfer(snapshot);
         registers[1].transfer(snapshot);
     }
-    for (Totals& totals : totals_)
-        snapshot.item(totals.undefined);
     snapshot.item(seen_);
     snapshot.require(seen_ >= -1 && seen_ < forever);
     if (!snapshot.loading()) return;

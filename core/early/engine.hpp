@@ -72,7 +72,13 @@ class Engine {
         Tick r;
         Bounds bounds;
     };
-    [[nodiscard]] std::optional<Failure> learn(std::span<const Observation> observations);
+    // `newest`: the tick of the newest sample. `ended`: no more will come, and every input holds
+    // its last value.
+    [[nodiscard]] std::optional<Failure> learn(std::span<const Observation> observations,
+                                               Tick newest, bool ended = false);
+
+    // The nodes that others read for ever when the trace ends.
+    void find_beyond(std::span<const std::uint32_t> read_forever);
 
     // What is supposed of all inputs at [l, r], where nothing is known of them but their ranges. It
     // holds until revert(), with which everything is as it was before.
@@ -135,6 +141,9 @@ class Engine {
         Tick from = 0;     // the first tick that may still change and is wanted
         Tick keep = 0;     // the first tick that anybody reads
         Tick to = forever; // the last tick that anybody will read
+        Tick beyond = 0;   // how many ticks behind the last sample it is read when the trace ends
+        Tick undefined = forever; // the first tick without a value, which may never be reached
+        Tick undefined_before = forever; // the last change
     };
     struct Undo {
         Runs* runs;
@@ -161,6 +170,7 @@ class Engine {
     std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
     Tick seen_ = -1;                           // the newest tick of which samples came
     Tick seen_before_ = -1;                    // the last change
+    bool ended_ = false;                       // no more samples will come
     std::vector<Totals> totals_;               // by node, of sums
     std::vector<std::pair<Tick, Tick>> spans_; // where a sum may have changed
 
@@ -180,11 +190,18 @@ class Engine {
     [[nodiscard]] std::optional<Failure> propagate(bool first);
     void lift_empty(std::uint32_t index);
 
+    // undefined.cpp
+    // What has no value at a tick is a failure as soon as the tick is in the trace, or when the
+    // trace ends and something reads that far.
+    [[nodiscard]] bool reached(std::uint32_t index, Tick t) const noexcept {
+        return t < forever && t <= (ended_ ? plus(seen_, nodes_[index].beyond) : seen_);
+    }
+    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, Tick t) noexcept;
+
     // sums.cpp
     void lift(State& state, Tick l, Tick r, const Bounds& now);
     [[nodiscard]] std::optional<Failure> add_up(std::uint32_t index, bool first);
     [[nodiscard]] std::optional<Failure> add_windows(std::uint32_t index, Tick t, Tick r);
-    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, Tick t) noexcept;
     [[nodiscard]] std::optional<Failure> add_all(std::uint32_t index, Tick t);
 
     // kernels.cpp: all other nodes, a register at a time

@@ -59,6 +59,15 @@ void Origin::limit(std::span<Tick> last) const noexcept {
     }
 }
 
+std::vector<std::uint32_t> Origin::read_forever() const {
+    std::vector<std::uint32_t> refs;
+    for (const Item& item : items_) {
+        if (item.kind == Item::Kind::all || item.kind == Item::Kind::some) refs.push_back(item.a);
+        if (item.kind == Item::Kind::until) refs.insert(refs.end(), {item.a, item.b, item.c});
+    }
+    return refs;
+}
+
 void Origin::read(const Engine& engine) {
     for (std::size_t i = 0; i < items_.size(); ++i)
         look_at(engine, i);

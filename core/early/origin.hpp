@@ -37,6 +37,9 @@ class Origin {
     // The last tick of each node that is looked at, where it is later.
     void limit(std::span<Tick> last) const noexcept;
 
+    // What is read at every tick.
+    [[nodiscard]] std::vector<std::uint32_t> read_forever() const;
+
     // Looks at what the engine knows now.
     void read(const Engine& engine);
 

@@ -19,7 +19,7 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
     const State& state = nodes_[index];
     if (state.from >= forever) return std::nullopt; // nothing reads it
-    if (totals_[index].undefined <= seen_) return Failure{index, 0, totals_[index].undefined};
+    if (reached(index, state.undefined)) return Failure{index, 0, state.undefined};
     spans_.clear();
     if (first) {
         spans_.emplace_back(0, forever);
@@ -43,13 +43,6 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
         if (failure) return failure;
         t = std::max(t, plus(r, 1));
     }
-    return std::nullopt;
-}
-
-// A sum that is undefined at a tick is a failure as soon as there is a sample.
-std::optional<Engine::Failure> Engine::fails(std::uint32_t index, Tick t) noexcept {
-    if (t <= seen_) return Failure{index, 0, t};
-    totals_[index].undefined = std::min(totals_[index].undefined, t);
     return std::nullopt;
 }
 

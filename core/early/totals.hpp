@@ -31,10 +31,6 @@ class Totals {
     }
     void forget() noexcept { block_ = none; }
 
-    // The first tick with an undefined sum; those after what was seen may never be read.
-    Tick undefined = forever;
-    Tick undefined_before = forever; // the last change
-
     // The sum over the window that ends at a tick; `read(t)` are the bounds at a tick.
     template <class Read>
     [[nodiscard]] Bounds at(Tick end, Read&& read) {

@@ -100,9 +100,9 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     if (wrong != nullptr) return guard_.refuse(wrong);
     if (settings_.late && *index <= closed_) return guard_.refuse("late");
     try {
-        const auto failure = settings_.late ? engine_.learn(observations_)
+        const auto failure = settings_.late ? engine_.learn(observations_, *index)
                                             : engine_.row(*index, std::span<const double>(row_));
-        if (failure) return fail(*failure, t);
+        if (failure) return fail(*failure, *index, t);
         return advance(*index, t);
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
@@ -131,7 +131,7 @@ nb::object EarlyMonitor::take(double time, const std::vector<double>& lower,
     for (std::size_t i = 0; i < lower.size(); ++i)
         row.push_back({lower[i], upper[i]});
     const auto failure = engine_.row(*index, std::span<const Bounds>(row));
-    return checked(failure ? fail(*failure, time) : advance(*index, time));
+    return checked(failure ? fail(*failure, *index, time) : advance(*index, time));
 }
 
 nb::object EarlyMonitor::learn(double time,
@@ -145,8 +145,8 @@ nb::object EarlyMonitor::learn(double time,
         if (input >= row_.size()) throw std::out_of_range("There is no such input.");
         observations_.push_back({input, *index, *index, {lower, upper}});
     }
-    const auto failure = engine_.learn(observations_);
-    return checked(failure ? fail(*failure, time) : advance(*index, time));
+    const auto failure = engine_.learn(observations_, *index);
+    return checked(failure ? fail(*failure, *index, time) : advance(*index, time));
 }
 
 nb::object EarlyMonitor::watermark(double time) {
@@ -161,12 +161,14 @@ nb::object EarlyMonitor::watermark(double time) {
     return nb::none();
 }
 
-// The operation of a step by its number in the whole graph, the sample and its time.
-PyObject* EarlyMonitor::fail(const Failure& failure, double time) noexcept {
+// The operation of a step by its number in the whole graph, the sample and its time, from those of
+// the sample that came.
+PyObject* EarlyMonitor::fail(const Failure& failure, Tick index, double time) noexcept {
     const auto when = static_cast<long long>(failure.tick);
     const auto raised = nb::steal(PyObject_CallFunction(
         exceptions_.undefined.ptr(), "IL", steps_before_[failure.node] + failure.step, when));
-    const auto seconds = nb::steal(PyFloat_FromDouble(time));
+    const auto steps = static_cast<double>(failure.tick - index);
+    const auto seconds = nb::steal(PyFloat_FromDouble(time + steps * settings_.period));
     if (raised.is_valid() && seconds.is_valid() &&
         PyObject_SetAttrString(raised.ptr(), "time", seconds.ptr()) == 0) {
         PyErr_SetObject(exceptions_.undefined.ptr(), raised.ptr());

@@ -121,7 +121,7 @@ class EarlyMonitor : public EarlyBackend {
 
     void transfer(Snapshot& snapshot);
     [[nodiscard]] bool in_order(early::Tick index) const noexcept;
-    [[nodiscard]] PyObject* fail(const Failure& failure, double time) noexcept;
+    [[nodiscard]] PyObject* fail(const Failure& failure, early::Tick index, double time) noexcept;
     void note(early::Tick before);
     [[nodiscard]] PyObject* advance(early::Tick index, double time);
     [[nodiscard]] early::Tick lag(std::size_t output) const;

@@ -99,7 +99,7 @@ nb::object EarlyMonitor::supposed(
     }
     if (const auto failure = engine_.suppose(suppositions)) {
         const Tick t = failure->tick;
-        return checked(fail(*failure, next > 0 ? times_.at(t) : static_cast<double>(t)));
+        return checked(fail(*failure, t, next > 0 ? times_.at(t) : static_cast<double>(t)));
     }
     Bounds value{};
     if (output) {

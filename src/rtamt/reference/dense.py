@@ -82,7 +82,7 @@ def evaluate(formula: Formula, signals: Mapping[str, Events], tick: Fraction) ->
     """
     formula = _with_dense_meaning(formula, tick)
     trace = _Trace.of(signals, tick)
-    steps = _evaluate(formula, trace, _read(formula, trace.last, tick))
+    steps = _evaluate(formula, trace, last_read(formula, trace.last, tick))
     return _changes(steps, None, trace.last)
 
 
@@ -177,7 +177,7 @@ class DenseReferenceMonitor:
         for formula, depths, before in zip(self._formulas, self._depths, self._until, strict=True):
             limits: Limits
             if final:
-                limits, end = _read(formula, trace.last, self._tick), trace.last
+                limits, end = last_read(formula, trace.last, self._tick), trace.last
             else:
                 limits = {node: complete - depth for node, depth in depths.items()}
                 end = complete - depths[id(formula)]
@@ -285,7 +285,7 @@ def _ahead(node: Formula, tick: Fraction) -> int | None:
     return _window(node, tick)[1]
 
 
-def _read(formula: Formula, last: int, tick: Fraction) -> dict[int, int | None]:
+def last_read(formula: Formula, last: int, tick: Fraction) -> Limits:
     """Return, by identity of each sub-formula, how far values up to ``last`` of the whole formula read it."""
     limits: dict[int, int | None] = {id(formula): last}
     for node in reversed(postorder(formula)):  # whoever reads a node comes before it

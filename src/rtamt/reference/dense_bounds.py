@@ -19,6 +19,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import undefined
 from rtamt.reference.definition_adapter import signal_of
+from rtamt.reference.dense import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import desugar, written
@@ -106,15 +107,20 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
     ahead = horizons(core, tick)
     complete = None if start is None else known.complete
-    last = None if start is None else max(int(times[-1]) for times, _, _ in known.samples.values())
+    last = max((int(times[-1]) for times, _, _ in known.samples.values() if len(times)), default=0) * QUARTERS
+    read = last_read(core, last, tick)
+
+    def final(node: Formula) -> float:
+        """Return the last instant, in quarters, whose value is final, and in the trace or read at its end."""
+        depth, limit = ahead[id(node)], read[id(node)]
+        if known.finished:
+            return inf if limit is None else limit
+        if complete is None or depth is None:
+            return -inf
+        return min(last, (complete - int(depth / tick)) * QUARTERS)
 
     def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
-        value = _apply(node, below, signals, origin, tick)
-        depth = ahead[id(node)]
-        final = None if complete is None or depth is None else complete - int(depth / tick)
-        if known.finished:
-            final = last
-        return _defined(value, node, formula, final, tick)
+        return _defined(_apply(node, below, signals, origin, tick), node, formula, final(node), tick)
 
     with np.errstate(all="ignore"):
         lower, upper = fold(core, step)
@@ -211,7 +217,7 @@ def _apply(
     )
 
 
-def _defined(value: _Signal, node: Formula, formula: Formula, final: int | None, tick: Fraction) -> _Signal:
+def _defined(value: _Signal, node: Formula, formula: Formula, final: float, tick: Fraction) -> _Signal:
     """Raise the error for a final value that does not exist; one that is not final may be anything."""
     times = sorted({*value.lower.times, *value.upper.times})
     pairs = [(value.lower.at(t), value.upper.at(t)) for t in times]
@@ -219,7 +225,7 @@ def _defined(value: _Signal, node: Formula, formula: Formula, final: int | None,
     if not wrong:
         return value
     first = times[wrong[0]]
-    if final is not None and first <= final * QUARTERS:
+    if first <= final:
         seconds = float(first * tick / QUARTERS)
         raise undefined(written(node, [formula]), f"time {seconds:.15g} s")
     for i in wrong:

@@ -126,7 +126,7 @@ TEST_CASE("knowledge in any order gives the bounds of the definition") {
                 const Tick end = t == end_of_test ? forever : t;
                 observations.push_back({input, t, end, both});
             }
-            REQUIRE(!engine.learn(observations));
+            REQUIRE(!engine.learn(observations, observations.empty() ? -1 : observations.back().l));
             for (std::uint32_t k = 0; k < 2; ++k)
                 REQUIRE(engine.known(k, l) == known[k][static_cast<std::size_t>(l)]);
             check_all(engine, graph, known, 0);
@@ -214,10 +214,10 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     graph.nodes = {root, window};
     Engine engine(graph, {}, true);
     const Observation fine{0, 0, 3, Interval::of(4)};
-    REQUIRE(!engine.learn(std::span(&fine, 1)));
+    REQUIRE(!engine.learn(std::span(&fine, 1), 0));
     const std::array<Observation, 2> wrong{
         {{0, 4, 4, Interval::of(9)}, {0, 5, 5, Interval::of(-1)}}};
-    const auto failure = engine.learn(wrong);
+    const auto failure = engine.learn(wrong, 5);
     REQUIRE(failure);
     CHECK(failure->node == 0);
     CHECK(failure->step == 1);
@@ -227,11 +227,11 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     CHECK(engine.known(0, 4) == rtamt::bounds::anything);
     // Bounds outside its domain wait for better ones, unless none will come.
     const Observation open{0, 4, 4, {-3, -2}};
-    REQUIRE(!engine.learn(std::span(&open, 1)));
+    REQUIRE(!engine.learn(std::span(&open, 1), 4));
     const std::array<Tick, 2> settled{4, -1};
     engine.settle_inputs(settled);
     const Observation closed{0, 4, 4, {-3, -2.5}};
-    CHECK(engine.learn(std::span(&closed, 1)));
+    CHECK(engine.learn(std::span(&closed, 1), 4));
 }
 
 TEST_CASE("the number of pieces does not depend on the bounds of windows") {

@@ -65,7 +65,7 @@ void check_same(Samples& samples, Engine& engine, const Model& model) {
         REQUIRE(before.lower <= observation.bounds.lower);
         REQUIRE(observation.bounds.upper <= before.upper);
     }
-    REQUIRE(!engine.learn(observations));
+    REQUIRE(!engine.learn(observations, *samples.newest() - *samples.start()));
     for (std::uint32_t input = 0; input < 2; ++input) {
         for (Tick t = *model.start(); t < last_tick + 20; ++t) {
             REQUIRE(engine.known(input, t - *model.start()) == model.known(input, t));
@@ -139,7 +139,7 @@ TEST_CASE("samples make known what the definition says, in order or late") {
         model.closed = 1000;
         std::vector<Engine::Observation> observations;
         samples.collect(observations);
-        REQUIRE(!engine.learn(observations));
+        REQUIRE(!engine.learn(observations, *samples.newest() - *samples.start()));
         for (std::uint32_t input = 0; input < 2; ++input) {
             for (Tick t = *model.start(); t < last_tick + 20; ++t)
                 REQUIRE(engine.known(input, t - *model.start()) == model.known(input, t));

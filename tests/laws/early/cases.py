@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL, Bounds, Fixity, Operator, Sort, Tense
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.horizon import horizon
 
@@ -69,11 +70,31 @@ def formula(
 
 
 def _reading(rng: Random, **kinds: bool) -> Formula:
-    """Draw a formula that reads a variable."""
+    """Draw a formula that reads a variable; ``partial``: with a function that has no value of some delayed numbers."""
+    if kinds.pop("partial", False):
+        return _partial(rng)
     while True:
         drawn = formula(rng, ("x", "y"), depth=rng.randint(1, 3), **kinds)
         if variables(drawn):
             return drawn
+
+
+def _partial(rng: Random) -> Formula:
+    delay = f"delay[{rng.randint(1, 3)}](x, {rng.choice((0, 1, -1))})"
+    other = rng.choice(("y", f"ahead[{rng.randint(1, 2)}](y)", "delay[1](y, 1)"))
+    number = rng.choice((f"sqrt({delay})", f"1 / {delay}", f"{other} / {delay}", f"sqrt({delay} + {other})"))
+    begin, end = sorted(rng.sample(range(4), 2))
+    above = rng.choice(
+        (
+            "{0} < 1",
+            "eventually[{1}:{2}]({0} < 1) and x > 0",
+            "{0} < 1 or always[{1}:{2}](x > 0)",
+            "once[{1}:{2}]({0} < 1)",
+            "({0} < 1) until[{1}:{2}] (x > 0)",
+            "(y > 0) until[{1}:{2}] ({0} < 1)",
+        )
+    )
+    return parse_formula(above.format(number, begin, end))
 
 
 def _interval(rng: Random, op: Operator, *, unbounded: bool) -> Interval | None:

@@ -109,6 +109,38 @@ def finished(case: DenseCase, made: Implementation) -> None:
             assert lower <= value <= upper
 
 
+def accepted(case: DenseCase, made: Implementation) -> None:
+    """Samples of which every prefix has a value at every instant are accepted, and end as the signals."""
+    assert case.exact
+    came: dict[str, tuple[list[int], list[float]]] = {name: ([], []) for name in case.names}
+    n, steps = 0, None
+    for k, (t, row) in enumerate(case.updates):
+        for name, known in row.items():
+            came[name][0].append(t)
+            came[name][1].append(known[0])
+        if not all(times for times, _ in came.values()):
+            continue
+        try:
+            steps = _dense_rho(case.formula, came)
+        except NothingToCheck:
+            break
+        n = k + 1
+        start, end = max(t[0] for t, _ in came.values()), max(t[-1] for t, _ in came.values())
+    if steps is None:
+        raise NothingToCheck
+    bounds = made.dense_interval(case.formula, case.names, case.ranges)
+    verdicts = made.dense_eager(case.formula, case.names, case.ranges)
+    for t, row in case.updates[:n]:
+        for monitor in (bounds, verdicts):
+            monitor.update(t, **{name: given(known) for name, known in row.items()})
+    bounds.finish()
+    verdicts.finish()
+    final = [bounds.interval(t) for t in range(start, end + 1)]
+    assert [(each.lower, each.upper) for each in final] == [
+        (v, v) for v in _values(steps, range(start, end + 1))
+    ]
+
+
 def as_defined(case: DenseCase, made: Implementation) -> None:
     """After every update the bounds at every tick are those of the definition."""
     if made is DEFINITION:

@@ -116,6 +116,31 @@ def finished(case: Case, made: Implementation) -> None:
             assert bounds[t][0] <= expected[t] <= bounds[t][1]
 
 
+def accepted(case: Case, made: Implementation) -> None:
+    """Samples of which every prefix has a value at every sample are accepted, and end as the whole trace."""
+    assert case.exact
+    n = 0
+    expected: list[float] = []
+    for k in range(1, case.n + 1):
+        try:
+            expected = rho(case.formula, case.truth, k)
+        except NothingToCheck:
+            break
+        n = k
+    if not n or ends_differently(case.formula, case.ranges) is not None:
+        raise NothingToCheck
+    bounds = made.interval(case.formula, case.names, case.ranges, 0)
+    verdicts = made.eager(case.formula, case.names, case.ranges)
+    for i, row in enumerate(case.samples[:n]):
+        for monitor in (bounds, verdicts):
+            monitor.update(i, **{name: given(known) for name, known in row.items()})
+    bounds.finish()
+    verdicts.finish()
+    for t in range(n):
+        final = bounds.interval(t)
+        assert (final.lower, final.upper) == (expected[t], expected[t])
+
+
 def as_defined(case: Case, made: Implementation) -> None:
     """After every sample and at the end, the bounds at every instant are those of the definition."""
     if made is DEFINITION:

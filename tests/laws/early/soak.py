@@ -39,6 +39,10 @@ def finished(rng: Random, made: Implementation) -> None:
     laws.finished(case(rng, exact=True), made)
 
 
+def accepted(rng: Random, made: Implementation) -> None:
+    laws.accepted(case(rng, exact=True, ranges=False, partial=True), made)
+
+
 def as_defined(rng: Random, made: Implementation) -> None:
     laws.as_defined(case(rng), made)
 
@@ -78,6 +82,10 @@ def dense_narrowing(rng: Random, made: Implementation) -> None:
 
 def dense_finished(rng: Random, made: Implementation) -> None:
     dense_laws.finished(dense_case(rng, exact=True, unbounded=False), made)
+
+
+def dense_accepted(rng: Random, made: Implementation) -> None:
+    dense_laws.accepted(dense_case(rng, exact=True, ranges=False, partial=True), made)
 
 
 def dense_as_defined(rng: Random, made: Implementation) -> None:
@@ -144,6 +152,7 @@ LAWS: list[Law] = [
     narrowing,
     delayed,
     finished,
+    accepted,
     as_defined,
     any_order,
     tight,
@@ -153,6 +162,7 @@ LAWS: list[Law] = [
     dense_sound,
     dense_narrowing,
     dense_finished,
+    dense_accepted,
     dense_as_defined,
     dense_start,
     dense_late,

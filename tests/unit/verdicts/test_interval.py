@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import pickle
 from math import inf
@@ -177,3 +178,44 @@ def test_a_value_that_does_not_exist_is_an_error_also_once_the_start_is_decided_
     monitor.update(2, x=0, y=0)
     with pytest.raises(EvaluationError, match="has no value at sample 3"):
         monitor.update(3, x=0, y=0)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("verdict", ["interval", "eager", "delayed"])
+def test_samples_whose_later_values_do_not_exist_are_accepted_until_the_trace_is_as_long(backend, verdict):
+    monitor = rtamt.parse("sqrt(delay[1](y, 0)) < 9", period=0.5, backend=backend).monitor(verdict=verdict)
+    monitor.update(10, y=-2.0)
+    monitor.update(10.5, y=1.0)
+    for _ in range(2):
+        with pytest.raises(EvaluationError, match="has no value at sample 2, time 11 s"):
+            monitor.update(11, y=1.0)
+    monitor.finish()
+
+
+def test_error_that_a_late_sample_causes_has_the_time_of_the_sample_without_a_value():
+    monitor = rtamt.parse("sqrt(delay[1](y, 0)) < 9", period=0.5).monitor(verdict="interval", lateness=2)
+    for time, y in ((10, 1.0), (11, 1.0), (12, 1.0), (10.5, -2.0)):
+        monitor.update(time, y=y)
+    with pytest.raises(EvaluationError, match=r"has no value at sample 3, time 11\.5 s"):
+        monitor.update(12.5, y=1.0)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("verdict", ["interval", "eager", "delayed"])
+def test_values_that_do_not_exist_behind_the_end_in_dense_time_are_errors_where_a_window_reads_them(
+    backend, verdict
+):
+    for text, fails in (
+        ("sqrt(delay[2](y, 0)) < 9 and eventually[0:5](y > 0)", False),
+        ("eventually[0:1](sqrt(delay[2](y, 0)) < 9)", True),
+        ("(sqrt(delay[2](y, 0)) < 9) until[0:1] (y > 0)", True),
+        ("(y > 0) until[0:1] (sqrt(delay[3](y, 0)) < 9)", False),
+    ):
+        spec = rtamt.parse(text, time=rtamt.Dense("1s"), backend=backend)
+        monitor = spec.monitor(verdict=verdict)
+        monitor.update(0, y=-2.0)
+        monitor.update(1, y=1.0)
+        with pytest.raises(EvaluationError, match="at time 2 s") if fails else contextlib.nullcontext():
+            monitor.finish()
+        with pytest.raises(EvaluationError, match="at time 2 s") if fails else contextlib.nullcontext():
+            spec.evaluate({"y": ([0, 1], [-2.0, 1.0])})
