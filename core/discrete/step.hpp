@@ -40,7 +40,7 @@ enum class Action : std::uint8_t {
 };
 
 struct Step {
-    Action action;
+    Action action{};
     bool checked = false; // remembers whether a value is NaN
     std::uint32_t operand = 0;
     std::uint32_t other = 0; // the second one

@@ -118,7 +118,7 @@ class Wiring {
     // Where a value is: in which bank, and in which row of it. A constant that is read once a block
     // is in no bank.
     struct Place {
-        Sort sort;
+        Sort sort{};
         std::uint32_t row = no_register;
     };
     // Sizes in bytes; the guarded part of the state has a journal of the same size.

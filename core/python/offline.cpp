@@ -142,7 +142,7 @@ Result scan(std::string_view kind, const Column& a, const std::optional<Column>&
     std::optional<std::span<const double>> second;
     if (b) second.emplace(b->data(), b->shape(0));
     const std::size_t size = count.value_or(first.size());
-    if (first.size() != 0 && (size == 0 || first.size() % size != 0)) {
+    if (!first.empty() && (size == 0 || first.size() % size != 0)) {
         throw std::invalid_argument("The column does not consist of whole traces.");
     }
     if (second && second->size() != first.size()) {
