@@ -16,6 +16,7 @@ from rtamt.language.quantifiers import JOINS
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals import arrays, members
 from rtamt.signals.binding import Binding
+from rtamt.signals.data_errors import unknown_variable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -145,6 +146,24 @@ class QuantifierMonitor:
                 found = True
                 given.setdefault(parts[0], {})[parts[1]] = value
         return found
+
+    def _parted(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+        """Return the values of an update by variable, and by member and field; raise at a name that is neither."""
+        own: dict[str, Any] = {}
+        given: dict[str, dict[str, Any]] = {}
+        heads = {name.split(".")[0] for name in self.input_names}
+        for name, value in values.items():
+            member = self._note_member(name, value, given)
+            if name in self.input_names or name in heads:
+                own[name] = value  # of a member, too, if the pattern matches the name
+            elif not member and name not in self._declared:
+                patterns = [group.pattern for group, _ in self._fields.values()]
+                raise unknown_variable(name, [*self.input_names, *patterns])
+        for name in self.input_names:
+            head, *path = name.split(".")
+            if path and name not in own and own.get(head) is not None:
+                own[name] = arrays.field_of(own[head], head, path, self.samples)
+        return {name: own[name] for name in self.input_names if name in own}, given
 
     def _tried(self, *given: Any) -> Any:
         """Take what was read of an update; if it fails, nothing has changed."""

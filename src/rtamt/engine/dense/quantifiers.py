@@ -15,7 +15,7 @@ from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import check_unit
 from rtamt.signals import arrays, dense_arrays, members
-from rtamt.signals.data_errors import missing_field, nan_of_members, unknown_variable
+from rtamt.signals.data_errors import missing_field, nan_of_members
 from rtamt.signals.inexact import gaps_of
 from rtamt.signals.member_chunks import fields_on_own_clocks
 from rtamt.signals.signal import Signal
@@ -181,25 +181,12 @@ class DenseMemberMonitor(QuantifierMonitor):
 
     def _read(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Return the values of an update by variable and by field."""
-        own: dict[str, Any] = {}
-        given: dict[str, dict[str, Any]] = {}
-        heads = {name.split(".")[0] for name in self.input_names}
-        for name, value in values.items():
-            member = self._note_member(name, value, given)
-            if name in self.input_names or name in heads:
-                own[name] = value  # of a member, too, if the pattern matches the name
-            elif not member and name not in self._declared:
-                patterns = [group.pattern for group, _ in self._fields.values()]
-                raise unknown_variable(name, [*self.input_names, *patterns])
-            if value is None and member:
+        found, given = self._parted(values)
+        for name in values:
+            if values[name] is None:
                 for group, fields in self._fields.values():
                     if group.matches(name):
                         given.setdefault(name, {}).update(dict.fromkeys(fields))
-        for name in self.input_names:
-            head, *path = name.split(".")
-            if path and name not in own and own.get(head) is not None:
-                own[name] = arrays.field_of(own[head], head, path, self.samples)
-        found = {name: own[name] for name in self.input_names if name in own}
         for member_name, fields_given in given.items():
             columns = {f"{member_name}.{field}": value for field, value in fields_given.items()}
             found |= {name: value for name, value in columns.items() if self._is_field(name)}

@@ -16,7 +16,7 @@ from rtamt.engine.quantifiers import Plan, QuantifierMonitor
 from rtamt.engine.usage_guard import exclusive
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays
-from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members, unknown_variable
+from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members
 from rtamt.signals.member_chunks import chunk
 from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
@@ -72,21 +72,7 @@ class SampledMembers(QuantifierMonitor):
 
     def _read(self, values: Mapping[str, Any], time: Any) -> tuple[Sample, dict[str, dict[str, Sample]]]:
         """Return the numbers of an update, and the members that are present."""
-        own: dict[str, Any] = {}
-        given: dict[str, dict[str, Any]] = {}
-        heads = {name.split(".")[0] for name in self.input_names}
-        for name, value in values.items():
-            member = self._note_member(name, value, given)
-            if name in self.input_names or name in heads:
-                own[name] = value  # of a member, too, if the pattern matches the name
-            elif not member and name not in self._declared:
-                patterns = [group.pattern for group, _ in self._fields.values()]
-                raise unknown_variable(name, [*self.input_names, *patterns])
-        for name in self.input_names:
-            head, *path = name.split(".")
-            if path and name not in own and head in own:
-                own[name] = arrays.field_of(own[head], head, path, self.samples)
-        own = {name: value for name, value in own.items() if name in self.input_names}
+        own, given = self._parted(values)
         for name in self.input_names:
             if name not in own:
                 raise missing_variable(name, tuple(values))
