@@ -8,6 +8,7 @@
 // Cost: about six comparisons a sample whatever w. Memory: two values a slot of the window.
 #pragma once
 
+#include "lane_stretch.hpp"
 #include "two_stack.hpp"
 
 namespace rtamt::discrete {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "../values/real.hpp"
+#include "lane_stretch.hpp"
 #include "narrow_window.hpp"
 #include "two_stack.hpp"
 #include "wide_stretch.hpp"

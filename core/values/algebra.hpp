@@ -11,7 +11,7 @@
 
 namespace rtamt {
 
-template <ValueDomain D>
+template <Lattice D>
 struct MaxOf {
     using Domain = D;
     using Value = typename D::Value;
@@ -23,7 +23,7 @@ struct MaxOf {
     }
 };
 
-template <ValueDomain D>
+template <Lattice D>
 struct MinOf {
     using Domain = D;
     using Value = typename D::Value;
@@ -55,7 +55,7 @@ struct SumOf {
 
 // The map x -> max(low, min(high, x)). A step of until (low = psi, high = phi) is such a map, and
 // so is any composition of steps; that makes bounded until a sliding window over a monoid.
-template <ValueDomain D>
+template <Lattice D>
 struct ClampOf {
     using Value = typename D::Value;
     Value low = D::bottom;

@@ -20,25 +20,30 @@
 
 namespace rtamt {
 
+// What minima and maxima need of a domain.
 template <class D>
-concept ValueDomain =
-    std::is_trivially_copyable_v<typename D::Value> &&
-    std::equality_comparable<typename D::Value> && std::default_initializable<typename D::Value> &&
-    alignof(typename D::Value) == alignof(double) &&
-    requires(const typename D::Value& a, const typename D::Value& b, double x) {
-        // The least and the greatest value: false and true.
-        { D::bottom } -> std::convertible_to<typename D::Value>;
-        { D::top } -> std::convertible_to<typename D::Value>;
-        // Whether any two values are ordered, so that of two the join is one.
-        { D::total } -> std::convertible_to<bool>;
-        { D::join(a, b) } noexcept -> std::same_as<typename D::Value>;
-        { D::meet(a, b) } noexcept -> std::same_as<typename D::Value>;
-        { D::neg(a) } noexcept -> std::same_as<typename D::Value>;
-        { D::undefined(a) } noexcept -> std::same_as<bool>;
-        // The value of a constant.
-        { D::of(x) } noexcept -> std::same_as<typename D::Value>;
-        typename D::Number;
-    };
+concept Lattice = std::is_trivially_copyable_v<typename D::Value> &&
+                  requires(const typename D::Value& a, const typename D::Value& b) {
+                      // The least and the greatest value: false and true.
+                      { D::bottom } -> std::convertible_to<typename D::Value>;
+                      { D::top } -> std::convertible_to<typename D::Value>;
+                      { D::join(a, b) } noexcept -> std::same_as<typename D::Value>;
+                      { D::meet(a, b) } noexcept -> std::same_as<typename D::Value>;
+                  };
+
+template <class D>
+concept ValueDomain = Lattice<D> && std::equality_comparable<typename D::Value> &&
+                      std::default_initializable<typename D::Value> &&
+                      alignof(typename D::Value) == alignof(double) &&
+                      requires(const typename D::Value& a, double x) {
+                          // Whether any two values are ordered, so that of two the join is one.
+                          { D::total } -> std::convertible_to<bool>;
+                          { D::neg(a) } noexcept -> std::same_as<typename D::Value>;
+                          { D::undefined(a) } noexcept -> std::same_as<bool>;
+                          // The value of a constant.
+                          { D::of(x) } noexcept -> std::same_as<typename D::Value>;
+                          typename D::Number;
+                      };
 
 // Whether numbers and formulas have the same values.
 template <class D>

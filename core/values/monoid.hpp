@@ -54,8 +54,9 @@ struct Joined {
 
 // Until over the window, oldest to newest: max(psi_0, min(phi_0, max(psi_1, min(phi_1, ...)))), the
 // composition of all maps at the least value.
-template <ValueDomain D>
+template <Lattice D>
 struct UntilSteps {
+    using Domain = D;
     using Value = typename D::Value;
     using Element = ClampOf<D>;
     static constexpr bool binary = true;

@@ -20,23 +20,24 @@ namespace rtamt {
 
 inline const bool wide_vectors = __builtin_cpu_supports("avx2") != 0;
 
-// Calls Loop::over(arguments...), which is to be RTAMT_INLINE, for `count` values.
+// Calls Wide::over(arguments...) or, without wide vectors or for few values, Loop::over; both are
+// to be RTAMT_INLINE.
 template <class Loop, class... Arguments>
 RTAMT_WIDE [[gnu::noinline]] auto widely(Arguments... arguments) noexcept {
     return Loop::over(arguments...);
 }
 
-template <class Loop, class... Arguments>
-[[nodiscard]] auto vectorised(std::size_t count, Arguments... arguments) noexcept {
+template <class Wide, class Loop = Wide, class... Arguments>
+auto vectorised(std::size_t count, Arguments... arguments) noexcept {
     constexpr std::size_t worth_a_call = 16;
-    if (count >= worth_a_call && wide_vectors) return widely<Loop>(arguments...);
+    if (count >= worth_a_call && wide_vectors) return widely<Wide>(arguments...);
     return Loop::over(arguments...);
 }
 
 #else
 
-template <class Loop, class... Arguments>
-[[nodiscard]] auto vectorised(std::size_t /*count*/, Arguments... arguments) noexcept {
+template <class Wide, class Loop = Wide, class... Arguments>
+auto vectorised(std::size_t /*count*/, Arguments... arguments) noexcept {
     return Loop::over(arguments...);
 }
 
