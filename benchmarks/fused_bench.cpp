@@ -5,7 +5,7 @@
 // Prints a line of JSON a formula: medians, in nanoseconds a sample, of both in turn. Both read the
 // same two columns and write the robustness of every sample; the values must be equal. Both are
 // compiled for the same processor: like the engine's kernels, the loops run in the vectors that
-// vectors.hpp finds.
+// vectors.hpp finds. The executor is kept from one trace to the next, as specifications keep it.
 #include "discrete/executor.hpp"
 #include "programs.hpp"
 #include "values/vectors.hpp"
@@ -185,12 +185,13 @@ bool compare(const char* name, const Program& program, const Column& a, const Co
     Column ours(a.size());
     Column theirs(a.size());
     const std::vector<double*> outputs{ours.data()};
+    Executor executor(program);
     std::vector<double> engine;
     std::vector<double> hand;
     std::vector<double> ratio;
     for (std::size_t round = 0; round <= rounds; ++round) {
         const double first = spent(a.size(), [&] {
-            if (Executor::evaluate(program, columns, a.size(), outputs)) std::abort();
+            if (executor.evaluate(columns, a.size(), outputs)) std::abort();
         });
         const Samples in{a.data(), b.data(), a.size()};
         const double second =

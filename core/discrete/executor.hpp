@@ -39,6 +39,14 @@ struct Failure {
     Fault fault;
 };
 
+// Samples of a longer trace, [begin, end), whose values depend on so many before and after these.
+struct Part {
+    std::size_t begin;
+    std::size_t end;
+    std::size_t before;
+    std::size_t after;
+};
+
 enum class Outcome : std::uint8_t { failed, silent, known };
 
 template <ValueDomain D>
@@ -87,7 +95,11 @@ class BasicExecutor {
     [[nodiscard]] std::optional<Failure> evaluate(Columns columns, std::size_t count,
                                                   Outputs outputs);
 
-    // The same with an executor of its own.
+    // A part of a whole trace of which these are the columns and outputs (parts.hpp).
+    [[nodiscard]] std::optional<Failure> evaluate(Columns columns, std::size_t count,
+                                                  Outputs outputs, const Part& part);
+
+    // A whole trace with an executor of its own.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program, Columns columns,
                                                          std::size_t count, Outputs outputs);
 
@@ -122,6 +134,8 @@ class BasicExecutor {
         // Without registers long ones cost less, as long as the columns stay in the second cache.
         return zero_copy_ && zero_copy_->complete() ? 4096 : wiring_.capacity();
     }
+    void begin_trace(std::size_t count);
+    [[nodiscard]] bool end_trace(std::size_t count, Outputs outputs);
     void checkpoint(std::size_t count) noexcept;
     void rollback() noexcept;
     void load(Columns columns, std::size_t offset, const Block& block) noexcept;

@@ -294,10 +294,9 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
     wiring_.each_value(last_, [&](auto& value) { snapshot.item(value); });
 }
 
+// Before up to `count` samples of a trace that is there as a whole.
 template <ValueDomain D>
-std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t count,
-                                                  Outputs outputs) {
-    const auto rest = static_cast<std::size_t>(program().latest());
+void BasicExecutor<D>::begin_trace(std::size_t count) {
     if (slot_ != 0) reset();
     if constexpr (UniformDomain<D>) {
         if (!zero_copy_) zero_copy_.emplace(program(), wiring_.reads(), wiring_.writes());
@@ -305,16 +304,83 @@ std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t c
     if (zero_copy_ && zero_copy_->complete()) {
         wiring_.run_long_blocks();
     } else {
-        reserve(std::max(count, rest));
+        reserve(std::max(count, static_cast<std::size_t>(program().latest())));
     }
-    if (!advance(columns, count, outputs, false)) return failure_;
+}
+
+// After the last of its samples: `outputs` have room for `count` values that end with the trace.
+template <ValueDomain D>
+bool BasicExecutor<D>::end_trace(std::size_t count, Outputs outputs) {
     samples_ = slot_;
     std::vector<Formula*> tails;
     tails.reserve(outputs.size());
     for (std::size_t output = 0; output < outputs.size(); ++output) {
         tails.push_back(outputs[output] + (count - remaining(output)));
     }
-    if (!advance({}, rest, tails, false)) return failure_;
+    return advance({}, static_cast<std::size_t>(program().latest()), tails, false);
+}
+
+template <ValueDomain D>
+std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t count,
+                                                  Outputs outputs) {
+    begin_trace(count);
+    if (!advance(columns, count, outputs, false) || !end_trace(count, outputs)) return failure_;
+    return std::nullopt;
+}
+
+// In up to three runs: the first and the last make values of other parts known, too, which go to a
+// buffer.
+template <ValueDomain D>
+std::optional<Failure> BasicExecutor<D>::evaluate(Columns columns, std::size_t count,
+                                                  Outputs outputs, const Part& part) {
+    const std::size_t first = part.begin - std::min(part.begin, part.before);
+    const auto lag = [&](std::size_t output) {
+        return static_cast<std::size_t>(program().instructions[program().outputs[output]].lag);
+    };
+    std::vector<Column> from;
+    std::vector<Formula*> to(outputs.size());
+    std::vector<Formula> buffer;
+    begin_trace(part.end - first);
+    // Runs up to a sample; values go to the buffer, and those of this part from there.
+    const auto run = [&](std::size_t end, bool buffered) {
+        const auto slot = static_cast<std::size_t>(slot_);
+        const std::size_t begin = first + slot;
+        const std::size_t samples = end - begin;
+        from.assign(columns.begin(), columns.end());
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            if constexpr (UniformDomain<D>) {
+                from[i] += begin;
+            } else if (input_sort(i) == Sort::number) {
+                from[i] = static_cast<const Number*>(from[i]) + begin;
+            } else {
+                from[i] = static_cast<const Formula*>(from[i]) + begin;
+            }
+        }
+        if (buffered) buffer.resize(outputs.size() * samples);
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            to[i] = buffered ? buffer.data() + i * samples
+                             : outputs[i] + first + (slot - std::min(slot, lag(i)));
+        }
+        if (!advance(from, samples, to, false)) return false;
+        for (std::size_t i = 0; buffered && i < to.size(); ++i) {
+            const std::size_t known = first + (slot - std::min(slot, lag(i)));
+            const std::size_t known_end = end - std::min(end, lag(i));
+            const std::size_t own = std::max(known, part.begin);
+            const std::size_t own_end = std::min(known_end, part.end);
+            if (own < own_end) {
+                copy_values(to[i] + (own - known), own_end - own, outputs[i] + own);
+            }
+        }
+        return true;
+    };
+    const std::size_t whole = std::min(part.begin + part.after, part.end);
+    if (first < part.begin && !run(whole, true)) return failure_;
+    if (!run(part.end, false)) return failure_;
+    if (part.end == count) {
+        if (!end_trace(count, outputs)) return failure_;
+    } else if (part.after > 0 && !run(std::min(part.end + part.after, count), true)) {
+        return failure_;
+    }
     return std::nullopt;
 }
 

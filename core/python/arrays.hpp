@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../program/snapshot.hpp"
+#include "large_memory.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -30,8 +31,8 @@ class Results {
   public:
     void add(std::size_t size) {
         sizes_.push_back(size);
-        memory_.push_back(std::make_unique_for_overwrite<double[]>(size));
-        pointers_.push_back(memory_.back().get());
+        memory_.push_back(make(size));
+        pointers_.push_back(memory_.back().values);
     }
 
     [[nodiscard]] std::span<double* const> pointers() const noexcept { return pointers_; }
@@ -40,19 +41,32 @@ class Results {
         std::vector<Result> results;
         results.reserve(memory_.size());
         for (std::size_t i = 0; i < memory_.size(); ++i) {
-            const nb::capsule owner(memory_[i].get(), [](void* memory) noexcept {
-                delete[] static_cast<double*>(memory);
-            });
-            double* values = memory_[i].release();
+            const auto [values, owner] = memory_[i];
             results.emplace_back(values, std::initializer_list<std::size_t>{sizes_[i]}, owner);
         }
         return results;
     }
 
   private:
+    struct Memory {
+        double* values;
+        nb::capsule owner;
+    };
     std::vector<std::size_t> sizes_;
-    std::vector<std::unique_ptr<double[]>> memory_;
+    std::vector<Memory> memory_;
     std::vector<double*> pointers_;
+
+    [[nodiscard]] static Memory make(std::size_t size) {
+        const std::size_t bytes = size * sizeof(double);
+        if (bytes >= LargeMemory::least) {
+            auto [memory, owner] = LargeMemory::owned(bytes);
+            return {static_cast<double*>(memory), std::move(owner)};
+        }
+        auto small = std::make_unique_for_overwrite<double[]>(size);
+        const nb::capsule owner(
+            small.get(), [](void* memory) noexcept { delete[] static_cast<double*>(memory); });
+        return {small.release(), owner};
+    }
 };
 
 // The columns' memory; they must be as many as the inputs and equally long.

@@ -1,9 +1,11 @@
 #include "evaluator.hpp"
 
+#include "../discrete/parts.hpp"
 #include "arrays.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -39,17 +41,13 @@ namespace {
 // New arrays of results.
 struct Made {
     nb::list arrays;
-    std::vector<Buffer> buffers;
     std::vector<double*> pointers;
 
     Made(const NumPy& numpy, std::size_t outputs, std::size_t count) {
-        buffers.reserve(outputs);
         pointers.reserve(outputs);
-        for (std::size_t i = 0; i < outputs; ++i) {
-            NewArray made = numpy.make(count);
+        for (const NewArray& made : numpy.make(outputs, count)) {
             pointers.push_back(made.values());
             arrays.append(made.array);
-            buffers.push_back(std::move(made.buffer));
         }
     }
 };
@@ -74,6 +72,29 @@ void scatter(const std::vector<Value>& values, std::size_t lanes, std::size_t co
     }
 }
 
+// The threads that an evaluation may have: those that are asked for, but for one for each other
+// evaluation that runs.
+class Share {
+  public:
+    explicit Share(std::size_t threads) noexcept
+        : threads_(threads - std::min(threads - 1, running()++)) {}
+    ~Share() { --running(); }
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+    Share(Share&&) = delete;
+    Share& operator=(Share&&) = delete;
+
+    [[nodiscard]] std::size_t threads() const noexcept { return threads_; }
+
+  private:
+    std::size_t threads_;
+
+    [[nodiscard]] static std::atomic<std::size_t>& running() noexcept {
+        static std::atomic<std::size_t> running{0};
+        return running;
+    }
+};
+
 } // namespace
 
 Evaluator::Evaluator(const nb::bytes& program, Exceptions exceptions)
@@ -92,11 +113,17 @@ std::vector<Buffer> Evaluator::columns_of(const nb::list& columns, std::size_t c
     return held;
 }
 
-nb::list Evaluator::run(const nb::list& columns, std::size_t count) {
+nb::list Evaluator::run(const nb::list& columns, std::size_t count, const nb::object& allowed) {
+    // Some ten milliseconds: where others use the cores, too, a thread may have to wait for one.
+    constexpr std::size_t worth_threads = std::size_t{1} << 24U;
     const auto held = columns_of(columns, count);
+    std::size_t threads = 1;
+    if (count >= worth_threads / program_.instructions.size() && !allowed.is_none()) {
+        threads = std::max<std::size_t>(nb::cast<std::size_t>(allowed()), 1);
+    }
     const Made made(numpy_, program_.outputs.size(), count);
-    const auto failure =
-        without_gil(count, [&] { return evaluate(pointers_of(held), count, made.pointers); });
+    const auto failure = without_gil(
+        count, [&] { return evaluate(pointers_of(held), count, made.pointers, threads); });
     if (failure) {
         Calls none{nb::list()};
         raise_undefined(exceptions_, none, failure->instruction, failure->sample, failure->fault);
@@ -136,7 +163,7 @@ std::int64_t Evaluator::evaluate_rows(std::span<const double* const> columns, st
             row_of[i] = columns[i] + row * count;
         for (std::size_t i = 0; i < outputs.size(); ++i)
             result_of[i] = outputs[i] + row * count;
-        return !evaluate(row_of, count, result_of);
+        return !evaluate(row_of, count, result_of, 1);
     };
     for (std::size_t first = 0; first < rows; first += width) {
         const std::size_t lanes = std::min(width, rows - first);
@@ -163,11 +190,14 @@ std::int64_t Evaluator::evaluate_rows(std::span<const double* const> columns, st
 
 std::optional<discrete::Failure> Evaluator::evaluate(std::span<const double* const> columns,
                                                      std::size_t count,
-                                                     std::span<double* const> outputs) {
+                                                     std::span<double* const> outputs,
+                                                     std::size_t threads) {
+    const Share share(threads);
     std::unique_ptr<Executor> executor(spare_.exchange(nullptr));
-    if (!executor) executor = std::make_unique<Executor>(program_);
-    auto failure = executor->evaluate(columns, count, outputs);
-    if (!failure) executor.reset(spare_.exchange(executor.release()));
+    const auto places = discrete::parts(program_, count);
+    auto failure =
+        discrete::evaluate_parts(program_, places, columns, outputs, share.threads(), executor);
+    executor.reset(spare_.exchange(executor.release()));
     return failure;
 }
 
@@ -180,7 +210,9 @@ void add_evaluator(const nb::module_& m, const Exceptions& exceptions) {
             },
             nb::arg("program"))
         .def("run", &Evaluator::run, nb::arg("columns"), nb::arg("n"),
-             "Run over columns of n samples, one an input; return n values an output.")
+             nb::arg("threads") = nb::none(),
+             "Run over columns of n samples, one an input; return n values an output. A long trace "
+             "is evaluated by at most threads() threads.")
         .def("run_rows", &Evaluator::run_rows, nb::arg("columns"), nb::arg("rows"), nb::arg("n"),
              "Run over many traces of n samples, one after another in each column; return as many "
              "values of each output, and the first trace with an undefined value, or -1.");

@@ -1,7 +1,7 @@
 // A program that evaluates many whole traces: it is parsed once, and what runs it is kept.
 //
 // Traces of a batch run eight at a time, a lane each (values/lanes.hpp). A trace gets the same bits
-// in a lane as alone.
+// in a lane as alone. A long trace is evaluated in parts, on several cores (discrete/parts.hpp).
 //
 // Cost: for a short trace, a fraction of a microsecond beside its samples. Memory: that of an
 // executor, and of one with lanes after a batch.
@@ -38,8 +38,10 @@ class Evaluator {
     Evaluator& operator=(Evaluator&&) = delete;
 
     // `columns`: contiguous arrays of doubles, one an input and all of `count` samples. Returns a
-    // list of as many values of each output.
-    [[nodiscard]] nb::list run(const nb::list& columns, std::size_t count);
+    // list of as many values of each output. A long trace is evaluated by as many threads as
+    // `allowed()` returns.
+    [[nodiscard]] nb::list run(const nb::list& columns, std::size_t count,
+                               const nb::object& allowed);
 
     // The same of `rows` traces of `count` samples each, one after another in each column. Also
     // returns the first trace in which a value is undefined, or -1; then there are no results.
@@ -63,7 +65,8 @@ class Evaluator {
                                              std::span<double* const> outputs);
     [[nodiscard]] std::optional<discrete::Failure> evaluate(std::span<const double* const> columns,
                                                             std::size_t count,
-                                                            std::span<double* const> outputs);
+                                                            std::span<double* const> outputs,
+                                                            std::size_t threads);
 };
 
 void add_evaluator(const nb::module_& module, const Exceptions& exceptions);

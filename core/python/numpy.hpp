@@ -1,11 +1,17 @@
-// Arrays of numpy, made and read without a copy through the buffer protocol: nanobind's arrays cost
-// a microsecond each, as much as the evaluation of a short trace.
+// Arrays of numpy, made and read without a copy. Small ones go through the buffer protocol:
+// nanobind's arrays cost a microsecond each, as much as the evaluation of a short trace.
 #pragma once
 
-#include <nanobind/nanobind.h>
+#include "large_memory.hpp"
 
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <utility>
+#include <vector>
 
 namespace rtamt::python {
 
@@ -50,11 +56,9 @@ class Buffer {
 // A new array of doubles, and its memory.
 struct NewArray {
     nb::object array;
-    Buffer buffer;
+    double* memory = nullptr;
 
-    [[nodiscard]] double* values() const noexcept {
-        return static_cast<double*>(buffer.view().buf);
-    }
+    [[nodiscard]] double* values() const noexcept { return memory; }
 };
 
 class NumPy {
@@ -66,11 +70,33 @@ class NumPy {
         return reinterpret_cast<PyObject*>(Py_TYPE(object)) == ndarray_.ptr();
     }
 
-    // Its memory is numpy's, which uses huge pages for large arrays.
     [[nodiscard]] NewArray make(std::size_t count) const {
-        NewArray made{empty_(count), {}};
-        made.buffer = Buffer(made.array.ptr(), PyBUF_WRITABLE);
-        if (!made.buffer) throw nb::python_error();
+        return std::move(make(1, count).front());
+    }
+
+    // Several of the same length. Where they are small, but not together, some share a piece of
+    // memory, which is there as long as one of them.
+    [[nodiscard]] std::vector<NewArray> make(std::size_t arrays, std::size_t count) const {
+        constexpr std::size_t most_shared = std::size_t{4} << 20U;
+        std::vector<NewArray> made;
+        made.reserve(arrays);
+        const std::size_t bytes = count * sizeof(double);
+        if (bytes < LargeMemory::least && (arrays == 1 || arrays * bytes < LargeMemory::least)) {
+            for (std::size_t i = 0; i < arrays; ++i)
+                made.push_back(make_small(count));
+            return made;
+        }
+        while (made.size() < arrays) {
+            const std::size_t fitting = std::max<std::size_t>(most_shared / bytes, 1);
+            const std::size_t sharing = std::min(arrays - made.size(), fitting);
+            const auto [memory, owner] = LargeMemory::owned(sharing * bytes);
+            auto* values = static_cast<double*>(memory);
+            for (std::size_t i = 0; i < sharing; ++i, values += count) {
+                const nb::ndarray<nb::numpy, double, nb::ndim<1>> array(
+                    values, std::initializer_list<std::size_t>{count}, owner);
+                made.push_back({nb::cast(array), values});
+            }
+        }
         return made;
     }
 
@@ -78,6 +104,12 @@ class NumPy {
     nb::object ndarray_;
     nb::object empty_;
 
+    [[nodiscard]] NewArray make_small(std::size_t count) const {
+        nb::object array = empty_(count);
+        const Buffer buffer(array.ptr(), PyBUF_WRITABLE);
+        if (!buffer) throw nb::python_error();
+        return {std::move(array), static_cast<double*>(buffer.view().buf)};
+    }
     [[nodiscard]] static nb::module_ module() { return nb::module_::import_("numpy"); }
 };
 

@@ -27,8 +27,6 @@ constexpr std::int64_t exact = 9'007'199'254'740'992; // 2^53
 
 // The time of a tick as Python divides integers: rounded once.
 [[nodiscard]] nb::object time_of(std::int64_t tick, nb::handle rate) noexcept {
-    const auto number = nb::steal(PyLong_FromLongLong(tick));
-    if (!number.is_valid()) return {};
     if (-exact <= tick && tick <= exact) {
         const long long divisor = PyLong_AsLongLong(rate.ptr());
         if (0 < divisor && divisor <= exact) {
@@ -37,6 +35,8 @@ constexpr std::int64_t exact = 9'007'199'254'740'992; // 2^53
         }
         PyErr_Clear();
     }
+    const auto number = nb::steal(PyLong_FromLongLong(tick));
+    if (!number.is_valid()) return {};
     return nb::steal(PyNumber_TrueDivide(number.ptr(), rate.ptr()));
 }
 
