@@ -4,6 +4,7 @@
 #include "caused_until.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -72,8 +73,12 @@ void Causes::read(const Engine& engine, const Origin& origin, const NewData& new
         for (int reg = 0; reg < 2; ++reg)
             compute(engine, i, reg, new_data);
     }
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
         known_[i] = {of(outputs_[i], 0), of(outputs_[i], 1)};
+        for (Pieces& pieces : known_[i]) { // what is caused at the last tick is from there on
+            if (!pieces.empty() && pieces.back().end == last(new_data)) pieces.back().end = forever;
+        }
+    }
     for (std::size_t i = 0; i < starts_.size(); ++i) {
         items_[i] = {item(engine, origin, i, 0), item(engine, origin, i, 1)};
         if (origin.item(i).negated) std::swap(items_[i][0], items_[i][1]);
@@ -91,11 +96,16 @@ void Causes::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) c
     }
 }
 
+// The last tick that is computed.
+Tick Causes::last(const NewData& new_data) const noexcept {
+    return dense_ ? forever : new_data.newest + 2 * reach_;
+}
+
 void Causes::compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data) {
     const Cause& cause = causes_[index];
     Pieces& pieces = parts_[index][static_cast<std::size_t>(reg)];
     const Runs& own = engine.runs(cause.ref, reg);
-    const Tick last = dense_ ? forever : new_data.newest + 2 * reach_;
+    const Tick last = this->last(new_data);
     pieces.clear();
     switch (cause.kind) {
     case Cause::Kind::atom:
@@ -239,8 +249,12 @@ Bounds Causes::at(std::size_t output, Tick t) const noexcept {
 }
 
 std::vector<Change> Causes::runs(std::size_t output, Tick last) const {
+    return caused_runs(known_[output][0], known_[output][1], last);
+}
+
+std::vector<Change> caused_runs(const Pieces& satisfaction, const Pieces& violation, Tick last) {
     std::vector<Tick> borders;
-    for (const Pieces& pieces : known_[output]) {
+    for (const Pieces& pieces : {std::cref(satisfaction), std::cref(violation)}) {
         for (const Run& run : pieces) {
             borders.push_back(run.begin);
             borders.push_back(plus(run.end, 1));
@@ -251,7 +265,7 @@ std::vector<Change> Causes::runs(std::size_t output, Tick last) const {
     borders.erase(twice.begin(), twice.end());
     std::vector<Change> result;
     for (std::size_t i = 0; i + 1 < borders.size() && borders[i] <= last; ++i) {
-        const Bounds bounds = at(output, borders[i]);
+        const Bounds bounds{value_at(satisfaction, borders[i]), -value_at(violation, borders[i])};
         if (bounds == bounds::anything) continue;
         const Tick end = borders[i + 1] < forever ? borders[i + 1] - 1 : forever;
         result.push_back({borders[i], std::min(last, end), bounds});

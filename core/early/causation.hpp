@@ -48,6 +48,10 @@ struct StartingCause {
     std::uint32_t rest = none;
 };
 
+// The ticks at which something is caused, up to a tick, in order; the violation is negated.
+[[nodiscard]] std::vector<Change> caused_runs(const Pieces& satisfaction, const Pieces& violation,
+                                              Tick last);
+
 struct CauseGraph {
     std::vector<Cause> parts;
     std::vector<std::uint32_t> outputs;
@@ -99,6 +103,7 @@ class Causes {
         return parts_[ref / 2][static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
     void check(const Engine& engine, const Origin& origin);
+    [[nodiscard]] Tick last(const NewData& new_data) const noexcept;
     void read(const Engine& engine, const Origin& origin, const NewData& new_data);
     void compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data);
     // Of until and since, register 0 and 1.

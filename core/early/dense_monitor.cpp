@@ -22,16 +22,15 @@ constexpr std::int64_t pause = 64;
 } // namespace
 
 DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
-    : engine_(std::move(graph), settings.ranges, true), outputs_(std::move(settings.outputs)),
-      decides_(settings.decides),
-      samples_(of_every(std::move(settings.ranges), engine_.inputs()), settings.lateness),
-      decisions_(outputs_.size()), decided_(outputs_.size()), changes_(outputs_.size()),
-      open_(outputs_.size()), held_(outputs_.size()), next_held_(outputs_.size()),
+    : engine_(std::move(graph), settings.ranges, true),
+      samples_(of_every(std::move(settings.ranges), engine_.inputs()), settings.lateness,
+               settings.waits),
       wanted_(engine_.size()) {
-    for (const std::uint32_t output : outputs_) {
+    engine_.keep_undo(settings.several);
+    for (const std::uint32_t output : settings.outputs) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
-    if (!settings.origin.empty()) {
+    if (!settings.origin.empty() || settings.causes) {
         origin_.emplace(std::move(settings.origin), engine_, settings.causes.has_value());
         engine_.find_beyond(origin_->read_forever());
     }
@@ -39,124 +38,113 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
         causes_.emplace(std::move(*settings.causes), engine_, origin_.value(), true);
     } else { // causes are of every value, needed or not
         std::vector<Tick> last(engine_.size(), -1);
-        for (const std::uint32_t output : outputs_)
+        for (const std::uint32_t output : settings.outputs)
             last[output / 2] = forever;
         if (origin_) origin_->limit(last);
         engine_.limit(last);
     }
-    for (std::size_t i = 0; i < outputs_.size() && decides_; ++i)
-        decisions_[i].begin(engine_, outputs_[i]);
+    for (const std::uint32_t output : settings.outputs)
+        outputs_.emplace_back(output, settings.decides, engine_);
 }
 
 // ---- samples ------------------------------------------------------------------------------------
 
-std::optional<DenseMonitor::Failure> DenseMonitor::take(Tick time, std::span<const Given> given) {
-    const auto before = samples_.newest();
+void DenseMonitor::stage(Tick time, std::span<const Given> given, std::optional<Tick> newest) {
+    at_ = time;
+    before_ = samples_.newest();
     for (const Given& each : given)
         samples_.add(each.input, time, each.bounds);
-    return learn(time, before);
+    if (newest) samples_.reach(*newest);
+}
+
+void DenseMonitor::stage_watermark(Tick time) {
+    at_ = time;
+    before_ = samples_.newest();
+    samples_.close(time);
+}
+
+void DenseMonitor::stage_finish() {
+    before_ = samples_.newest();
+    at_ = before_.value_or(0);
+    samples_.finish();
+}
+
+std::optional<DenseMonitor::Failure> DenseMonitor::take(Tick time, std::span<const Given> given) {
+    stage(time, given, std::nullopt);
+    return learn();
 }
 
 std::optional<DenseMonitor::Failure> DenseMonitor::watermark(Tick time) {
-    const auto newest = samples_.newest();
-    samples_.close(time);
-    return learn(time, newest);
+    stage_watermark(time);
+    return learn();
 }
 
 std::optional<DenseMonitor::Failure> DenseMonitor::finish() {
-    const auto newest = samples_.newest();
-    samples_.finish();
-    const auto failure = learn(newest.value_or(0), newest);
-    finished_ = !failure;
+    stage_finish();
+    return learn();
+}
+
+std::optional<DenseMonitor::Failure> DenseMonitor::learn() {
+    auto failure = attempt();
+    if (!failure) accept();
     return failure;
 }
 
-// What has come is reported with the time `at`; `before`: the newest sample before it.
-std::optional<DenseMonitor::Failure> DenseMonitor::learn(Tick at, std::optional<Tick> before) {
+std::optional<DenseMonitor::Failure> DenseMonitor::attempt() {
     samples_.collect(observations_);
-    const bool begins = samples_.start() && !begun_;
+    begins_ = samples_.start() && !begun_;
     std::optional<Failure> failure;
-    if (begins) failure = engine_.wrong_constant();
+    if (begins_) failure = engine_.wrong_constant();
     if (!failure) {
-        engine_.settle_inputs(samples_.settled());
-        const Tick newest = samples_.start() ? *samples_.newest() - start() : -1;
-        failure = engine_.learn(observations_, newest, samples_.ended());
+        engine_.settle_inputs(std::ranges::min(samples_.settled()));
+        const Tick seen = samples_.start() ? newest() : -1;
+        failure = engine_.learn(observations_, seen, samples_.ended());
     }
     if (failure) {
         failure->tick += start();
         samples_.rollback();
-        return failure;
     }
+    return failure;
+}
+
+void DenseMonitor::reject() {
+    engine_.revert();
+    samples_.rollback();
+}
+
+void DenseMonitor::accept() {
     samples_.commit();
-    begun_ = begun_ || begins;
-    if (!begun_) return std::nullopt;
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
-        collect(i, at, begins ? -1 : *before - start(), begins);
+    begun_ = begun_ || begins_;
+    finished_ = samples_.ended();
+    if (!begun_) return;
+    for (DenseOutput& output : outputs_)
+        output.collect(engine_, start(), at_, begins_ ? -1 : *before_ - start(), newest());
     if (origin_) origin_->read(engine_);
     if (causes_) causes_->read(engine_, *origin_, observations_);
-    if (samples_.ended()) return std::nullopt; // what was kept can still be read
+    if (finished_) return; // what was kept can still be read
     closed_ = std::ranges::min(samples_.settled());
     if (++calls_ % pause == 0) settle();
-    return std::nullopt;
 }
 
 // ---- results ------------------------------------------------------------------------------------
 
-void DenseMonitor::collect(std::size_t output, Tick at, Tick before, bool begins) {
-    const std::uint32_t ref = outputs_[output];
-    const Tick newest = *samples_.newest() - start();
-    if (!decides_) {
-        changes_[output].collect(engine_, ref, before, newest);
-        return;
-    }
-    auto& decided = decided_[output];
-    decided.clear();
-    if (begins) decisions_[output].date(at);
-    decisions_[output].collect(engine_, ref, newest, at, decided);
-    std::ranges::sort(decided, {}, &Decision::l);
-    std::size_t count = 0; // what continues the run before it is one with it
-    for (Decision decision : decided) {
-        decision.l += start();
-        decision.r += start();
-        Decision* last = count > 0 ? &decided[count - 1] : nullptr;
-        if (last != nullptr && last->r + 1 == decision.l && last->at == decision.at &&
-            last->satisfied == decision.satisfied) {
-            last->r = decision.r;
-        } else {
-            decided[count++] = decision;
-        }
-    }
-    decided.resize(count);
-}
-
-std::vector<Change> DenseMonitor::timed(std::vector<Change> runs) const {
-    for (Change& change : runs) {
-        change.l = plus(change.l, start());
-        change.r = plus(change.r, start());
-    }
-    return runs;
-}
-
 std::vector<Change> DenseMonitor::changes(std::size_t output) const {
-    return timed(changes_[output].runs(engine_, outputs_[output]));
+    return outputs_[output].changes(engine_, start());
 }
 
 std::vector<Change> DenseMonitor::runs(std::size_t output) const {
     if (!begun_) return {};
-    Changes all;
-    all.add(*held(output) - start(), *samples_.newest() - start());
-    return timed(all.runs(engine_, outputs_[output]));
+    return outputs_[output].runs(engine_, start(), newest());
 }
 
 std::optional<Bounds> DenseMonitor::at_start() const {
-    if (!origin_) return std::nullopt;
+    if (!origin_ || origin_->size() == 0) return std::nullopt;
     return origin_->value();
 }
 
 std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) const {
-    const auto first = held(output);
-    if (!first || time < *first) return std::nullopt;
-    return engine_.at(outputs_[output], std::min(time - start(), forever));
+    if (!begun_) return std::nullopt;
+    return outputs_[output].at(engine_, time - start());
 }
 
 std::optional<Bounds> DenseMonitor::caused(std::size_t output, std::optional<Tick> time) const {
@@ -167,8 +155,7 @@ std::optional<Bounds> DenseMonitor::caused(std::size_t output, std::optional<Tic
 
 std::vector<Change> DenseMonitor::caused(std::size_t output) const {
     if (!begun_) return {};
-    const Tick last = finished_ ? *samples_.newest() - start() : forever;
-    return timed(causes_.value().runs(output, last));
+    return timed(causes_.value().runs(output, finished_ ? newest() : forever), start());
 }
 
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
@@ -190,7 +177,7 @@ std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<
     }
     Bounds value{};
     if (output) {
-        value = engine_.at(outputs_[*output], std::min(time - start(), forever));
+        value = engine_.at(ref(*output), std::min(time - start(), forever));
     } else {
         Origin origin = origin_.value();
         origin.read(engine_);
@@ -200,15 +187,9 @@ std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<
     return value;
 }
 
-// The first tick of the trace that may still change, or might before its end.
-Tick DenseMonitor::first_open(std::size_t output) const noexcept {
-    const Tick horizon = std::max<Tick>(0, engine_.horizon(outputs_[output]));
-    return std::max<Tick>(0, plus(closed_ + 1, -horizon));
-}
-
 std::optional<Tick> DenseMonitor::held(std::size_t output) const noexcept {
     if (!begun_) return std::nullopt;
-    return start() + held_[output];
+    return start() + outputs_[output].held();
 }
 
 std::optional<Tick> DenseMonitor::complete() const noexcept {
@@ -220,17 +201,9 @@ std::optional<Tick> DenseMonitor::complete() const noexcept {
 
 void DenseMonitor::settle() {
     std::ranges::fill(wanted_, forever);
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        Tick from = 0;
-        if (decides_) {
-            open_[i] = Decisions::open(engine_, outputs_[i], open_[i]);
-            from = std::max(first_open(i), open_[i]);
-        } else {
-            held_[i] = std::min(next_held_[i], changes_[i].first());
-            next_held_[i] = first_open(i);
-            from = held_[i];
-        }
-        wanted_[outputs_[i] / 2] = std::min(wanted_[outputs_[i] / 2], from);
+    for (DenseOutput& output : outputs_) {
+        Tick& wanted = wanted_[output.ref() / 2];
+        wanted = std::min(wanted, output.settle(engine_, closed_));
     }
     if (origin_) origin_->settle(engine_, closed_, wanted_);
     if (causes_) causes_->settle(engine_, closed_, wanted_);
@@ -239,8 +212,8 @@ void DenseMonitor::settle() {
 
 std::size_t DenseMonitor::bytes() const noexcept {
     std::size_t sum = engine_.bytes() + samples_.bytes();
-    for (const auto& decisions : decisions_)
-        sum += decisions.bytes();
+    for (const DenseOutput& output : outputs_)
+        sum += output.bytes();
     return sum;
 }
 
@@ -248,14 +221,9 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
     engine_.transfer(snapshot);
     if (origin_) origin_->transfer(snapshot);
     if (causes_) causes_->transfer(snapshot);
-    for (auto& decisions : decisions_)
-        decisions.transfer(snapshot);
+    for (DenseOutput& output : outputs_)
+        output.transfer(snapshot);
     samples_.transfer(snapshot);
-    for (auto* ticks : {&open_, &held_, &next_held_}) {
-        snapshot.values(ticks->data(), ticks->size());
-        for (const Tick tick : *ticks)
-            snapshot.require(tick >= 0);
-    }
     snapshot.item(closed_);
     snapshot.require(closed_ >= -1 && closed_ < forever);
     snapshot.item(begun_);

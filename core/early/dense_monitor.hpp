@@ -7,8 +7,7 @@
 #pragma once
 
 #include "causation.hpp"
-#include "changes.hpp"
-#include "decisions.hpp"
+#include "dense_output.hpp"
 #include "engine.hpp"
 #include "origin.hpp"
 #include "samples.hpp"
@@ -29,6 +28,8 @@ struct DenseSettings {
     std::optional<Tick> lateness;       // see Samples
     bool decides = false;               // verdicts; if not, bounds
     std::optional<CauseGraph> causes;   // what samples cause, in addition to bounds
+    bool several = false;               // whether what has been taken may be rejected
+    bool waits = false;                 // whether the trace starts when it is released
 };
 
 class DenseMonitor {
@@ -49,13 +50,28 @@ class DenseMonitor {
     // Nothing will come: every signal holds its last value.
     [[nodiscard]] std::optional<Failure> finish();
 
+    // The same in steps, where several monitors take what comes or none of them does; for settings
+    // of which `several` is set. First samples, a watermark or the end. `newest`: the newest sample
+    // of any monitor.
+    void stage(Tick time, std::span<const Given> given, std::optional<Tick> newest);
+    void stage_watermark(Tick time);
+    void stage_finish();
+    // Lets a trace start that waits, which it would by now.
+    [[nodiscard]] bool ready() const noexcept { return samples_.ready(); }
+    void release() noexcept { samples_.release(); }
+    // Then what follows from it, unless that fails, which unstages it; and then accept or reject.
+    [[nodiscard]] std::optional<Failure> attempt();
+    void accept();
+    void reject();
+    void unstage() noexcept { samples_.rollback(); }
+
     [[nodiscard]] const Samples& samples() const noexcept { return samples_; }
     [[nodiscard]] bool finished() const noexcept { return finished_; }
     [[nodiscard]] std::size_t outputs() const noexcept { return outputs_.size(); }
 
     // Of an output, what the last call decided, or changed: in order, and in the caller's ticks.
     [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept {
-        return decided_[output];
+        return outputs_[output].decisions();
     }
     [[nodiscard]] std::vector<Change> changes(std::size_t output) const;
 
@@ -86,8 +102,18 @@ class DenseMonitor {
     [[nodiscard]] std::vector<Change> runs(std::size_t output) const;
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
 
+    // What an output is in ticks from the start of the trace on.
+    [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
+    [[nodiscard]] std::uint32_t ref(std::size_t output) const noexcept {
+        return outputs_[output].ref();
+    }
+
     // The last tick up to which all inputs are as well known as they will ever be.
     [[nodiscard]] std::optional<Tick> complete() const noexcept;
+    // None before it has started.
+    [[nodiscard]] std::optional<Tick> trace_start() const noexcept {
+        return begun_ ? samples_.start() : std::nullopt;
+    }
 
     [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -95,29 +121,24 @@ class DenseMonitor {
 
   private:
     Engine engine_;
-    std::vector<std::uint32_t> outputs_;
-    bool decides_;
     Samples samples_;
+    std::vector<DenseOutput> outputs_;
     std::optional<Origin> origin_;
     std::optional<Causes> causes_;
-    std::vector<Decisions> decisions_;           // by output
-    std::vector<std::vector<Decision>> decided_; // by output
-    std::vector<Changes> changes_;               // by output
-    std::vector<Tick> open_;                     // by output, the first tick without a verdict
-    std::vector<Tick> held_;                     // by output, the first tick that is held
-    std::vector<Tick> next_held_;                // and that after the next look
-    std::vector<Tick> wanted_;                   // by node
+    std::vector<Tick> wanted_; // by node
     std::vector<Engine::Observation> observations_;
     std::int64_t calls_ = 0;
     Tick closed_ = -1; // the last tick of the trace before its end that is final
     bool begun_ = false;
     bool finished_ = false;
+    // Of what is staged: its date, the newest sample before, and whether the trace begins with it.
+    Tick at_ = 0;
+    std::optional<Tick> before_;
+    bool begins_ = false;
 
     [[nodiscard]] Tick start() const noexcept { return samples_.start().value_or(0); }
-    [[nodiscard]] Tick first_open(std::size_t output) const noexcept;
-    [[nodiscard]] std::optional<Failure> learn(Tick at, std::optional<Tick> before);
-    [[nodiscard]] std::vector<Change> timed(std::vector<Change> runs) const;
-    void collect(std::size_t output, Tick at, Tick before, bool begins);
+    [[nodiscard]] Tick newest() const noexcept { return *samples_.newest() - start(); }
+    [[nodiscard]] std::optional<Failure> learn();
     void settle();
 };
 

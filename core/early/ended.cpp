@@ -61,8 +61,13 @@ class Sliding {
 
 } // namespace
 
-std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tick end) const {
+std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tick end,
+                                        std::optional<Failure>* failure) const {
     std::vector<Column> columns(nodes_.size());
+    const auto wrong = [&](std::size_t index, std::uint32_t step, Tick t) {
+        if (failure != nullptr && !*failure && t < end)
+            *failure = Failure{static_cast<std::uint32_t>(index), step, t};
+    };
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Node& own = node(i);
         const State& state = nodes_[i];
@@ -75,6 +80,7 @@ std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tic
         for (Tick t = column.first; t < end; ++t)
             place(t) = at(static_cast<std::uint32_t>(2 * i), t);
         const Tick from = std::max(state.from, column.first);
+        if (own.kind == Kind::atom) wrong(i, state.undefined.step, state.undefined.any);
         if (own.kind == Kind::atom || from >= end) continue;
         const auto a = [&](Tick t) { return columns[own.a / 2].at(t, (own.a & 1U) != 0); };
         const auto b = [&](Tick t) { return columns[own.b / 2].at(t, (own.b & 1U) != 0); };
@@ -83,7 +89,9 @@ std::vector<Engine::Rest> Engine::ended(std::span<const std::uint32_t> refs, Tic
             for (Tick t = from; t < end; ++t) {
                 const Bounds first = a(t);
                 place(t) = compute(own.steps.front().opcode, first, own.b == none ? first : b(t));
-                if (Interval::undefined(place(t))) place(t) = bounds::anything;
+                if (!Interval::undefined(place(t))) continue;
+                wrong(i, 0, t);
+                place(t) = bounds::anything;
             }
             break;
         case Kind::both:

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <ranges>
-#include <type_traits>
 #include <utility>
 
 namespace rtamt::early {
 
 Engine::Engine(Graph graph, std::vector<Bounds> ranges, bool late)
     : graph_(std::move(graph)), ranges_(std::move(ranges)), late_(late),
-      nodes_(graph_.nodes.size()), settled_(graph_.inputs, -1), readers_(graph_.inputs),
-      results_(graph_.nodes.size()), row_(graph_.inputs) {
+      nodes_(graph_.nodes.size()), readers_(graph_.inputs), results_(graph_.nodes.size()),
+      row_(graph_.inputs) {
     graph_.check();
     truths_ = graph_.truths();
     ranges_.resize(graph_.inputs, bounds::anything);
@@ -63,7 +62,7 @@ void Engine::begin(Tick newest) noexcept {
     clear();
     seen_before_ = seen_;
     seen_ = std::max(seen_, newest);
-    if (!partial_) return;
+    if (!awaited_) return;
     for (State& state : nodes_)
         state.undefined_before = state.undefined;
 }
@@ -90,226 +89,22 @@ void Engine::revert() {
     for (State& state : nodes_)
         state.undefined = state.undefined_before;
     seen_ = seen_before_;
+    complete_ = complete_before_;
     ended_ = false;
     clear();
 }
 
-// ---- knowledge ----------------------------------------------------------------------------------
-
-// Every atom is computed before anything changes.
-template <class Value>
-std::optional<Engine::Failure> Engine::take(Tick t, std::span<const Value> values) {
-    begin(t);
-    const auto scratch = [&] {
-        if constexpr (std::is_same_v<Value, double>) {
-            return std::span(exact_);
-        } else {
-            return std::span(bounds_);
-        }
-    }();
-    for (const std::uint32_t i : atoms_) {
-        const auto& steps = node(i).steps;
-        const std::uint32_t wrong = run<Value>(steps, values, scratch);
-        if (wrong != none) return Failure{i, wrong, t};
-        if constexpr (std::is_same_v<Value, double>) {
-            results_[i] = Interval::of(scratch[steps.size() - 1]);
-        } else {
-            results_[i] = scratch[steps.size() - 1];
-        }
-    }
-    journaling_ = partial_;
-    for (const std::uint32_t i : atoms_) {
-        lift(nodes_[i], 0, t, t, results_[i].lower);
-        lift(nodes_[i], 1, t, t, -results_[i].upper);
-    }
-    return attempt(propagate(false));
-}
-
-std::optional<Engine::Failure> Engine::row(Tick t, std::span<const double> values) {
-    return take(t, values);
-}
-
-std::optional<Engine::Failure> Engine::row(Tick t, std::span<const Bounds> values) {
-    return take(t, values);
-}
-
-void Engine::know(std::span<const Observation> observations) {
-    for (const Observation& observation : observations) {
-        for (int reg = 0; reg < 2; ++reg) {
-            Runs& own = inputs_[observation.input][static_cast<std::size_t>(reg)];
-            const double now = reg == 0 ? observation.bounds.lower : -observation.bounds.upper;
-            while (const auto run = own.first<Below>(observation.l, observation.r, now)) {
-                if (journaling_) journal_.push_back({&own, run->begin, run->end, run->value});
-                own.set(run->begin, run->end, now);
-            }
-        }
-    }
-}
-
-std::optional<Engine::Failure> Engine::learn(std::span<const Observation> observations, Tick newest,
-                                             bool ended) {
-    begin(newest);
-    ended_ = ended;
-    journaling_ = partial_;
-    know(observations);
-    for (const Observation& observation : observations) {
-        for (const std::uint32_t i : readers_[observation.input]) {
-            const auto failure = relearn(i, observation.l, observation.r);
-            if (failure) return attempt(failure);
-        }
-    }
-    return attempt(propagate(false));
-}
-
-std::optional<Engine::Failure> Engine::suppose(std::span<const Supposition> suppositions) {
-    begin(seen_);
-    journaling_ = true;
-    for (const Supposition& supposed : suppositions) {
-        for (const std::uint32_t i : atoms_) {
-            if (run<Bounds>(node(i).steps, supposed.row, bounds_) != none) continue; // not known
-            const Bounds result = bounds_[node(i).steps.size() - 1];
-            lift(nodes_[i], 0, supposed.l, supposed.r, result.lower);
-            lift(nodes_[i], 1, supposed.l, supposed.r, -result.upper);
-        }
-    }
-    return attempt(propagate(false));
-}
-
-std::optional<Engine::Failure> Engine::suppose(std::span<const Observation> observations) {
-    begin(seen_);
-    journaling_ = true;
-    know(observations);
-    for (const Observation& observation : observations) {
-        for (const std::uint32_t i : readers_[observation.input])
-            (void)relearn(i, observation.l, observation.r, true);
-    }
-    return attempt(propagate(false));
-}
-
-std::optional<Engine::Failure> Engine::wrong_constant() {
-    for (const std::uint32_t i : atoms_) {
-        const auto reads = [](const Step& step) { return step.opcode == Opcode::input; };
-        if (std::ranges::any_of(node(i).steps, reads)) continue;
-        const std::uint32_t wrong = run<Bounds>(node(i).steps, row_, bounds_);
-        if (wrong != none) return Failure{i, wrong, 0};
-    }
-    return std::nullopt;
-}
-
-// Computes an atom again wherever its inputs may have changed. It fails where its operands are
-// known exactly, or will not be known better; what has no value for other operands, or for those
-// that are only supposed, may still get one. Behind the newest sample no operand is known that has
-// no such value at that sample too.
-std::optional<Engine::Failure> Engine::relearn(std::uint32_t index, Tick l, Tick r, bool supposed) {
-    State& state = nodes_[index];
-    const auto& steps = node(index).steps;
-    for (Tick t = std::max(l, state.from); t <= r;) {
-        Tick end = r;
-        bool exact = true;
-        for (const Step& step : steps) {
-            if (step.opcode != Opcode::input) continue;
-            Bounds& value = row_[step.a];
-            value = ranges_[step.a];
-            if (late_) {
-                const Run lower = inputs_[step.a][0].at(t);
-                const Run upper = inputs_[step.a][1].at(t);
-                value = {lower.value, -upper.value};
-                end = std::min({end, lower.end, upper.end});
-            }
-            const Tick settled = settled_[step.a];
-            if (t <= settled) {
-                end = std::min(end, settled);
-            } else {
-                exact = exact && value.lower == value.upper;
-            }
-        }
-        const std::uint32_t wrong = enclose(steps, row_, bounds_);
-        if (wrong != none && exact && !supposed && t <= seen_) return Failure{index, wrong, t};
-        const Bounds result = bounds_[steps.size() - 1];
-        lift(state, 0, t, end, result.lower);
-        lift(state, 1, t, end, -result.upper);
-        if (end >= forever) break;
-        t = end + 1;
-    }
-    return std::nullopt;
-}
-
-std::optional<Engine::Failure> Engine::remap(std::uint32_t index, Tick l, Tick r) {
-    State& state = nodes_[index];
-    const Node& map = node(index);
-    const std::uint32_t b = map.b == none ? map.a : map.b;
-    for (Tick t = std::max(l, state.from); t <= r;) {
-        const Run ends[] = {runs(map.a, 0).at(t), runs(map.a, 1).at(t), runs(b, 0).at(t),
-                            runs(b, 1).at(t)};
-        const Tick end = std::min({r, ends[0].end, ends[1].end, ends[2].end, ends[3].end});
-        const Bounds first{ends[0].value, -ends[1].value};
-        const Bounds second{ends[2].value, -ends[3].value};
-        const Bounds result = compute(map.steps.front().opcode, first, second);
-        if (!Interval::undefined(result)) {
-            lift(state, 0, t, end, result.lower);
-            lift(state, 1, t, end, -result.upper);
-        } else if (first.lower == first.upper && second.lower == second.upper) {
-            if (const auto failure = fails(index, t)) return failure;
-        }
-        if (end >= forever) break;
-        t = end + 1;
-    }
-    return std::nullopt;
-}
-
-// At the start of the trace nothing is in a window of the past yet, or too little for a rank.
-void Engine::lift_empty(std::uint32_t index) {
-    const Node& own = node(index);
-    const bool rank = own.kind == Kind::rank_least || own.kind == Kind::rank_greatest;
-    Tick ticks = own.kind == Kind::held ? 0 : -own.high;
-    if (rank && own.low < 0) ticks += static_cast<Tick>(own.steps.front().x) - 1;
-    if (ticks <= 0) return;
-    const bool least = own.kind == Kind::least || own.kind == Kind::rank_least;
-    double empty = least ? infinity : -infinity;
-    if (own.kind == Kind::pulses) empty = 0.0;
-    lift(nodes_[index], 0, 0, ticks - 1, empty);
-    lift(nodes_[index], 1, 0, ticks - 1, -empty);
-}
-
-// Lets every node look at what its operands have changed. `first`: at what they are.
-std::optional<Engine::Failure> Engine::propagate(bool first) {
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-        const Node& own = node(i);
-        if (own.kind == Kind::atom) {
-            if (first) (void)relearn(i, 0, forever);
-        } else if (own.kind == Kind::map) {
-            if (reached(i, nodes_[i].undefined)) return Failure{i, 0, nodes_[i].undefined};
-            std::optional<Failure> failure;
-            if (first) failure = remap(i, 0, forever);
-            for (int reg = 0; reg < 2 && !first; ++reg) {
-                for (const std::uint32_t ref : {own.a, own.b}) {
-                    if (ref == none) continue;
-                    for (const Piece& piece : new_data(ref, reg)) {
-                        if (!failure) failure = remap(i, piece.l, piece.r);
-                    }
-                }
-            }
-            if (failure && !first) return failure;
-        } else if (own.kind == Kind::sum) {
-            const auto failure = add_up(i, first);
-            if (failure && !first) return failure;
-        } else {
-            if (first) lift_empty(i);
-            pass(i, 0);
-            pass(i, 1);
-        }
-    }
-    return std::nullopt;
-}
-
-// ---- what is not needed, or not any more
-// ----------------------------------------------------------------
+// ---- what is not needed any more
+// -----------------------------------------------------------------
 
 // An operation that may have no value is followed wherever it is, needed or not: whether a sample
-// is an error must not depend on what is already decided.
-bool Engine::may_fail(const Node& node) noexcept {
-    return (node.kind == Kind::map || node.kind == Kind::sum) &&
-           info(node.steps.front().opcode).partial;
+// is an error must not depend on what is already decided. Atoms of samples that are never late fail
+// when their row comes, followed or not.
+bool Engine::may_fail(const Node& node) const noexcept {
+    const auto partial = [](const Step& step) { return info(step.opcode).partial; };
+    return (node.kind == Kind::map || node.kind == Kind::sum ||
+            (node.kind == Kind::atom && late_)) &&
+           std::ranges::any_of(node.steps, partial);
 }
 
 void Engine::limit(std::span<const Tick> last) {
@@ -392,7 +187,11 @@ void Engine::transfer(Snapshot& snapshot) {
         state.own[1].transfer(snapshot);
         snapshot.item(state.from);
         snapshot.item(state.keep);
-        snapshot.item(state.undefined);
+        snapshot.item(state.undefined.exact);
+        snapshot.item(state.undefined.any);
+        snapshot.item(state.undefined.step);
+        const auto& steps = node(static_cast<std::size_t>(&state - nodes_.data())).steps;
+        snapshot.require(state.undefined.step < std::max<std::size_t>(1, steps.size()));
         snapshot.require(state.own[0].front() <= std::max<Tick>(0, state.keep) &&
                          state.own[1].front() <= std::max<Tick>(0, state.keep));
     }
@@ -402,8 +201,11 @@ void Engine::transfer(Snapshot& snapshot) {
     }
     snapshot.item(seen_);
     snapshot.require(seen_ >= -1 && seen_ < forever);
+    snapshot.item(complete_);
     if (!snapshot.loading()) return;
     seen_before_ = seen_;
+    complete_before_ = complete_;
+    awaited_ = partial_;
     for (Totals& totals : totals_)
         totals.forget();
     clear();

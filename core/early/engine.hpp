@@ -58,9 +58,12 @@ class Engine {
     // nothing reads is not followed.
     void limit(std::span<const Tick> last);
 
-    // Up to which tick each input is known as well as it will ever be, from the next change on;
-    // where only learn() is called.
-    void settle_inputs(std::span<const Tick> ticks) { settled_.assign(ticks.begin(), ticks.end()); }
+    // Up to which tick all inputs are known as well as they will ever be, from the next change on;
+    // for what is given to learn().
+    void settle_inputs(Tick tick) noexcept {
+        complete_before_ = complete_;
+        complete_ = tick;
+    }
 
     // The first operation without a value in what reads no input.
     [[nodiscard]] std::optional<Failure> wrong_constant();
@@ -79,6 +82,9 @@ class Engine {
 
     // The nodes that others read for ever when the trace ends.
     void find_beyond(std::span<const std::uint32_t> read_forever);
+
+    // Whether revert() takes back the last change too.
+    void keep_undo(bool keeps) noexcept { keeps_undo_ = keeps; }
 
     // What is supposed of all inputs at [l, r], where nothing is known of them but their ranges. It
     // holds until revert(), with which everything is as it was before.
@@ -128,7 +134,9 @@ class Engine {
         Tick first;
         std::vector<Bounds> bounds;
     };
-    [[nodiscard]] std::vector<Rest> ended(std::span<const std::uint32_t> refs, Tick end) const;
+    // `failure`: what has no value then.
+    [[nodiscard]] std::vector<Rest> ended(std::span<const std::uint32_t> refs, Tick end,
+                                          std::optional<Failure>* failure = nullptr) const;
 
     [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -142,8 +150,15 @@ class Engine {
         Tick keep = 0;     // the first tick that anybody reads
         Tick to = forever; // the last tick that anybody will read
         Tick beyond = 0;   // how many ticks behind the last sample it is read when the trace ends
-        Tick undefined = forever; // the first tick without a value, which may never be reached
-        Tick undefined_before = forever; // the last change
+        // The first tick without a value, which may never be reached: for operands that are known
+        // exactly, and for any, by which step.
+        struct Undefined {
+            Tick exact = forever;
+            Tick any = forever;
+            std::uint32_t step = 0;
+        };
+        Undefined undefined;
+        Undefined undefined_before; // the last change
     };
     struct Undo {
         Runs* runs;
@@ -157,31 +172,34 @@ class Engine {
     bool late_;
     std::vector<bool> truths_; // by node
     bool partial_ = false;     // an operation may have no value
+    bool awaited_ = false;     // one has none somewhere, or had: see State::undefined
     std::vector<State> nodes_;
     std::vector<std::uint32_t> atoms_;
     std::vector<Registers> inputs_;                   // where knowledge may be late
-    std::vector<Tick> settled_;                       // by input
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
     std::vector<Undo> journal_;                       // of a change that may fail
     bool journaling_ = false;
+    bool keeps_undo_ = false;
     std::vector<double> exact_;                // results of steps
     std::vector<Bounds> bounds_;               // results of steps
     std::vector<Bounds> results_;              // of atoms in a row
     std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
     Tick seen_ = -1;                           // the newest tick of which samples came
     Tick seen_before_ = -1;                    // the last change
+    Tick complete_ = -1;                       // up to where all inputs are as well known as ever
+    Tick complete_before_ = -1;                // the last change
     bool ended_ = false;                       // no more samples will come
     std::vector<Totals> totals_;               // by node, of sums
     std::vector<std::pair<Tick, Tick>> spans_; // where a sum may have changed
 
-    [[nodiscard]] static bool may_fail(const Node& node) noexcept;
+    [[nodiscard]] bool may_fail(const Node& node) const noexcept;
     [[nodiscard]] const Node& node(std::size_t i) const noexcept { return graph_.nodes[i]; }
     void know(std::span<const Observation> observations);
     [[nodiscard]] std::optional<Failure> attempt(std::optional<Failure> failure);
     void begin(Tick newest) noexcept;
     void clear() noexcept;
 
-    // engine.cpp: atoms and maps
+    // knowledge.cpp
     template <class Value>
     [[nodiscard]] std::optional<Failure> take(Tick t, std::span<const Value> values);
     [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r,
@@ -191,12 +209,12 @@ class Engine {
     void lift_empty(std::uint32_t index);
 
     // undefined.cpp
-    // What has no value at a tick is a failure as soon as the tick is in the trace, or when the
-    // trace ends and something reads that far.
     [[nodiscard]] bool reached(std::uint32_t index, Tick t) const noexcept {
         return t < forever && t <= (ended_ ? plus(seen_, nodes_[index].beyond) : seen_);
     }
-    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, Tick t) noexcept;
+    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index) const noexcept;
+    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, std::uint32_t step, Tick t,
+                                               bool exact) noexcept;
 
     // sums.cpp
     void lift(State& state, Tick l, Tick r, const Bounds& now);

@@ -105,13 +105,18 @@ template std::uint32_t run(std::span<const Step>, std::span<const double>,
 template std::uint32_t run(std::span<const Step>, std::span<const Bounds>,
                            std::span<Bounds>) noexcept;
 
-std::uint32_t enclose(std::span<const Step> steps, std::span<const Bounds> inputs,
-                      std::span<Bounds> results) noexcept {
-    std::uint32_t wrong = none;
+Wrong enclose(std::span<const Step> steps, std::span<const Bounds> inputs,
+              std::span<Bounds> results) noexcept {
+    Wrong wrong;
+    const auto exact = [&](std::uint32_t step) {
+        return step == none || results[step].lower == results[step].upper;
+    };
     for (std::size_t i = 0; i < steps.size(); ++i) {
+        const auto step = static_cast<std::uint32_t>(i);
         results[i] = value_of(steps[i], inputs, results);
         if (!undefined(results[i])) continue;
-        if (wrong == none) wrong = static_cast<std::uint32_t>(i);
+        if (wrong.any == none) wrong.any = step;
+        if (wrong.exact == none && exact(steps[i].a) && exact(steps[i].b)) wrong.exact = step;
         results[i] = bounds::anything;
     }
     return wrong;

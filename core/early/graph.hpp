@@ -91,8 +91,12 @@ template <class Value>
 [[nodiscard]] std::uint32_t run(std::span<const Step> steps, std::span<const Value> inputs,
                                 std::span<Value> results) noexcept;
 
-// The same of the first such step, which may have any value, like all others after it.
-[[nodiscard]] std::uint32_t enclose(std::span<const Step> steps, std::span<const Bounds> inputs,
-                                    std::span<Bounds> results) noexcept;
+// The same, where a step without a value may have any.
+struct Wrong {
+    std::uint32_t any = none;   // the first such step
+    std::uint32_t exact = none; // the first one whose operands are known exactly
+};
+[[nodiscard]] Wrong enclose(std::span<const Step> steps, std::span<const Bounds> inputs,
+                            std::span<Bounds> results) noexcept;
 
 } // namespace rtamt::early

@@ -9,9 +9,11 @@
 
 namespace rtamt::early {
 
-Samples::Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness)
+Samples::Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness, bool waits)
     : ranges_(std::move(ranges)), lateness_(lateness), inputs_(ranges_.size()),
-      settled_(ranges_.size(), -1), committed_settled_(settled_) {}
+      settled_(ranges_.size(), -1), committed_settled_(settled_) {
+    now_.waits = committed_.waits = waits;
+}
 
 // The index of the first sample later than a time.
 std::size_t Samples::after(const Column& column, Tick time) noexcept {
@@ -38,6 +40,10 @@ void Samples::add(std::uint32_t input, Tick time, const Bounds& bounds) {
         column.insert(column.begin() + static_cast<std::ptrdiff_t>(place), {time, bounds});
         added_.push_back({input, time, std::nullopt});
     }
+    reach(time);
+}
+
+void Samples::reach(Tick time) noexcept {
     now_.newest = std::max(now_.newest.value_or(time), time);
     if (lateness_) now_.closed = std::max(now_.closed, *now_.newest - *lateness_ - 1);
     find_start();
@@ -49,16 +55,25 @@ void Samples::close(Tick time) noexcept {
 }
 
 // Behind what is closed no sample can come, so that a first one there is the first of all.
-void Samples::find_start() noexcept {
-    if (now_.start || inputs_.empty()) return;
+std::optional<Tick> Samples::first_start() const noexcept {
+    if (now_.start || inputs_.empty()) return now_.start;
     Tick start = -forever;
     for (const Column& column : inputs_) {
-        if (column.empty()) return;
+        if (column.empty()) return std::nullopt;
         const Tick first = column.front().time;
-        if (lateness_ && first > now_.closed) return;
+        if (lateness_ && first > now_.closed) return std::nullopt;
         start = std::max(start, first);
     }
-    now_.start = start;
+    return start;
+}
+
+void Samples::find_start() noexcept {
+    if (!now_.waits) now_.start = first_start();
+}
+
+void Samples::release() noexcept {
+    now_.waits = false;
+    find_start();
 }
 
 Tick Samples::relative(Tick time) const noexcept {
@@ -166,6 +181,7 @@ void Samples::transfer(Snapshot& snapshot) {
     snapshot.item(now_.start);
     snapshot.item(now_.newest);
     snapshot.item(now_.closed);
+    snapshot.item(now_.waits);
     snapshot.require(!now_.start || (*now_.start < farthest && *now_.start > -farthest));
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         Column& column = inputs_[i];

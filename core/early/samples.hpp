@@ -23,7 +23,8 @@ class Samples {
   public:
     // `lateness`: by how many ticks a sample may be older than the newest one of any input; none:
     // the samples of an input come in order.
-    Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness);
+    // `waits`: whether the trace starts at release() or later.
+    Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness, bool waits = false);
 
     // Times are less far from 0, and a trace is shorter.
     static constexpr Tick farthest = std::numeric_limits<Tick>::max() / 2;
@@ -33,10 +34,17 @@ class Samples {
     [[nodiscard]] bool may_come(std::uint32_t input, Tick time) const noexcept;
     void add(std::uint32_t input, Tick time, const Bounds& bounds);
 
+    // A sample of another trace, of this time, has come.
+    void reach(Tick time) noexcept;
+
     // Nothing at or before a time will come; nothing at all.
     void close(Tick time) noexcept;
     void finish() noexcept { close(at_end); }
     [[nodiscard]] bool ended() const noexcept { return now_.closed == at_end; }
+
+    // Whether the trace starts, or would if it did not wait.
+    [[nodiscard]] bool ready() const noexcept { return first_start().has_value(); }
+    void release() noexcept;
 
     // Takes everything back since the last commit, or forgets how.
     void rollback() noexcept;
@@ -78,6 +86,7 @@ class Samples {
         std::optional<Tick> start;
         std::optional<Tick> newest;
         Tick closed = never;
+        bool waits = false;
     };
     using Column = std::vector<Sample>; // by time
 
@@ -94,6 +103,7 @@ class Samples {
     [[nodiscard]] Tick relative(Tick time) const noexcept;
     [[nodiscard]] Tick absolute(Tick tick) const noexcept;
     [[nodiscard]] Tick certain(std::size_t input) const noexcept;
+    [[nodiscard]] std::optional<Tick> first_start() const noexcept;
     void find_start() noexcept;
 };
 

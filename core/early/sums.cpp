@@ -19,7 +19,6 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
     const State& state = nodes_[index];
     if (state.from >= forever) return std::nullopt; // nothing reads it
-    if (reached(index, state.undefined)) return Failure{index, 0, state.undefined};
     spans_.clear();
     if (first) {
         spans_.emplace_back(0, forever);
@@ -82,7 +81,7 @@ std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, 
         const Bounds sum = totals_[index].at(end, [&](Tick i) { return at(own.a, i); });
         if (!Interval::undefined(sum)) {
             lift(state, t, t, sum);
-        } else if (const auto failure = fails(index, t)) {
+        } else if (const auto failure = fails(index, 0, t, true)) {
             return failure;
         }
         ++t;
@@ -103,7 +102,7 @@ std::optional<Engine::Failure> Engine::add_all(std::uint32_t index, Tick t) {
     for (; t + own.high <= seen_; ++t) {
         sum = Totals::Add::join(at(own.a, t + own.high), sum);
         if (Interval::undefined(sum)) {
-            if (const auto failure = fails(index, t)) return failure;
+            if (const auto failure = fails(index, 0, t, true)) return failure;
             sum = bounds::anything;
         }
         lift(state, t, t, sum);

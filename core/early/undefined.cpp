@@ -1,14 +1,28 @@
-// Operations without a value: an error where the trace has come so far, nothing known until then.
+// Operations without a value. They are an error at a tick that the trace has reached, or that is
+// read when it ends, where their operands are known exactly or will not be known better; until then
+// nothing is known of the value. What has none for some bounds has none for narrower ones either.
 #include "engine.hpp"
 
 #include <algorithm>
 
 namespace rtamt::early {
 
-std::optional<Engine::Failure> Engine::fails(std::uint32_t index, Tick t) noexcept {
-    if (reached(index, t)) return Failure{index, 0, t};
-    nodes_[index].undefined = std::min(nodes_[index].undefined, t);
+std::optional<Engine::Failure> Engine::fails(std::uint32_t index) const noexcept {
+    const auto& [exact, any, step] = nodes_[index].undefined;
+    if (reached(index, exact)) return Failure{index, step, exact};
+    const Tick horizon = std::max<Tick>(0, node(index).horizon);
+    if (reached(index, any) && plus(any, horizon) <= complete_) return Failure{index, step, any};
     return std::nullopt;
+}
+
+std::optional<Engine::Failure> Engine::fails(std::uint32_t index, std::uint32_t step, Tick t,
+                                             bool exact) noexcept {
+    auto& undefined = nodes_[index].undefined;
+    if (exact) undefined.exact = std::min(undefined.exact, t);
+    undefined.any = std::min(undefined.any, t);
+    undefined.step = step;
+    awaited_ = true;
+    return fails(index);
 }
 
 // How far behind the newest sample each node is read when the trace ends, after which every input

@@ -34,24 +34,27 @@ tuples_of(const std::vector<early::Change>& runs) {
     return result;
 }
 
+// (nodes, outputs, origin, inputs, causes)
+using EarlyGroup =
+    std::tuple<std::vector<EarlyNode>, std::vector<std::uint32_t>, std::vector<EarlyItem>,
+               std::vector<std::uint32_t>, std::optional<EarlyCauses>>;
+
 [[nodiscard]] std::pair<double, double> pair_of(const Bounds& bounds) {
     return {bounds.lower, bounds.upper};
 }
 
 } // namespace
 
-DenseEarlyMonitor::DenseEarlyMonitor(const early::Graph& graph,
-                                     const early::DenseSettings& settings,
-                                     const std::vector<nb::str>& names, const nb::object& ignored,
-                                     const nb::dict& types, bool replays,
-                                     const std::optional<EarlyCauses>& causes,
+DenseEarlyMonitor::DenseEarlyMonitor(early::DenseRequirements monitor,
+                                     std::vector<std::vector<std::uint32_t>> steps_before,
+                                     Settings settings, const std::vector<nb::str>& names,
+                                     const nb::object& ignored, const nb::dict& types,
                                      Exceptions exceptions)
-    : monitor_(graph, settings), ranges_(settings.ranges), late_(settings.lateness.has_value()),
-      decides_(settings.decides), replays_(replays), exceptions_(std::move(exceptions)),
-      guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
-      steps_before_(steps_before(graph)), counts_(graph.inputs) {
-    ranges_.resize(graph.inputs, bounds::anything);
-    if (causes) causation_.emplace(causation_of(*causes));
+    : monitor_(std::move(monitor)), settings_(std::move(settings)),
+      exceptions_(std::move(exceptions)), guard_(exceptions_.refused, exceptions_.in_use),
+      names_(names, static_cast<std::uint32_t>(names.size()), ignored, types),
+      steps_before_(std::move(steps_before)), counts_(names.size()) {
+    settings_.ranges.resize(names.size(), bounds::anything);
 }
 
 void DenseEarlyMonitor::set_time_scale(const nb::object& verdict, double rate) {
@@ -65,7 +68,7 @@ void DenseEarlyMonitor::set_time_scale(const nb::object& verdict, double rate) {
 // Reads plain numbers, which runs no Python code; if not, a Python exception is set.
 bool DenseEarlyMonitor::takes(PyObject* time, const Named& values, Tick& tick) noexcept {
     if (!guard_.open(finished())) return false;
-    if (replays_) return guard_.refuse("replays") != nullptr;
+    if (settings_.replays) return guard_.refuse("replays") != nullptr;
     const auto read = rate_ > 0 ? tick_of(time, rate_, false) : std::nullopt;
     if (!read || std::fabs(static_cast<double>(*read)) >= near) {
         return guard_.refuse("time") != nullptr;
@@ -80,9 +83,8 @@ bool DenseEarlyMonitor::takes(PyObject* time, const Named& values, Tick& tick) n
         double x = 0;
         if (!names_.read(PlainNumbers{}, *place, value, x)) return "value";
         const auto input = static_cast<std::uint32_t>(*place);
-        const auto& samples = monitor_.samples();
-        const Bounds known = late_ ? samples.known(input, tick) : ranges_[input];
-        if (!samples.may_come(input, tick)) return "time";
+        if (!monitor_.may_come(input, tick)) return "time";
+        const Bounds known = settings_.late ? monitor_.known(input, tick) : settings_.ranges[input];
         if (known.lower > x || x > known.upper) return "range";
         given_.push_back({input, {x, x}});
         return nullptr;
@@ -101,8 +103,8 @@ PyObject* DenseEarlyMonitor::update(PyObject* time, const Named& values) noexcep
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }
-    if (decides_) return new_data();
-    if (causation_) return made_of(*causation_, monitor_.caused_at_start());
+    if (settings_.decides) return new_data();
+    if (settings_.causation) return made_of(*settings_.causation, monitor_.caused_at_start());
     Py_RETURN_NONE;
 }
 
@@ -113,8 +115,8 @@ void DenseEarlyMonitor::learn(Tick tick,
     guard_.require(after == samples() && !finished());
     given_.clear();
     for (const auto& [input, lower, upper] : values) {
-        if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
-        if (!monitor_.samples().may_come(input, tick)) {
+        if (input >= settings_.ranges.size()) throw std::out_of_range("There is no such input.");
+        if (!monitor_.may_come(input, tick)) {
             (void)guard_.refuse("order");
             throw nb::python_error();
         }
@@ -139,9 +141,10 @@ void DenseEarlyMonitor::finish() {
 
 // The operation of a step by its number in the whole graph, and the tick.
 PyObject* DenseEarlyMonitor::fail(const Failure& failure) const noexcept {
-    const auto when = static_cast<long long>(failure.tick);
-    const auto raised = nb::steal(PyObject_CallFunction(
-        exceptions_.undefined.ptr(), "IL", steps_before_[failure.node] + failure.step, when));
+    const auto& [node, step, tick] = failure.operation;
+    const auto raised = nb::steal(PyObject_CallFunction(exceptions_.undefined.ptr(), "IL",
+                                                        steps_before_[failure.group][node] + step,
+                                                        static_cast<long long>(tick)));
     if (raised.is_valid()) PyErr_SetObject(exceptions_.undefined.ptr(), raised.ptr());
     return nullptr;
 }
@@ -216,16 +219,16 @@ std::optional<std::pair<double, double>> DenseEarlyMonitor::supposed(
     const std::vector<std::tuple<std::uint32_t, Tick, double, double>>& later) {
     guard_.require_idle();
     if (output) require_output(*output);
-    const auto first = output ? monitor_.held(*output) : monitor_.samples().start();
-    if (!first || (output && tick < *first)) return std::nullopt;
     std::vector<early::DenseMonitor::Supposed> supposed;
     for (const auto& [input, from, lower, upper] : later) {
-        if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
+        if (input >= settings_.ranges.size()) throw std::out_of_range("There is no such input.");
         supposed.push_back({input, from, {lower, upper}});
     }
     const auto found = monitor_.suppose(output, tick, supposed);
     if (const auto* failure = std::get_if<Failure>(&found)) check(*failure);
-    return pair_of(std::get<Bounds>(found));
+    const auto& value = std::get<std::optional<Bounds>>(found);
+    if (!value) return std::nullopt;
+    return pair_of(*value);
 }
 
 std::pair<double, double> DenseEarlyMonitor::causation_at_start() const {
@@ -251,8 +254,8 @@ DenseEarlyMonitor::Runs DenseEarlyMonitor::caused(std::size_t output) const {
 }
 
 std::pair<double, double> DenseEarlyMonitor::known(std::uint32_t input, Tick tick) const {
-    if (input >= ranges_.size()) throw std::out_of_range("There is no such input.");
-    return pair_of(monitor_.samples().known(input, tick));
+    if (input >= settings_.ranges.size()) throw std::out_of_range("There is no such input.");
+    return pair_of(monitor_.known(input, tick));
 }
 
 std::optional<Tick> DenseEarlyMonitor::held(std::size_t output) const {
@@ -271,16 +274,16 @@ std::vector<Tick> DenseEarlyMonitor::last_times() const {
     std::vector<Tick> times;
     times.reserve(counts_.size());
     for (std::uint32_t input = 0; input < counts_.size(); ++input)
-        times.push_back(monitor_.samples().newest(input).value_or(never));
+        times.push_back(monitor_.newest(input).value_or(never));
     return times;
 }
 
 Tick DenseEarlyMonitor::newest() const {
-    return monitor_.samples().newest().value_or(never);
+    return monitor_.newest().value_or(never);
 }
 
 Tick DenseEarlyMonitor::closed() const {
-    return monitor_.samples().closed().value_or(never);
+    return monitor_.closed().value_or(never);
 }
 
 Tick DenseEarlyMonitor::complete() const {
@@ -315,24 +318,43 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
         module, "DenseEarlyMonitor", "Verdicts or bounds before the horizon, in dense time.")
         .def(
             "__init__",
-            [exceptions](DenseEarlyMonitor* self, const std::vector<EarlyNode>& nodes,
-                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
-                         const std::vector<std::pair<double, double>>& ranges,
-                         const std::vector<nb::str>& names, const nb::object& ignored,
-                         const nb::dict& types, std::optional<Tick> lateness, bool verdicts,
-                         bool replays, const std::optional<EarlyCauses>& causes) {
-                const early::DenseSettings settings{
-                    std::move(outputs), items_of(origin),
-                    bounds_of(ranges),  lateness,
-                    verdicts,           causes ? std::optional(causes_of(*causes)) : std::nullopt};
-                new (self)
-                    DenseEarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                      settings, names, ignored, types, replays, causes, exceptions);
+            [exceptions](
+                DenseEarlyMonitor* self, const std::vector<EarlyGroup>& groups,
+                std::size_t required,
+                const std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>& outputs,
+                const std::vector<std::pair<double, double>>& ranges,
+                const std::vector<nb::str>& names, const nb::object& ignored, const nb::dict& types,
+                std::optional<Tick> lateness, bool verdicts, bool replays) {
+                DenseEarlyMonitor::Settings settings{bounds_of(ranges), lateness.has_value(),
+                                                     verdicts, replays, std::nullopt};
+                std::vector<early::DenseRequirements::Group> all;
+                std::vector<std::vector<std::uint32_t>> steps;
+                std::uint32_t before = 0;
+                for (const auto& [nodes, refs, origin, inputs, causes] : groups) {
+                    const auto count = static_cast<std::uint32_t>(inputs.size());
+                    early::DenseSettings own{refs, items_of(origin), {}, lateness, verdicts, {}};
+                    for (const std::uint32_t input : inputs)
+                        own.ranges.push_back(settings.ranges.at(input));
+                    if (causes) {
+                        own.causes = causes_of(*causes);
+                        settings.causation.emplace(causation_of(*causes));
+                    }
+                    all.push_back({graph_of(nodes, count), std::move(own), inputs});
+                    steps.push_back(steps_before(all.back().graph, before));
+                }
+                std::vector<std::vector<early::DenseRequirements::Place>> places;
+                for (const auto& each : outputs) {
+                    auto& own = places.emplace_back();
+                    for (const auto& [group, output] : each)
+                        own.push_back({group, output});
+                }
+                new (self) DenseEarlyMonitor(
+                    early::DenseRequirements(std::move(all), required, places), std::move(steps),
+                    std::move(settings), names, ignored, types, exceptions);
             },
-            nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
+            nb::arg("groups"), nb::arg("required"), nb::arg("outputs"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored").none(), nb::arg("types"),
-            nb::arg("lateness").none(), nb::arg("verdicts"), nb::arg("replays") = false,
-            nb::arg("causes").none() = nb::none())
+            nb::arg("lateness").none(), nb::arg("verdicts"), nb::arg("replays") = false)
         .def("set_time_scale", &DenseEarlyMonitor::set_time_scale, nb::arg("verdict"),
              nb::arg("rate"), "Let update() take numbers of so many ticks each.")
         .def("learn", &DenseEarlyMonitor::learn, nb::arg("tick"), nb::arg("values"),

@@ -5,7 +5,7 @@
 // learn().
 #pragma once
 
-#include "../early/dense_monitor.hpp"
+#include "../early/dense_requirements.hpp"
 #include "early_backend.hpp"
 #include "failures.hpp"
 #include "names.hpp"
@@ -26,10 +26,19 @@ class DenseEarlyMonitor : public EarlyBackend {
   public:
     using Tick = early::Tick;
 
-    DenseEarlyMonitor(const early::Graph& graph, const early::DenseSettings& settings,
+    struct Settings {
+        std::vector<Bounds> ranges;
+        bool late;                               // samples may come in any order
+        bool decides;                            // verdicts; if not, bounds
+        bool replays;                            // update() takes nothing by itself
+        std::optional<ResultClass<2>> causation; // of what update() returns
+    };
+    // Of each node of all groups of `monitor`, `steps_before` are how many steps come before its
+    // own.
+    DenseEarlyMonitor(early::DenseRequirements monitor,
+                      std::vector<std::vector<std::uint32_t>> steps_before, Settings settings,
                       const std::vector<nb::str>& names, const nb::object& ignored,
-                      const nb::dict& types, bool replays, const std::optional<EarlyCauses>& causes,
-                      Exceptions exceptions);
+                      const nb::dict& types, Exceptions exceptions);
 
     // update() takes numbers of which 1 is so many ticks, and returns objects of this class.
     void set_time_scale(const nb::object& verdict, double rate);
@@ -78,21 +87,17 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] std::size_t state_bytes() const { return monitor_.bytes(); }
 
   private:
-    using Failure = early::Engine::Failure;
+    using Failure = early::DenseRequirements::Failure;
 
-    early::DenseMonitor monitor_;
-    std::vector<Bounds> ranges_;
-    bool late_;    // samples may come in any order
-    bool decides_; // verdicts; if not, bounds
-    bool replays_; // update() takes nothing by itself
+    early::DenseRequirements monitor_;
+    Settings settings_;
     Exceptions exceptions_;
     UsageGuard guard_;
     Names names_;
-    std::vector<std::uint32_t> steps_before_; // by node
-    std::vector<std::int64_t> counts_;        // samples of each input
+    std::vector<std::vector<std::uint32_t>> steps_before_; // by group and node
+    std::vector<std::int64_t> counts_;                     // samples of each input
     std::vector<early::DenseMonitor::Given> given_;
-    std::optional<ResultClass<4>> verdict_;   // of what update() returns
-    std::optional<ResultClass<2>> causation_; // of what update() returns
+    std::optional<ResultClass<4>> verdict_; // of what update() returns
     double rate_ = 0;
 
     [[nodiscard]] bool takes(PyObject* time, const Named& values, Tick& tick) noexcept;

@@ -40,8 +40,9 @@ using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_
 [[nodiscard]] std::pair<double, double> caused_of(const Bounds& caused);
 [[nodiscard]] PyObject* made_of(const ResultClass<2>& causation, const Bounds& caused) noexcept;
 
-// Of each node, how many steps of others come before its own.
-[[nodiscard]] std::vector<std::uint32_t> steps_before(const early::Graph& graph);
+// Of each node, how many steps of others come before its own, after those of other graphs.
+[[nodiscard]] std::vector<std::uint32_t> steps_before(const early::Graph& graph,
+                                                      std::uint32_t& before);
 
 class EarlyBackend {
   public:

@@ -67,9 +67,8 @@ PyObject* made_of(const ResultClass<2>& causation, const Bounds& caused) noexcep
                            nb::steal(PyFloat_FromDouble(caused.lower + 0.0))});
 }
 
-std::vector<std::uint32_t> steps_before(const early::Graph& graph) {
+std::vector<std::uint32_t> steps_before(const early::Graph& graph, std::uint32_t& before) {
     std::vector<std::uint32_t> result;
-    std::uint32_t before = 0;
     for (const early::Node& node : graph.nodes) {
         result.push_back(before);
         before += static_cast<std::uint32_t>(node.steps.size());
@@ -127,6 +126,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "Violation and satisfaction that the newest sample causes at the start of the trace.")
         .def("causation", &EarlyMonitor::causation, nb::arg("output"), nb::arg("sample"),
              "Violation and satisfaction that the newest sample causes for an output at a sample.")
+        .def("caused", &EarlyMonitor::caused, nb::arg("output"),
+             "The same as runs (first, last, violation, satisfaction), where there is any.")
         .def("place", &EarlyMonitor::place, nb::arg("time"), "The index of a time, or None.")
         .def("known", &EarlyMonitor::known, nb::arg("variable"), nb::arg("sample"),
              "What is known of an input at a sample.")

@@ -41,7 +41,8 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
       row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changes_(outputs_.size()),
       open_(outputs_.size(), 0), wanted_(engine_.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
-    steps_before_ = steps_before(graph);
+    std::uint32_t before = 0;
+    steps_before_ = steps_before(graph, before);
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
@@ -100,13 +101,24 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     if (wrong != nullptr) return guard_.refuse(wrong);
     if (settings_.late && *index <= closed_) return guard_.refuse("late");
     try {
-        const auto failure = settings_.late ? engine_.learn(observations_, *index)
-                                            : engine_.row(*index, std::span<const double>(row_));
+        const auto failure =
+            settings_.late ? observe(*index) : engine_.row(*index, std::span<const double>(row_));
         if (failure) return fail(*failure, *index, t);
         return advance(*index, t);
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }
+}
+
+// Takes observations, late or not.
+std::optional<EarlyMonitor::Failure> EarlyMonitor::observe(Tick index) {
+    engine_.settle_inputs(closed_after(index));
+    return engine_.learn(observations_, index);
+}
+
+Tick EarlyMonitor::closed_after(Tick index) const noexcept {
+    const Tick newest = std::max(times_.newest(), index);
+    return std::max(closed_, settings_.late ? newest - settings_.lateness - 1 : newest);
 }
 
 void EarlyMonitor::require(std::int64_t after) {
@@ -145,7 +157,7 @@ nb::object EarlyMonitor::learn(double time,
         if (input >= row_.size()) throw std::out_of_range("There is no such input.");
         observations_.push_back({input, *index, *index, {lower, upper}});
     }
-    const auto failure = engine_.learn(observations_, *index);
+    const auto failure = observe(*index);
     return checked(failure ? fail(*failure, *index, time) : advance(*index, time));
 }
 
@@ -181,8 +193,7 @@ PyObject* EarlyMonitor::advance(Tick index, double time) {
     const Tick before = times_.newest();
     if (index > before) times_.add(index, time);
     ++samples_;
-    const Tick newest = times_.newest();
-    closed_ = std::max(closed_, settings_.late ? newest - settings_.lateness - 1 : newest);
+    closed_ = closed_after(index);
     note(before);
     if (samples_ % pause == 0) settle();
     return result();
@@ -207,31 +218,39 @@ Tick EarlyMonitor::lag(std::size_t output) const {
     return std::max<Tick>(0, engine_.horizon(outputs_.at(output)));
 }
 
+// What is missing behind the newest sample cuts windows if the trace ends now.
+Tick EarlyMonitor::final_up_to() const noexcept {
+    return std::min(closed_, times_.newest());
+}
+
 void EarlyMonitor::settle() {
     std::ranges::fill(wanted_, forever);
-    Tick oldest = closed_;
+    const Tick closed = final_up_to();
+    Tick oldest = closed;
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Tick& wanted = wanted_[outputs_[i] / 2];
         Tick from = 0;
         if (settings_.verdict) {
             open_[i] = early::Decisions::open(engine_, outputs_[i], open_[i]);
-            from = std::max(early::plus(closed_ + 1, -lag(i)), open_[i]);
+            from = std::max(early::plus(closed + 1, -lag(i)), open_[i]);
         } else {
             from = std::min(held(i), changes_[i].first());
         }
         wanted = std::min(wanted, from);
         oldest = std::min(oldest, wanted);
     }
-    if (origin_) origin_->settle(engine_, closed_, wanted_);
-    if (causes_) causes_->settle(engine_, closed_, wanted_);
-    engine_.settle(closed_, wanted_);
+    if (origin_) origin_->settle(engine_, closed, wanted_);
+    if (causes_) causes_->settle(engine_, closed, wanted_);
+    engine_.settle(closed, wanted_);
     times_.drop_before(oldest);
 }
 
 nb::object EarlyMonitor::finish() {
     guard_.require_idle();
     const Tick end = times_.newest() + 1;
-    const auto rests = engine_.ended(outputs_, end);
+    std::optional<Failure> failure;
+    const auto rests = engine_.ended(outputs_, end, &failure);
+    if (failure) return checked(fail(*failure, end - 1, times_.last()));
     if (settings_.verdict) {
         for (std::size_t i = 0; i < outputs_.size(); ++i) {
             news_[i].clear();

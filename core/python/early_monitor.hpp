@@ -76,6 +76,9 @@ class EarlyMonitor : public EarlyBackend {
     // Violation and satisfaction that the newest sample causes.
     [[nodiscard]] std::pair<double, double> causation_at_start() const;
     [[nodiscard]] std::pair<double, double> causation(std::size_t output, early::Tick sample) const;
+    // Runs (first, last, violation, satisfaction); the last one may never end.
+    [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
+    caused(std::size_t output) const;
     [[nodiscard]] std::optional<early::Tick> place(double time) const;
     [[nodiscard]] std::pair<double, double> known(std::uint32_t input, early::Tick sample) const;
     [[nodiscard]] double time(early::Tick sample) const;
@@ -122,6 +125,9 @@ class EarlyMonitor : public EarlyBackend {
     void transfer(Snapshot& snapshot);
     [[nodiscard]] bool in_order(early::Tick index) const noexcept;
     [[nodiscard]] PyObject* fail(const Failure& failure, early::Tick index, double time) noexcept;
+    [[nodiscard]] std::optional<Failure> observe(early::Tick index);
+    [[nodiscard]] early::Tick closed_after(early::Tick index) const noexcept;
+    [[nodiscard]] early::Tick final_up_to() const noexcept;
     void note(early::Tick before);
     [[nodiscard]] PyObject* advance(early::Tick index, double time);
     [[nodiscard]] early::Tick lag(std::size_t output) const;

@@ -66,7 +66,7 @@ std::optional<std::pair<double, double>> EarlyMonitor::bounds(std::size_t output
 }
 
 Tick EarlyMonitor::held(std::size_t output) const {
-    return std::max<Tick>(0, early::plus(closed_ + 1, -lag(output)) - 1);
+    return std::max<Tick>(0, early::plus(final_up_to() + 1, -lag(output)) - 1);
 }
 
 std::vector<std::tuple<Tick, Tick, double, double>>
@@ -120,6 +120,17 @@ std::pair<double, double> EarlyMonitor::causation_at_start() const {
 std::pair<double, double> EarlyMonitor::causation(std::size_t output, Tick sample) const {
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     return caused_of(causes_.value().at(output, sample));
+}
+
+std::vector<std::tuple<Tick, Tick, double, double>> EarlyMonitor::caused(std::size_t output) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    std::vector<std::tuple<Tick, Tick, double, double>> result;
+    const Tick last = finished_ ? times_.newest() : forever;
+    for (const early::Change& run : causes_.value().runs(output, last)) {
+        const auto [violation, satisfaction] = caused_of(run.bounds);
+        result.emplace_back(run.l, run.r, violation, satisfaction);
+    }
+    return result;
 }
 
 std::optional<Tick> EarlyMonitor::place(double time) const {

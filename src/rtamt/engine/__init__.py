@@ -14,6 +14,7 @@ online          watched formulas and copies, shared by the monitors
 quantifiers     monitors of quantifiers over members that come and go, in both time domains
 usage_guard     reject concurrent and reentrant use of a monitor
 native          load the compiled core
+cores           how many threads may evaluate one long trace
 user_operators  call custom operators from the core
 _core           the compiled core (``core/``); the stub describes its interface
 ==============  ============================================================================

@@ -1,6 +1,6 @@
 """The compiled back end: runs serialised programs over samples, in discrete or dense time."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -105,6 +105,65 @@ class Monitor:
     @property
     def state_bytes(self) -> int:
         """Bytes of state."""
+
+class Fleet:
+    """Runs a program for many keys; keys are an array of int64, or of characters in rows of fixed width."""
+
+    def __init__(
+        self,
+        program: bytes,
+        names: Sequence[str],
+        period: float,
+        tolerance: float,
+        restart: bool,
+        capacity: int,
+        state: bytes | None = None,
+    ) -> None: ...
+    def update(
+        self,
+        keys: NDArray[Any],
+        times: NDArray[np.float64],
+        columns: Sequence[NDArray[np.float64]],
+        outputs: Sequence[
+            tuple[NDArray[np.float64], NDArray[np.uint8], NDArray[np.float64], NDArray[np.uint8]]
+        ],
+    ) -> tuple[int, str, int, float | None, int, float | None] | None:
+        """Take a batch and fill the arrays of each output: values, known, when, warming.
+
+        Return None, or why the batch was rejected: index, reason, samples of the key so far (or the sample of the
+        undefined value), time of the last one, instruction or input, and time of the undefined value.
+        """
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """Forget keys; return the index of the first that is not there, and forget none then."""
+
+    def expire(self, before: float) -> int:
+        """Forget keys whose last sample is before a time; return how many."""
+
+    def contains(self, keys: NDArray[Any]) -> bool:
+        """Whether the first key of an array is there."""
+
+    def keys(self) -> list[int] | list[str] | list[bytes]:
+        """All keys."""
+
+    def snapshot(self) -> bytes:
+        """The state of all keys."""
+
+    @property
+    def size(self) -> int:
+        """How many keys there are."""
+
+    @property
+    def capacity(self) -> int:
+        """How many keys there may be."""
+
+    @property
+    def record_size(self) -> int:
+        """Bytes of state a key."""
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes of state by now."""
 
 class DenseMonitor:
     """Runs a program online in dense time, one instant or one chunk at a time; times are ticks."""
@@ -241,6 +300,9 @@ class EarlyMonitor:
     def causation(self, output: int, sample: int) -> tuple[float, float]:
         """Violation and satisfaction that the newest sample causes for an output at a sample."""
 
+    def caused(self, output: int) -> list[tuple[int, int, float, float]]:
+        """The same as runs (first, last, violation, satisfaction), where there is any."""
+
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""
 
@@ -277,16 +339,19 @@ class EarlyMonitor:
 class DenseEarlyMonitor:
     """The same in dense time. Times are ticks, and runs reach from ``begin`` up to but excluding ``end``.
 
-    ``lateness``: by how many ticks a sample may come late after the newest one of any input; None where those of each
-    input come in order. ``verdicts``: verdicts, not bounds. ``causes`` as for EarlyMonitor. What stands for no
-    tick is ``compiler.early.NEVER``.
+    ``groups``: formulas whose traces start at the same instant: (nodes, outputs, origin, inputs, causes), these as for
+    EarlyMonitor and inputs the numbers of those that form the trace. The first ``required`` ones are those of
+    requirements, of which the start reports the minimum. ``outputs``: where each is, (group, output); the first may be
+    the minimum of several. ``lateness``: by how many ticks a sample may come late after the newest one of any input;
+    None where those of each input come in order. ``verdicts``: verdicts, not bounds. What stands for no tick is
+    ``compiler.graph.NEVER``.
     """
 
     def __init__(
         self,
-        nodes: Sequence[tuple[Any, ...]],
-        outputs: Sequence[int],
-        origin: Sequence[tuple[Any, ...]],
+        groups: Sequence[tuple[Any, ...]],
+        required: int,
+        outputs: Sequence[Sequence[tuple[int, int]]],
         ranges: Sequence[tuple[float, float]],
         names: Sequence[str],
         ignored: Collection[str] | None,
@@ -294,7 +359,6 @@ class DenseEarlyMonitor:
         lateness: int | None,
         verdicts: bool,
         replays: bool = False,
-        causes: tuple[Any, ...] | None = None,
     ) -> None: ...
     def set_time_scale(self, verdict: type, rate: float) -> None:
         """Let update() take times in numbers of ``rate`` ticks each, and return objects of a class like VerdictRun."""
@@ -384,8 +448,13 @@ class Evaluator:
     """Runs a program without calls over whole traces."""
 
     def __init__(self, program: bytes) -> None: ...
-    def run(self, columns: list[NDArray[np.float64]], n: int) -> list[NDArray[np.float64]]:
-        """Run over columns of n samples, one an input; return n values an output."""
+    def run(
+        self, columns: list[NDArray[np.float64]], n: int, threads: Callable[[], int] | None = None
+    ) -> list[NDArray[np.float64]]:
+        """Run over columns of n samples, one an input; return n values an output.
+
+        A long trace is evaluated by at most threads() threads.
+        """
 
     def run_rows(
         self, columns: list[NDArray[np.float64]], rows: int, n: int

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.compiler.program import CallSite, Program
+    from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
     from rtamt.signals.outcomes import BoundedSignal
 
@@ -136,6 +137,17 @@ class Compiled(Backend):
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
     ) -> Callable[[Any], list[BoundedSignal]]:
         """Return the bounds of formulas of built-in operators, see :meth:`bounds`."""
+
+    @abstractmethod
+    def stored(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> StoredPlan:
+        """Compile formulas to a plan without formulas; arguments as for :meth:`evaluator`.
+
+        Raises :class:`UsageError` for a custom operator.
+        """
+
+    @abstractmethod
+    def stored_evaluator(self, plan: StoredPlan) -> Callable[[Any], Sequence[Any]]:
+        """Return what :meth:`evaluator` does, from a plan without formulas."""
 
     def require(self) -> None:
         """See :class:`Backend`."""

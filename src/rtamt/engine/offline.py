@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.engine import engine_of
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from fractions import Fraction
 
     from rtamt.engine.engine import Engine
     from rtamt.language.formula import Formula
@@ -61,9 +60,6 @@ class Evaluators:
     def __init__(self, backend: str) -> None:
         self._backend = backend
         self._evaluators: dict[Any, Callable[[Any], Sequence[Any]]] = {}
-        # The last formulas and step of a recording without bounds, and their evaluator: to look them up in the
-        # dictionary takes as long as to evaluate a short trace.
-        self._last: tuple[tuple[Formula, ...], Fraction, tuple[str, ...], Any] | None = None
 
     def __reduce__(self) -> tuple[type[Evaluators], tuple[str]]:
         return Evaluators, (self._backend,)  # a copy compiles anew
@@ -74,24 +70,19 @@ class Evaluators:
 
     def signals(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
-        last = self._last
-        if (
-            last is not None
-            and last[0] is formulas
-            and last[1] is recording.step
-            and last[2] == (*recording.columns,)
-            and not recording.bounds
-        ):
-            return recording.signals(last[3](recording))
         if recording.bounds and (asked := presences(*formulas)):
             formulas = tuple(map(tracked, formulas))
             recording = recording.with_presence({name: channel_of(name) for name in asked})
         evaluator: Any = self._evaluator(formulas, recording)
         if recording.bounds:
             return list(evaluator(recording))
-        # Python calls a method faster than an object.
-        self._last = formulas, recording.step, tuple(recording.columns), evaluator.__call__
         return recording.signals(evaluator(recording))
+
+    def prepared(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> Callable[[Any], Any]:
+        """Return what computes the values of formulas over recordings with this step and these variables, all known."""
+        evaluator: Any = self._evaluator(formulas, recording)
+        evaluate: Callable[[Any], Any] = evaluator.__call__
+        return evaluate  # Python calls a method faster than an object
 
     def rows(
         self, formulas: tuple[Formula], one: DomainTrace, columns: Mapping[str, FloatArray]

@@ -1,4 +1,7 @@
-"""Offline bounds: formulas and a finished recording that is known in part to [L, U] at every instant."""
+"""Offline bounds: formulas and a finished recording that is known in part to [L, U] at every instant.
+
+The definitions are imported on use: the start of most programs would pay for them.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.reference import dense_bounds, discrete_bounds
-from rtamt.reference.dense_bounds import DenseKnowledge
-from rtamt.reference.discrete_bounds import Knowledge
 from rtamt.signals.outcomes import BoundedSignal
 
 if TYPE_CHECKING:
@@ -25,16 +24,21 @@ if TYPE_CHECKING:
 
 def discrete(formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
     """Return the bounds of a formula over a recording in discrete time, by the definition."""
+    from rtamt.language.definitions.enclosures import Enclosure
+    from rtamt.reference.discrete_bounds import Knowledge, bounds
+
     columns = {name: Enclosure(*ends) for name, ends in trace.bounds.items()}
     known = Knowledge(columns, len(trace), finished=True)
-    found = discrete_bounds.bounds(formula, known, trace.period, float(trace.times[0]))
+    found = bounds(formula, known, trace.period, float(trace.times[0]))
     return BoundedSignal(trace.timestamps, found.lower, found.upper)
 
 
 def dense(formula: Formula, trace: DenseTrace) -> BoundedSignal:
     """Return the bounds of a formula over a recording in dense time, by the definition."""
+    from rtamt.reference.dense_bounds import DenseKnowledge, bounds
+
     samples = {name: tuple(each.tolist() for each in steps) for name, steps in signal_bounds(trace).items()}
-    steps = dense_bounds.bounds(formula, DenseKnowledge(samples, finished=True), trace.scale.tick)
+    steps = bounds(formula, DenseKnowledge(samples, finished=True), trace.scale.tick)
     return bounded_signal(trace, np.array(steps.times), np.array(steps.lower), np.array(steps.upper))
 
 

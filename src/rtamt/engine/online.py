@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -11,6 +10,7 @@ from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding
@@ -180,6 +180,22 @@ class OnlineMonitor:
         self.__dict__.update(fresh.__dict__)
         self._usage = usage
         self._connect(self._session.open())
+
+    # ---- many keys ---------------------------------------------------------------------------------
+
+    def records(
+        self,
+        capacity: int,  # noqa: ARG002 - here there are none
+        *,
+        restart: bool,  # noqa: ARG002
+        state: bytes | None,  # noqa: ARG002
+        identities: Mapping[str, str],  # noqa: ARG002
+    ) -> Any:
+        """Return what monitors this formula for many keys at once; None where each key needs a monitor.
+
+        See :class:`rtamt.engine.discrete.fleet.DiscreteFleet`.
+        """
+        return None
 
     # ---- copies ----------------------------------------------------------------------------------
 

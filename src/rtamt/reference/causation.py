@@ -35,8 +35,10 @@ _Part = tuple[Formula, int]
 NOTHING = Causation(inf, -inf)
 
 
-def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> list[Causation]:
+def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | None = None) -> list[Causation]:
     """Return how the last sample of ``known`` affects the formula at samples 0 to m - 1.
+
+    ``m``: by default so many that all later samples are affected as the last one.
 
     The formula must have causation: no share of a window (``rewrite.early.causeless``).
 
@@ -50,7 +52,9 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int) -> l
     [Causation(violation=-1.0, satisfaction=-inf)]
     """
     core = desugar(ground(formula, period))
-    causes = _Causes(known, period, m + known.n + sum(_reach(node, period) + 1 for node in postorder(core)))
+    reach = sum(_reach(node, period) + 1 for node in postorder(core))
+    m = known.n + reach if m is None else m
+    causes = _Causes(known, period, m + known.n + reach)
     return [causes.at(core, t) for t in range(m)]
 
 

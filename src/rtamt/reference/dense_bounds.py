@@ -7,7 +7,6 @@ Elsewhere only the declared range is known, until no more samples come: then the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import inf, isnan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
@@ -18,6 +17,7 @@ from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import undefined
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
@@ -27,7 +27,7 @@ from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizons
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
     #: Times in ticks, and the lower and the upper bound of the value from each of them on.
@@ -120,7 +120,14 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
         return min(last, (complete - int(depth / tick)) * QUARTERS)
 
     def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
-        return _defined(_apply(node, below, signals, origin, tick), node, formula, final(node), tick)
+        value = _apply(node, below, signals, origin, tick)
+
+        def certain(t: int) -> bool:
+            """Return whether operands are numbers at an instant of the trace, or will not be known better."""
+            exact = start is not None and t <= last and all(x.lower.at(t) == x.upper.at(t) for x in below)
+            return exact or t <= final(node)
+
+        return _defined(value, node, formula, certain, tick)
 
     with np.errstate(all="ignore"):
         lower, upper = fold(core, step)
@@ -217,17 +224,19 @@ def _apply(
     )
 
 
-def _defined(value: _Signal, node: Formula, formula: Formula, final: float, tick: Fraction) -> _Signal:
-    """Raise the error for a final value that does not exist; one that is not final may be anything."""
+def _defined(
+    value: _Signal, node: Formula, formula: Formula, certain: Callable[[int], bool], tick: Fraction
+) -> _Signal:
+    """Raise the error for a value that certainly does not exist; one that is not certain may be anything."""
     times = sorted({*value.lower.times, *value.upper.times})
     pairs = [(value.lower.at(t), value.upper.at(t)) for t in times]
     wrong = [i for i, pair in enumerate(pairs) if any(map(isnan, pair))]
     if not wrong:
         return value
-    first = times[wrong[0]]
-    if first <= final:
-        seconds = float(first * tick / QUARTERS)
-        raise undefined(written(node, [formula]), f"time {seconds:.15g} s")
+    for i in wrong:
+        if certain(times[i]):
+            seconds = float(times[i] * tick / QUARTERS)
+            raise undefined(written(node, [formula]), f"time {seconds:.15g} s")
     for i in wrong:
         pairs[i] = (-inf, inf)
     return _Signal(merged(times, [low for low, _ in pairs]), merged(times, [high for _, high in pairs]))

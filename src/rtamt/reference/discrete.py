@@ -9,7 +9,6 @@ It trusts its caller: bounds are whole multiples of the period, inputs hold no N
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import lcm
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -19,6 +18,7 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sum, Tense
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.reference.definition_adapter import arguments_of, values_of
 from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds

@@ -10,7 +10,6 @@ It shares nothing with the engines but the formula, and trusts its caller as ``d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf, isnan, nan
 from typing import TYPE_CHECKING, TypeAlias
@@ -22,6 +21,7 @@ from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.reference.definition_adapter import arguments_of
 from rtamt.rewrite.desugar import desugar, written
 from rtamt.rewrite.ground import ground
@@ -86,8 +86,11 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
         if wrong.any():
             depth = ahead[id(node)]
             final = known.n if known.finished else 0 if depth is None else closed - int(depth / period)
-            i = int(wrong.argmax())
-            if i < final:
+            # Known exactly, or not better later.
+            certain = _exact(node, below, len(wrong)) & (np.arange(len(wrong)) < known.n)
+            certain[: max(0, final)] = True
+            if (wrong & certain).any():
+                i = int((wrong & certain).argmax())
                 culprit = written(node, [formula])
                 raise undefined(culprit, at_sample(i, start + float(i * period)))
             value = Enclosure(np.where(wrong, -inf, value.lower), np.where(wrong, inf, value.upper))
@@ -95,6 +98,15 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
 
     with np.errstate(all="ignore"):
         return _merged(fold(core, step), known)
+
+
+def _exact(node: Formula, below: tuple[Enclosure, ...], n: int) -> NDArray[np.bool_]:
+    """Return at which of n samples operands are numbers; those of sums are wherever they have no value."""
+    if not isinstance(node, Apply) or node.op.extension is None:
+        return np.ones(n, np.bool_)
+    operands = [_padded(x, n) for x in below]
+    exact: NDArray[np.bool_] = np.all([x.lower[:n] == x.upper[:n] for x in operands], axis=0)
+    return exact
 
 
 def _merged(value: Enclosure, known: Knowledge) -> Enclosure:

@@ -8,6 +8,8 @@ module                purpose
 robustness_and_truth  the two outputs of a requirement: robustness and Boolean truth
 decompose             split a formula into windows that start at the first sample
 trackers              the value and the first violation of a formula that was split
+prepared              many requirements as programs: robustness, truth and first violation
+preparation           compile many requirements to such programs
 offline               first violations in a finished trace
 streaming             ``check_stream``: check a recording in chunks with bounded memory
 chunks                requirements over chunks: what a monitor computes for them, and their results

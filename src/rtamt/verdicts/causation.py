@@ -18,11 +18,12 @@ from rtamt.verdicts.early import EarlyMonitor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.compiler.causation import Causes
     from rtamt.compiler.graph import Graph
     from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
-    from rtamt.signals.outcomes import Causation
+    from rtamt.signals.outcomes import Causation, CausationRun
 
 
 def _check_causes(formula: Formula, text: str | None, watch: Sequence[Watched]) -> None:
@@ -59,8 +60,8 @@ class CausationMonitor(EarlyMonitor):
         self._forget()
         self._prepare()
 
-    def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
-        self._causes = compile_causes(graph, outputs)
+    def _causes_of(self, graph: Graph, outputs: Sequence[Formula]) -> Causes:
+        return compile_causes(graph, outputs)
 
     if TYPE_CHECKING:  # by the base
 
@@ -70,6 +71,10 @@ class CausationMonitor(EarlyMonitor):
     @abstractmethod
     def finish(self) -> Causation | None:
         """End the trace; return what that causes at the start, None if it causes nothing."""
+
+    @abstractmethod
+    def runs(self) -> list[CausationRun]:
+        """Return the runs of instants for which the last call caused something, also later than the newest sample."""
 
     def _require_bounded(self) -> None:
         if not self._bounded:

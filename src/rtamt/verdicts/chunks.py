@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.episodes import WindowTracker
 from rtamt.verdicts.decompose import Anchored, Leaf, anchor, check_in_chunks

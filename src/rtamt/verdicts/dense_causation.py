@@ -132,7 +132,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         return Causation(*found)
 
     def runs(self) -> list[CausationRun]:
-        """Return the runs of instants for which the last call caused something, also later than the newest sample."""
+        """See :meth:`CausationMonitor.runs`."""
         self._require_bounded()
         rows = self._backend.caused(0)
         begins = self._times([row[0] for row in rows])

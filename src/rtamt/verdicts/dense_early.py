@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import own_variables
+from rtamt.language.operators import STL
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.desugar import written
@@ -21,7 +23,7 @@ from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import Causation, VerdictRun
 from rtamt.signals.ticks import TimeScale
-from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
+from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession, Group
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -59,20 +61,75 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     def _prepare(self) -> None:
         """Open the first monitor of the back end."""
-        traces = {frozenset(own_variables(each, self._inputs)) for each in self._requirements}
-        if len(traces) == 1:
-            self._session = self._compiled() if self._chosen.compiled else self._defined()
-        else:  # requirements whose traces start at different instants are left to the definition
-            self._session = self._defined()
+        self._session = self._compiled() if self._chosen.compiled else self._defined()
         self._connect(self._session.open())
 
+    def _grouped(self, domain: type[TimeDomain], *, start: bool) -> tuple[Group, ...]:
+        """See :class:`EarlyMonitor`: formulas whose traces start at different instants are in different groups."""
+        wanted: dict[tuple[str, ...], list[Formula]] = {}
+        for each in self._requirements:
+            wanted.setdefault(self._trace_of(each), []).append(each)
+        if len(wanted) == 1:
+            (only,) = super()._grouped(domain, start=start)
+            self._traces: tuple[tuple[str, ...], ...] = (self._inputs,)
+            self._required = 1
+            self._places: list[list[tuple[int, int]]] = [[(0, output)] for output in self._outputs]
+            return (only,)
+        self._required = len(wanted)
+        formulas = [[reduce(STL["and"], parts)] for parts in wanted.values()]
+        traces = list(wanted)
+        shown = range(0 if self._hidden else self._required)
+        self._places = [[(number, 0) for number in shown]] if shown else []
+        for watched in self._formulas[1:]:
+            trace = self._trace_of(watched) if watched in self._requirements else self._inputs
+            if trace not in traces:
+                traces.append(trace)
+                formulas.append([])
+            number = traces.index(trace)
+            hidden = self._hidden if number < self._required else 0
+            self._places.append([(number, len(formulas[number]) - hidden)])
+            formulas[number].append(watched)
+        self._traces = tuple(traces)
+        return tuple(
+            self._group(
+                each,
+                trace,
+                domain,
+                start=start and number < self._required,
+                hidden=self._hidden if number < self._required else 0,
+            )
+            for number, (each, trace) in enumerate(zip(formulas, traces, strict=True))
+        )
+
+    def _trace_of(self, formula: Formula) -> tuple[str, ...]:
+        """Return the variables that form the trace of a requirement, in order."""
+        own = own_variables(formula, self._inputs)
+        return tuple(name for name in self._inputs if name in own)
+
+    def _lag(self, output: int) -> int:
+        found = [
+            self._groups[group].graph.horizon(self._groups[group].outputs[place])
+            for group, place in self._places[output]
+        ]
+        return max(0, *found)
+
     def _compiled(self) -> GraphSession:
+        groups = [
+            (
+                graph.nodes,
+                outputs,
+                graph.items,
+                [self._inputs.index(name) for name in trace],
+                None if causes is None else (*causes, Causation),
+            )
+            for (graph, outputs, causes, _), trace in zip(self._groups, self._traces, strict=True)
+        ]
         return GraphSession(
-            self._graph,
+            [group.graph for group in self._groups],
             "DenseEarlyMonitor",
-            self._graph.nodes,
-            self._outputs,
-            self._graph.items,
+            groups,
+            self._required,
+            self._places,
             self._known_ranges(),
             list(self._inputs),
             self._unread,
@@ -80,12 +137,11 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._late,
             self._verdict is not None,
             self._replays,
-            None if self._causes is None else (*self._causes, Causation),
         )
 
     def _defined(self) -> DefinitionSession:
         return DefinitionSession(
-            self._graph,
+            [group.graph for group in self._groups],
             PythonDenseEarlyMonitor,
             [self._output_with_names(formula) for formula in self._formulas],
             self._hidden,
@@ -94,6 +150,7 @@ class DenseEarlyMonitor(EarlyMonitor):
             self._step,
             self._late,
             self._verdict is not None,
+            any(group.causes is not None for group in self._groups),
         )
 
     def _connect(self, backend: Any) -> None:
@@ -113,9 +170,8 @@ class DenseEarlyMonitor(EarlyMonitor):
     def _output_with_names(self, formula: Formula) -> Output:
         """Return a formula with the variables of its trace; the result as its requirements, each with its own."""
         if formula is self._formulas[0]:
-            return [(each, own_variables(each, self._inputs)) for each in self._requirements]
-        names = own_variables(formula, ()) if formula in self._requirements else self._inputs
-        return [(formula, names or self._inputs)]
+            return [(each, self._trace_of(each)) for each in self._requirements]
+        return [(formula, self._trace_of(formula) if formula in self._requirements else self._inputs)]
 
     def _forget(self) -> None:
         super()._forget()

@@ -179,7 +179,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
     def _change(
         self, begin: int, end: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
     ) -> Change:
-        lag = max(0, self._graph.horizon(self._outputs[output]))
+        lag = self._lag(output)
         complete = self._backend.complete
         final = self._finished or lower == upper or (lag < FOREVER and end - 1 + lag <= complete)
         first, last = self._times([begin, end])
@@ -191,7 +191,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         if not self._finished:
             self._require_samples()
             backend = self._backend
-            outputs = range(len(self._outputs))
+            outputs = self._outputs
             before = [backend.runs(output) for output in outputs]
             try:
                 backend.finish()

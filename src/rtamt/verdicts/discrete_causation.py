@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.engine.online import time_of
 from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import UsageError
-from rtamt.signals.outcomes import Causation
+from rtamt.signals.outcomes import Causation, CausationRun
 from rtamt.verdicts.causation import CausationMonitor, not_exact
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
@@ -71,6 +72,20 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
             raise UsageError(f"there is no sample at {stamp:.15g} s")
         return Causation(*backend.causation(0, sample))
 
+    def runs(self) -> list[CausationRun]:
+        """See :meth:`CausationMonitor.runs`."""
+        self._require_bounded()
+        backend, clock = self._backend, self._clock
+        return [
+            CausationRun(
+                clock.time(backend.time(first)),
+                None if last >= FOREVER else clock.time(backend.time(last)),
+                violation,
+                satisfaction,
+            )
+            for first, last, violation, satisfaction in backend.caused(0)
+        ]
+
     def __getitem__(self, name: str | Formula) -> Causation:
         """Return what the newest sample causes for a formula that is watched, at the start of the trace."""
         return Causation(*self._backend.causation(self._output(name) - self._hidden, 0))
@@ -78,5 +93,6 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
     @exclusive
     def finish(self) -> None:
         """End the trace; the causation of every sample is already known."""
-        self._finished = True
-        self._backend.finish()
+        if not self._finished:
+            self._end()
+            self._finished = True

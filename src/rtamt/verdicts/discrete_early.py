@@ -56,8 +56,9 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         self._connect(self._session.open())
 
     def _defined(self) -> DefinitionSession:
+        (group,) = self._groups
         return DefinitionSession(
-            self._graph,
+            [group.graph],
             PythonEarlyMonitor,
             self._formulas,
             self._hidden,
@@ -67,16 +68,17 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._tolerance,
             self._late,
             self._verdict,
-            self._causes is not None,
+            group.causes is not None,
         )
 
     def _compiled(self) -> GraphSession:
+        (group,) = self._groups
         return GraphSession(
-            self._graph,
+            [group.graph],
             "EarlyMonitor",
-            self._graph.nodes,
-            self._outputs,
-            self._graph.items,
+            group.graph.nodes,
+            group.outputs,
+            group.graph.items,
             self._known_ranges(),
             list(self._inputs),
             self._unread,
@@ -86,7 +88,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._late,
             self._verdict,
             self._replays,
-            None if self._causes is None else (*self._causes, Causation),
+            None if group.causes is None else (*group.causes, Causation),
         )
 
     def _connect(self, backend: Any) -> None:
@@ -192,6 +194,13 @@ class DiscreteEarlyMonitor(EarlyMonitor):
                 raise in_use() from None
             except self._undefined as error:
                 raise self._no_value(error) from None
+
+    def _end(self) -> Any:
+        """End the trace in the back end; all that is known then is final."""
+        try:
+            return self._backend.finish()
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
     def _as_given(self, found: Any) -> Any:
         """Return a result of the back end with times in the caller's format."""

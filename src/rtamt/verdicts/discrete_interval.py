@@ -78,7 +78,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             observations = tuple((k, 0.0, 0.0) for k in open_here)
             backend.learn(time, list(observations), backend.samples)
             self._filled += 1
-            for output in range(len(self._outputs)):
+            for output in self._outputs:
                 changed = (*self._noted.get(output, ()), *backend.changes(output))
                 self._noted = {**self._noted, output: changed}
             if self._replays:
@@ -239,8 +239,12 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
     ) -> Change:
         backend = self._backend
-        lag = max(0, self._graph.horizon(self._outputs[output]))
-        final = self._finished or lower == upper or (lag < FOREVER and last + lag <= backend.closed)
+        lag = self._lag(output)
+        final = (
+            self._finished
+            or lower == upper
+            or (lag < FOREVER and last + lag <= min(backend.closed, backend.newest))
+        )
         begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
         return Change(begin, end, Interval(lower, upper), final, retracted)
 
@@ -253,11 +257,11 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             backend = self._backend
             before = [
                 {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
-                for output in range(len(self._outputs))
+                for output in self._outputs
             ]
             if self._late is not None:
                 self._fill(backend.newest)
-            rest, at_end = backend.finish()
+            rest, at_end = self._end()
             self._at_end = None if at_end is None else Interval(*at_end)
             self._rest = tuple(rest)
             # In one class of formulas the end changes bounds that had met.

@@ -76,8 +76,9 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
         """End the trace; return the verdicts that were still open."""
         if self._finished:
             return []
+        news: list[Verdict] = self._as_given(self._end())
         self._finished = True
-        return self._as_given(self._backend.finish())  # type: ignore[no-any-return]
+        return news
 
     def __getitem__(self, name: str | Formula) -> list[Verdict]:
         """Return the verdicts of a formula that is watched which the last call settled."""

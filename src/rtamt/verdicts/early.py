@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from functools import partial
 from math import inf, isnan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Session
@@ -37,10 +37,10 @@ if TYPE_CHECKING:
 
 
 class GraphSession(Session):
-    """A graph that monitors of the core run: ``monitor`` is their class in ``_core``, the rest are its arguments."""
+    """Graphs that monitors of the core run: ``monitor`` is their class in ``_core``, the rest are its arguments."""
 
-    def __init__(self, graph: Graph, monitor: str, *settings: Any) -> None:
-        self._graph = graph
+    def __init__(self, graphs: Sequence[Graph], monitor: str, *settings: Any) -> None:
+        self._graphs = graphs
         self._monitor = getattr(core(), monitor)
         self._settings = settings
         self.refused = core().Refused
@@ -53,14 +53,14 @@ class GraphSession(Session):
     @property
     def fingerprint(self) -> bytes:
         """See :class:`Session`."""
-        return self._graph.fingerprint()
+        return b"".join(graph.fingerprint() for graph in self._graphs)
 
 
 class DefinitionSession(Session):
-    """A graph whose formulas are evaluated by definition: ``monitor`` does, the rest are its arguments."""
+    """Graphs whose formulas are evaluated by definition: ``monitor`` does, the rest are its arguments."""
 
-    def __init__(self, graph: Graph, monitor: Callable[..., Any], *settings: Any) -> None:
-        self._graph = graph
+    def __init__(self, graphs: Sequence[Graph], monitor: Callable[..., Any], *settings: Any) -> None:
+        self._graphs = graphs
         self._monitor = monitor
         self._settings = settings
 
@@ -71,7 +71,16 @@ class DefinitionSession(Session):
     @property
     def fingerprint(self) -> bytes:
         """See :class:`Session`."""
-        return self._graph.fingerprint()
+        return b"".join(graph.fingerprint() for graph in self._graphs)
+
+
+class Group(NamedTuple):
+    """Formulas over one trace: their graph, the references of what is reported, and the values of parameters."""
+
+    graph: Graph
+    outputs: list[int]
+    causes: Causes | None
+    values: Mapping[str, float]
 
 
 class EarlyMonitor(OnlineMonitor):
@@ -111,22 +120,48 @@ class EarlyMonitor(OnlineMonitor):
         self._inputs = (*self.input_names, *self._channels.values())
         # A formula that is asked for at the start alone is no output.
         self._hidden = 0 if every else 1
-        shape = Shape.of(self._formulas)
-        graph = shape.graph(step, self._inputs, type(domain), start=start, apart=self._apart)
-        self._extend(graph, shape.expanded()[self._hidden :])
-        self._graph = graph.with_parameters(shape.values)
-        self._outputs = self._graph.outputs[self._hidden :]
+        self._groups = self._grouped(type(domain), start=start)
+
+    def _grouped(self, domain: type[TimeDomain], *, start: bool) -> tuple[Group, ...]:
+        """Return what the back end runs, in the order of its steps: all formulas over one trace."""
+        return (self._group(self._formulas, self._inputs, domain, start=start, hidden=self._hidden),)
+
+    def _group(
+        self,
+        formulas: Sequence[Formula],
+        inputs: tuple[str, ...],
+        domain: type[TimeDomain],
+        *,
+        start: bool,
+        hidden: int,
+    ) -> Group:
+        shape = Shape.of(formulas)
+        graph = shape.graph(self._step, inputs, domain, start=start, apart=self._apart)
+        causes = self._causes_of(graph, shape.expanded()[hidden:])
+        graph = graph.with_parameters(shape.values)
+        return Group(graph, graph.outputs[hidden:], causes, shape.values)
 
     def _origin(self, step: int) -> Formula:
-        """Return the core formula that a step of the graph computes."""
-        values = Shape.of(self._formulas).values
-        return with_values([self._graph.origins[step]], values)[0]
+        """Return the core formula that a step of the graphs computes."""
+        for graph, _, _, values in self._groups:
+            if step < len(graph.origins):
+                return with_values([graph.origins[step]], values)[0]
+            step -= len(graph.origins)
+        raise IndexError(step)
 
-    def _extend(self, graph: Graph, outputs: Sequence[Formula]) -> None:
-        """Add what a monitor needs besides the core formulas of its outputs."""
+    def _lag(self, output: int) -> int:
+        """Return how many steps after an instant the value of an output is final at the latest."""
+        group = self._groups[0]
+        return max(0, group.graph.horizon(group.outputs[output]))
 
-    #: Of monitors of causation: the parts of the formulas that causes are computed of.
-    _causes: Causes | None = None
+    @property
+    def _outputs(self) -> range:
+        """The numbers of the formula, unless it is asked for at the start alone, and of what is watched."""
+        return range(len(self._formulas) - self._hidden)
+
+    def _causes_of(self, graph: Graph, outputs: Sequence[Formula]) -> Causes | None:
+        """Return the parts that causes are computed of, and add to the graph what they need: for causation alone."""
+
     #: Whether each predicate is a node of the graph.
     _apart = False
     #: By how many steps at most a sample may be late; None where all come in order.

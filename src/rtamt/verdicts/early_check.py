@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ import numpy as np
 from rtamt.engine.online import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays

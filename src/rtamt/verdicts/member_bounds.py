@@ -313,7 +313,7 @@ class MemberIntervalMonitor(SampledMembers):
 
     def _note(self) -> None:
         """Note what an update of the outer monitor has changed."""
-        for output in range(len(self._outer._outputs)):
+        for output in self._outer._outputs:
             self._changed[output] = self._changed.get(output, {}) | self._outer.shrunk(output)
 
     # ---- answers -----------------------------------------------------------------------------------
@@ -348,7 +348,7 @@ class MemberIntervalMonitor(SampledMembers):
         """End the trace; return the bounds that were still open, which are final now."""
         if not self._finished:
             outer = self._outer
-            outputs = range(len(outer._outputs))
+            outputs = outer._outputs
             known = {output: outer.known(output) for output in outputs}
             for each in self._quantifiers:
                 for place, bounds in each.finish(self._times).items():

@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -20,6 +19,7 @@ from rtamt.language.parameters import bounds_of
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
@@ -213,5 +213,5 @@ def _meanings(program: Program, formulas: Iterable[Formula]) -> dict[int, str]:
     return {
         i: _label(written.get(formula, formula))
         for i, formula in enumerate(program.origins)
-        if isinstance(formula, Apply) and program.value_of.get(formula) == i
+        if isinstance(formula, Apply)
     }

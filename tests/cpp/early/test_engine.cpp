@@ -228,8 +228,7 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     // Bounds outside its domain wait for better ones, unless none will come.
     const Observation open{0, 4, 4, {-3, -2}};
     REQUIRE(!engine.learn(std::span(&open, 1), 4));
-    const std::array<Tick, 2> settled{4, -1};
-    engine.settle_inputs(settled);
+    engine.settle_inputs(4);
     const Observation closed{0, 4, 4, {-3, -2.5}};
     CHECK(engine.learn(std::span(&closed, 1), 4));
 }

@@ -16,17 +16,19 @@ from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
 from rtamt.reference import discrete as reference
 from rtamt.reference import discrete_bounds, earliest
+from rtamt.reference.causation import NOTHING
 from rtamt.reference.discrete_bounds import ANYTHING
 from rtamt.rewrite.early import causeless, ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
+from rtamt.signals.outcomes import Causation
 from tests.laws.early.definition import DEFINITION, PERIOD
+from tests.laws.early.monitors import PYTHON
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.outcomes import Causation
     from tests.laws.early.cases import Case
     from tests.laws.early.definition import Implementation
 
@@ -163,6 +165,35 @@ def any_order(case: Case, made: Implementation, order: list[int]) -> None:
     assert finals[0] == finals[1]
 
 
+def fails_alike(case: Case, made: Implementation, order: list[int], lateness: int) -> None:
+    """The same samples, in any order within the lateness, fail as with the Python back end; or the end does."""
+    for kind in ("interval", "eager"):
+        if kind == "eager" and lateness:
+            continue
+        arguments = (case.formula, case.names, case.ranges)
+        both = [
+            each.interval(*arguments, lateness) if kind == "interval" else each.eager(*arguments)
+            for each in (made, PYTHON)
+        ]
+        for i in order:
+            values = {name: given(known) for name, known in case.samples[i].items()}
+            failed = [_fails(monitor.update, i, **values) for monitor in both]
+            assert failed[0] == failed[1]
+            if failed[0]:
+                break
+        else:
+            failed = [_fails(monitor.finish) for monitor in both]
+            assert failed[0] == failed[1]
+
+
+def _fails(call: Callable[..., Any], *args: Any, **values: Any) -> str | None:
+    try:
+        call(*args, **values)
+    except EvaluationError as error:
+        return str(error)
+    return None
+
+
 def tight(case: Case, made: Implementation, most: int = 200) -> None:
     """Where the static check claims it, some trace that agrees with the samples attains each bound.
 
@@ -269,7 +300,13 @@ def causation_as_defined(case: Case, made: Implementation) -> None:
     instants = range(case.n) if horizon(case.formula) is not None else None
     monitor, definition = made.causation(case.formula), DEFINITION.causation(case.formula)
     for i, row in enumerate(case.samples):
-        assert _causation(monitor, i, row, instants) == _causation(definition, i, row, instants)
+        expected = _causation(definition, i, row, instants)
+        assert _causation(monitor, i, row, instants) == expected
+        runs = monitor.runs() if instants else ()
+        for t, each in enumerate(expected if instants else ()):
+            here = [run for run in runs if run.begin <= t and (run.end is None or t <= run.end)]
+            found = [Causation(run.violation, run.satisfaction) for run in here]
+            assert found == ([] if each == NOTHING else [each])
 
 
 def _causation(monitor: Any, i: int, row: Mapping[str, Any], instants: range | None) -> list[Causation]:

@@ -59,6 +59,14 @@ def tight(rng: Random, made: Implementation) -> None:
     laws.tight(drawn, made)
 
 
+def fails_alike(rng: Random, made: Implementation) -> None:
+    drawn = case(rng, partial=rng.random() < 0.7)
+    order, lateness = list(range(drawn.n)), rng.choice((0, 0, drawn.n))
+    if lateness:
+        rng.shuffle(order)
+    laws.fails_alike(drawn, made, order, lateness)
+
+
 def eager(rng: Random, made: Implementation) -> None:
     laws.eager(case(rng), made)
 
@@ -113,10 +121,7 @@ def dense_corrected(rng: Random, made: Implementation) -> None:
 
 
 def dense_fails_alike(rng: Random, made: Implementation) -> None:
-    drawn = dense_case(rng)
-    while len(drawn.names) > 1:
-        drawn = dense_case(rng)
-    dense_laws.fails_alike(drawn, made)
+    dense_laws.fails_alike(dense_case(rng, partial=rng.random() < 0.5), made)
 
 
 def dense_tight(rng: Random, made: Implementation) -> None:
@@ -147,6 +152,11 @@ def specification_verdicts(rng: Random, made: Implementation) -> None:
     specifications.verdicts(rng, made.backend)
 
 
+def specification_as_defined(rng: Random, made: Implementation) -> None:
+    assert made.backend is not None
+    specifications.as_defined(rng, made.backend)
+
+
 LAWS: list[Law] = [
     sound,
     narrowing,
@@ -156,6 +166,7 @@ LAWS: list[Law] = [
     as_defined,
     any_order,
     tight,
+    fails_alike,
     eager,
     causes,
     causation_as_defined,
@@ -174,11 +185,13 @@ LAWS: list[Law] = [
     dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
+    specification_as_defined,
 ]
 
 #: Laws that compare an implementation with the definition, or with an evaluation.
 COMPARISONS: list[Law] = [
     as_defined,
+    fails_alike,
     causation_as_defined,
     dense_as_defined,
     dense_start,
@@ -187,12 +200,19 @@ COMPARISONS: list[Law] = [
     dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
+    specification_as_defined,
 ]
 
 
 def laws_of(made: Implementation) -> list[Law]:
     """Return the laws that an implementation must obey."""
-    excluded = COMPARISONS if made is DEFINITION else [dense_fails_alike] if made is PYTHON else []
+    excluded = (
+        COMPARISONS
+        if made is DEFINITION
+        else [dense_fails_alike, specification_as_defined]
+        if made is PYTHON
+        else []
+    )
     return [law for law in LAWS if law not in excluded]
 
 

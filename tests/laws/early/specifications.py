@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from contextlib import suppress
 from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,16 +16,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import rtamt
-from rtamt.errors import EvaluationError
+from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind
 from rtamt.rewrite.check import unbounded_future
+from rtamt.rewrite.early import causeless
 from rtamt.rewrite.semantics import SEMANTICS
 from tests.laws.early import cases
 from tests.laws.early.laws import NothingToCheck
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
     from random import Random
 
     from rtamt import Signal, Specification
@@ -147,9 +150,11 @@ def _watched(rng: Random, spec: Specification) -> list[str]:
     return rng.sample(names, rng.randint(0, len(names)))
 
 
-def _signal(case: Drawn, semantics: str | None = None) -> tuple[Signal, dict[str, Signal]]:
+def _signal(case: Drawn, semantics: str | None = None) -> tuple[Signal, dict[str, Signal], float]:
+    """Return the signals of the whole and of the requirements, and the least value of any at its start."""
     result = case.spec.evaluate(case.data, semantics=semantics, **case.times.settings())
-    return result.signal, {name: part.signal for name, part in result.requirements.items()}
+    parts = {name: part.signal for name, part in result.requirements.items()}
+    return result.signal, parts, result.robustness
 
 
 def _at(case: Drawn, signal: Signal) -> dict[int, float]:
@@ -165,7 +170,7 @@ def bounds(rng: Random, backend: str) -> None:
     """Bounds only become narrower, as reported and when asked for, and end in the robustness: copies too."""
     try:
         case = drawn(rng, backend)
-        signal, parts = _signal(case)
+        signal, parts, robustness = _signal(case)
     except EvaluationError:
         raise NothingToCheck from None
     every = unbounded_future(case.spec.formula) is None
@@ -196,8 +201,7 @@ def bounds(rng: Random, backend: str) -> None:
     monitor.finish()
     look()
     expected = _at(case, signal)
-    first = min(expected)
-    assert start == rtamt.Interval(expected[first], expected[first])
+    assert start == rtamt.Interval(robustness, robustness)
     if not every:
         return
     for tick, value in expected.items():
@@ -213,7 +217,7 @@ def verdicts(rng: Random, backend: str) -> None:
     """Every instant has one verdict, which is that of the whole recording under any semantics: copies too."""
     try:
         case = drawn(rng, backend)
-        signal, parts = _signal(case, "boolean")
+        signal, parts, _ = _signal(case, "boolean")
     except EvaluationError:
         raise NothingToCheck from None
     names = _watched(rng, case.spec)
@@ -237,3 +241,84 @@ def verdicts(rng: Random, backend: str) -> None:
     for name, known in told.items():
         values = _at(case, parts[name] if name else signal)
         assert known == {tick: value > 0 for tick, value in values.items()}
+
+
+def as_defined(rng: Random, backend: str) -> None:
+    """A monitor of several requirements reports what the definition does, after every event and in every mode."""
+    case = drawn(rng, backend)
+    verdict = rng.choice(("interval", "eager", "causation"))
+    every = unbounded_future(case.spec.formula) is None
+    names = _watched(rng, case.spec) if every or verdict == "eager" else []
+    if verdict == "causation" and any(
+        map(causeless, (each.formula for each in case.spec.requirements.values()))
+    ):
+        raise NothingToCheck
+    settings: dict[str, Any] = {"verdict": verdict, "watch": names, **case.times.settings()}
+    if verdict == "interval":
+        settings["ranges"] = {name: (-9.0, 9.0) for name in case.spec.input_names if rng.random() < 0.3}
+        if rng.random() < 0.3:
+            settings["lateness"] = "1s"  # so that first samples wait for the watermark
+            settings["on_correction"] = rng.choice(("reject", "replay"))
+    made = [
+        rtamt.parse(
+            case.spec.text, time=case.spec.domain, backend=each, semantics=case.spec.semantics
+        ).monitor(**settings)
+        for each in (backend, "python")
+    ]
+    low, newest = (end(tick for tick, _ in case.updates) for end in (min, max))
+    for kind, tick, row in _events(rng, case, settings):
+        found = [_after(monitor, kind, case.times.given(tick), row) for monitor in made]
+        assert found[0] == found[1]
+        if isinstance(found[0], str):
+            raise NothingToCheck
+        beyond = 0 if kind == "finish" else 3
+        for t in (*range(low, newest + 1 + beyond), None):
+            time = None if t is None else case.times.given(t)
+            asked = [_asked(monitor, verdict, time, names, every=every) for monitor in made]
+            assert asked[0] == asked[1]
+        made[0] = _twin(rng, made[0])
+
+
+def _events(
+    rng: Random, case: Drawn, settings: Mapping[str, Any]
+) -> Iterator[tuple[str, int, dict[str, Any]]]:
+    """Yield the samples of a case, some of them uncertain or corrected, a watermark, and the end."""
+    exact = settings["verdict"] == "causation"
+    for tick, row in case.updates:
+        given: dict[str, Any] = dict(row)
+        for name, value in row.items():
+            if not exact and abs(value) <= 8 and rng.random() < 0.2:
+                given[name] = rng.choice(((value - 1, value + 1), (value, value + 0.5)))
+        yield "update", tick, given
+        if settings.get("on_correction") == "replay" and rng.random() < 0.3:
+            yield "update", tick, {name: cases.value(rng) for name in row}
+    if settings["verdict"] != "eager":
+        yield "watermark", case.updates[-1][0] + rng.randint(-2, 2), {}
+    yield "finish", 0, {}
+
+
+def _after(monitor: Any, kind: str, time: Any, row: Mapping[str, Any]) -> Any:
+    """Return what an event returns, or the class of its error."""
+    try:
+        if kind == "update":
+            return monitor.update(time, **row)
+        return monitor.finish() if kind == "finish" else monitor.watermark(time)
+    except (EvaluationError, TraceError) as error:
+        return type(error).__name__
+
+
+def _asked(monitor: Any, verdict: str, time: Any, names: list[str], *, every: bool) -> Any:
+    """Return what a monitor reports of an instant, or of the start, and of what is watched."""
+    found: list[Any] = [monitor[name] for name in names]
+    if verdict == "eager":
+        return found
+    ask = monitor.interval if verdict == "interval" else monitor.causation
+    if time is None:
+        found.append(ask())
+        if every:
+            found.append(monitor.changes() if verdict == "interval" else monitor.runs())
+    elif every:
+        for given in ({}, {"prediction": {"x": (-1.0, 2.5)}}) if verdict == "interval" else ({},):
+            with suppress(UsageError):  # before the trace, after it, or without the variable
+                found.append(ask(time, **given))
+    return found

@@ -10,7 +10,7 @@ from time import process_time
 import pytest
 
 import rtamt
-from rtamt import Causation
+from rtamt import Causation, CausationRun
 
 BACKENDS = pytest.mark.parametrize("backend", ["cpp", "python"])
 RESPONSE = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
@@ -48,6 +48,18 @@ def test_formula_of_bounded_future_has_causation_at_every_sample(backend):
     assert newest == monitor.causation() == monitor.causation(0) == Causation(inf, -inf)
     assert monitor.causation(1) == Causation(-1, -2)
     assert monitor.causation(2) == Causation(-1, -inf)
+
+
+@BACKENDS
+def test_runs_of_a_formula_that_reads_the_past_go_on_beyond_the_newest_sample(backend):
+    spec = rtamt.parse("once(x >= 3)", backend=backend)
+    monitor = spec.monitor(verdict="causation", time_unit="ms", period="10ms")
+    assert monitor.runs() == []
+    monitor.update(100, x=4)
+    monitor.update(110, x=5)
+    assert monitor.runs() == [CausationRun(110, 110, 2, 2), CausationRun(120, None, inf, 2)]
+    monitor.finish()
+    assert monitor.runs() == [CausationRun(110, 110, 2, 2)]
 
 
 @BACKENDS

@@ -112,7 +112,8 @@ def test_times_are_reported_as_they_were_given(backend):
 def test_requirements_start_with_their_own_variables(backend):
     monitor = opened("require A: x >= 3\nrequire B: y >= 3", backend)
     assert monitor.update(0, x=5) == NOTHING
-    assert monitor.update(4, y=4) == Causation(2, 2)  # at 0 s, where there is A alone
+    assert monitor.update(4, y=4) == Causation(1, 1)  # of A at 0 s, of B at 4 s
+    assert monitor.causation(0) == Causation(2, 2)  # where there is A alone
     assert monitor.causation(4) == Causation(1, -inf)  # B, while A is not known
     monitor.update(5, x=5)
     assert monitor.causation(4) == Causation(2, 1)

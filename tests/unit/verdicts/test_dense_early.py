@@ -276,3 +276,45 @@ def test_watched_formulas_report_their_own_changes():
     eager = spec.monitor(**EAGER, watch=["x >= 3"])
     assert eager.update(0, x=4) == []
     assert eager["x >= 3"] == [VerdictRun(0.0, 1e-9, True, 0.0)]
+
+
+# ---- requirements with traces of their own ------------------------------------------------------
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_requirement_that_starts_later_and_is_violated_is_not_left_out_at_the_start(backend):
+    spec = rtamt.parse("require A: always(x >= 0); require B: always(y >= 0)", backend=backend)
+    monitor = spec.monitor(verdict="interval", time="dense")
+    monitor.update(0, x=1)
+    assert ends(monitor) == (-np.inf, 1)
+    monitor.update(1, x=1, y=-1)
+    assert ends(monitor) == (-np.inf, -1)
+    monitor.finish()
+    data = {"x": ([0, 1], [1, 1]), "y": ([1], [-1])}
+    assert ends(monitor) == (-1, -1) == (spec.evaluate(data, time="dense").robustness,) * 2
+
+
+def test_error_in_one_of_several_requirements_leaves_all_as_they_were():
+    text = "require A: always[0:1](x >= 0); require B: always[0:1](sqrt(y) >= 0)"
+    monitor, other = (rtamt.parse(text).monitor(**SETTINGS | {"ranges": None}) for _ in range(2))
+    for each in (monitor, other):
+        each.update(0, x=1, y=4)
+        each.update(2, x=3)
+    with pytest.raises(rtamt.EvaluationError, match=r"sqrt\(y\)"):
+        monitor.update(3, x=-5, y=-1)
+    for each in (monitor, other):
+        each.update(4, x=2, y=9)
+    assert changes(monitor) == changes(other)
+    assert monitor.finish() == other.finish()
+
+
+def test_requirements_over_different_variables_keep_no_more_than_their_windows():
+    text = (
+        "require A: always[0:1](x >= 0); require B: eventually[0:2](y >= 0); require C: once[0:1](x + y >= 0)"
+    )
+    monitor = rtamt.parse(text).monitor(**SETTINGS | {"ranges": None})
+    sizes = []
+    for i in range(4000):
+        monitor.update(i / 10, **({"x": i % 7 - 3} if i % 2 else {"y": i % 5 - 2}))
+        sizes.append(monitor.memory)
+    assert max(sizes[2000:]) <= max(sizes[:2000])

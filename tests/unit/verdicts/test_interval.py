@@ -219,3 +219,29 @@ def test_values_that_do_not_exist_behind_the_end_in_dense_time_are_errors_where_
             monitor.finish()
         with pytest.raises(EvaluationError, match="at time 2 s") if fails else contextlib.nullcontext():
             spec.evaluate({"y": ([0, 1], [-2.0, 1.0])})
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("mark", [3, 4, 5, 9])
+def test_watermark_behind_the_newest_sample_leaves_what_the_end_of_the_trace_cuts(mark, backend):
+    spec = rtamt.parse("always[0:2](x >= 3)", backend=backend)
+    monitor = spec.monitor(verdict="interval", lateness="2s")
+    for t in range(4):
+        monitor.update(t, x=6)
+    monitor.watermark(mark)
+    assert [(each.begin, each.interval) for each in monitor.finish()] == [
+        (2, rtamt.Interval(3, 3)),
+        (3, rtamt.Interval(3, 3)),
+    ]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_uncertain_sample_outside_the_domain_below_a_delay_is_an_error_once_the_trace_is_there(time, backend):
+    spec = rtamt.parse("sqrt(delay[2](y, 0)) >= 0", backend=backend)
+    monitor = spec.monitor(verdict="interval", time=time)
+    monitor.update(0, y=(-3, -2))
+    monitor.update(1, y=1)
+    with pytest.raises(rtamt.EvaluationError, match="time 2 s"):
+        monitor.update(2, y=1)
+    assert monitor.samples == 2

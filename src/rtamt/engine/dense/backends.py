@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.shared import Shape
+from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
-from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator
+from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, settling
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import core, not_made
 from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.lazy_dataclasses import replace
 from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense
@@ -33,6 +34,16 @@ class CompiledDense(Compiled):
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
         return Evaluator(formulas, step, inputs)
+
+    def stored(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> StoredPlan:
+        """See :class:`Compiled`."""
+        shape = Shape.of(formulas)
+        plan = shape.plan(step, domain=Dense, inputs=inputs)
+        return StoredPlan.of(plan, formulas, settling(plan, shape.expanded(), step))
+
+    def stored_evaluator(self, plan: StoredPlan) -> StoredEvaluator:
+        """See :class:`Compiled`."""
+        return StoredEvaluator(plan)
 
     def core_bounds(
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]

@@ -7,12 +7,12 @@ Times are ticks; runs are half-open, from ``begin`` up to and without ``end``.
 from __future__ import annotations
 
 import pickle
-from dataclasses import dataclass, replace
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
 from rtamt.reference.dense_causation import causation
 from rtamt.reference.dense_causation import least as least_caused
@@ -82,7 +82,9 @@ class PythonDenseEarlyMonitor:
         tick: Fraction,
         lateness: int | None,
         verdicts: bool,
+        causes: bool = False,
     ) -> None:
+        self._waits = causes  # for all traces to start
         self._before: _Came | None = None  # the last event
         self._causes: dict[int, StepCauses | None] = {}  # of all formulas that were asked for
         self._formulas, self._hidden = tuple(outputs), hidden
@@ -142,9 +144,21 @@ class PythonDenseEarlyMonitor:
         """Return the bounds of an output; None while the trace has not started. ``later``: see DenseKnowledge."""
         knowledge = replace(self._knowledge(came), later=later or {})
         parts = [(formula, knowledge.of(names)) for formula, names in output]
-        if any(known.start is None for _, known in parts):
+        if any(known.start is None for _, known in parts) or (self._waits and knowledge.start is None):
             return None
         return least([bounds(formula, known, self._tick) for formula, known in parts])
+
+    def _parts(
+        self, formula: int, came: _Came, later: Mapping[str, Samples] | None = None
+    ) -> list[StepBounds]:
+        """Return the bounds of each formula of an output; of one whose trace has not started from the ranges."""
+        knowledge = replace(self._knowledge(came), later=later or {})
+        unseen = DenseKnowledge(dict.fromkeys(self._names, ((), (), ())), self._ranges)
+        parts = []
+        for each, names in self._formulas[formula]:
+            known = knowledge.of(names)
+            parts.append(bounds(each, unseen.of(names) if known.start is None else known, self._tick))
+        return parts
 
     def _now(self, formula: int) -> StepBounds | None:
         if self._found is None:
@@ -230,9 +244,10 @@ class PythonDenseEarlyMonitor:
             name: [each[1:] for each in later if each[0] == number] for number, name in enumerate(self._names)
         }
         supposed = {name: tuple(zip(*each, strict=True)) for name, each in rows.items() if each}
-        formula = self._formulas[0 if output is None else self._hidden + output]
-        found = self._bounds(formula, self._came, supposed)
-        return None if found is None else found.at(found.times[0] if output is None else tick)
+        if output is None:
+            return _at_starts(self._parts(0, self._came, supposed))
+        found = self._bounds(self._formulas[self._hidden + output], self._came, supposed)
+        return None if found is None else found.at(tick)
 
     def held(self, output: int) -> int | None:
         """The first tick whose bounds are held; None before the trace has started."""
@@ -240,37 +255,38 @@ class PythonDenseEarlyMonitor:
         return None if found is None else found.times[0]
 
     def origin(self) -> Pair:
-        """The bounds at the start of the trace."""
-        found = self._now(0)
-        if found is not None:
-            return found.at(found.times[0])
-        unseen = DenseKnowledge(dict.fromkeys(self._names, ((), (), ())), self._ranges)
-        parts = [bounds(f, unseen.of(names), self._tick).at(0) for f, names in self._formulas[0]]
-        return min(low for low, _ in parts), max(high for _, high in parts)
+        """The bounds at the start of the trace: of several formulas each at the start of its own."""
+        return _at_starts(self._parts(0, self._came))
 
     def _caused(self, formula: int) -> StepCauses | None:
         """Return what the last event caused; None while the trace has not started."""
         if formula not in self._causes:
-            was = None if self._before is None else self._knowledge(self._before)
-            now = self._knowledge(self._came)
-            parts = [
-                (f, None if was is None else was.of(names), now.of(names))
-                for f, names in self._formulas[formula]
-            ]
-            begun = all(before is not None and before.start is not None for _, before, _ in parts)
-            self._causes[formula] = (
-                least_caused(
-                    [causation(f, before if begun else None, after, self._tick) for f, before, after in parts]
-                )
-                if all(after.start is not None for _, _, after in parts)
-                else None
-            )
+            self._causes[formula] = self._caused_of(self._formulas[formula])
         return self._causes[formula]
 
+    def _caused_of(self, output: Output) -> StepCauses | None:
+        now = self._knowledge(self._came)
+        if now.start is None:
+            return None
+        before = None if self._before is None else self._knowledge(self._before)
+        if before is not None and before.start is None:
+            before = None  # what came until all traces have started is one event
+        return least_caused(
+            [
+                causation(f, None if before is None else before.of(names), now.of(names), self._tick)
+                for f, names in output
+            ]
+        )
+
     def causation_at_start(self) -> Pair:
-        """Violation and satisfaction that the last event caused at the start of the trace."""
-        found = self._caused(0)
-        return (inf, -inf) if found is None else _pair(found.causes[0])
+        """Violation and satisfaction that the last event caused at the start of the trace, as bounds there."""
+        parts = [self._caused_of([part]) for part in self._formulas[0]]
+        begun = [part.causes[0] for part in parts if part is not None]
+        violation = min((cause.violation for cause in begun), default=inf)
+        satisfaction = max((cause.satisfaction for cause in begun), default=-inf)
+        if begun and len(parts) > 1:
+            satisfaction = min(satisfaction, self.origin()[0])
+        return violation + 0.0, satisfaction + 0.0
 
     def causation(self, output: int, tick: int | None) -> Pair | None:
         """The same of an output at a tick, or at the start; None before the trace."""
@@ -303,6 +319,10 @@ class PythonDenseEarlyMonitor:
         """Restore the state of a monitor that was made with the same arguments."""
         self._before, self._came, self._reports = pickle.loads(state)  # noqa: S301 - its own
         self._found, self._causes = None, {}
+
+
+def _at_starts(parts: Sequence[StepBounds]) -> Pair:
+    return min(part.lower[0] for part in parts), min(part.upper[0] for part in parts)
 
 
 def _pair(caused: Causation) -> Pair:

@@ -11,7 +11,7 @@ from rtamt.compiler.shared import Shape
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
-from rtamt.language.undefined_value import undefined
+from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.dense import Dense
 from rtamt.signals.regular import merged
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.plan import Plan, Scan
     from rtamt.compiler.program import Program
+    from rtamt.compiler.stored import StoredPlan
     from rtamt.engine.offline_bounds import StepBounds
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
@@ -39,8 +40,7 @@ class Evaluator:
         # Variables that the formulas do not read also determine where the recording starts and ends.
         shape = Shape.of(formulas)
         self._plan = shape.plan(tick, domain=Dense, inputs=inputs)
-        # What unbounded future reads must have settled: past windows slide on after the last sample.
-        self._settled = max(reach(formula, tick) for formula in shape.expanded()) if self._plan.stages else 0
+        self._settled = settling(self._plan, shape.expanded(), tick)
 
     def __call__(self, recording: DenseTrace) -> list[Samples]:
         """Return the events of each formula from the recording's start on."""
@@ -54,6 +54,21 @@ class Evaluator:
                 else:
                     columns[scan.name] = core().dense_scan(scan.kind, *operands)
         return run(plan.program, columns, recording.scale, plan, self._asked)
+
+
+class StoredEvaluator(Evaluator):
+    """Evaluates a plan without formulas."""
+
+    def __init__(self, stored: StoredPlan) -> None:
+        self._asked, self._plan, self._settled = (), stored.plan, stored.settled
+
+
+def settling(plan: Plan, formulas: Sequence[Formula], tick: Fraction) -> int:
+    """Return the ticks after the last sample for which the stages of a plan run.
+
+    What unbounded future reads must have settled: past windows slide on after the last sample.
+    """
+    return max(reach(formula, tick) for formula in formulas) if plan.stages else 0
 
 
 class BoundsEvaluator(Evaluator):
@@ -118,12 +133,15 @@ def _undefined(
     error: Exception, program: Program, scale: TimeScale, plan: Plan, asked: Sequence[Formula]
 ) -> EvaluationError:
     """Return the error for a value that does not exist."""
-    formula = culprit(error, program, asked, plan.original)
-    return undefined(formula, f"time {scale.show(error.args[1])}")
+    where = f"time {scale.show(error.args[1])}"
+    if program.metadata is not None:
+        return undefined_text(program.metadata.meanings.get(error.args[0], UNNAMED), where)
+    return undefined(culprit(error, program, asked, plan.original), where)
 
 
 def defined(scan: Scan, operands: list[Samples], recording: DenseTrace, plan: Plan) -> Samples:
     """Return the values of a custom operator of unbounded future, by its definition."""
+    assert scan.meaning is not None
     ticks, values = defined_signal(scan.meaning, recording.scale.tick, operands)
     wrong = np.flatnonzero(np.isnan(values) & (ticks <= recording.end))
     if len(wrong):

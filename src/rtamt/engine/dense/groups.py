@@ -9,7 +9,6 @@ requirements are.
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -19,6 +18,7 @@ from rtamt.engine.online import depth_of
 from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError
 from rtamt.language.formula import own_variables
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.signals.dense_arrays import changes, minimum
 

@@ -6,6 +6,7 @@ module                purpose
 backends              the back ends: the compiled core and the definition
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
+fleet                 many monitors of one formula: a record for each key in the compiled core
 recording             recordings that need no conversion, read by the core
 quantifiers           the monitor of quantifiers, over members that come and go
 member_executors      what executes quantifiers: one executor for each member

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
+from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
-from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator
+from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, longest_bound
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
 from rtamt.engine.user_operators import SampleDriver, calls_of
@@ -35,6 +36,20 @@ class CompiledDiscrete(Compiled):
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
         return Evaluator(formulas, step)
+
+    def stored(
+        self,
+        formulas: tuple[Formula, ...],
+        step: Fraction,
+        inputs: tuple[str, ...],
+    ) -> StoredPlan:
+        """See :class:`Compiled`."""
+        shape = Shape.of(formulas)
+        return StoredPlan.of(shape.plan(step, longest_bound(shape.expanded(), step) + 1), formulas)
+
+    def stored_evaluator(self, plan: StoredPlan) -> StoredEvaluator:
+        """See :class:`Compiled`."""
+        return StoredEvaluator(plan)
 
     def core_bounds(
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.compiler.graph import FOREVER
 from rtamt.engine.backend import RefusedError
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.reference.causation import causation
+from rtamt.reference.causation import NOTHING, causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 from rtamt.signals.outcomes import Causation
 
@@ -164,6 +165,26 @@ class PythonEarlyMonitor:
         found = causation(formula, self._knowledge(), self._period, sample + 1)[sample]
         return found.violation, found.satisfaction
 
+    def caused(self, output: int) -> list[tuple[int, int, float, float]]:
+        """The same as runs (first, last, violation, satisfaction), where there is any."""
+        if not self.samples:
+            return []
+        found = causation(self._outputs[output], self._knowledge(), self._period)
+        if self.finished:
+            found = found[: self.newest + 1]
+        runs: list[tuple[int, int, float, float]] = []
+        for sample, each in enumerate(found):
+            if each == NOTHING:
+                continue
+            caused = each.violation + 0.0, each.satisfaction + 0.0  # no minus before a zero
+            # The last one is that of all later samples too.
+            last = FOREVER if sample == len(found) - 1 and not self.finished else sample
+            if runs and runs[-1][1:] == (sample - 1, *caused):
+                runs[-1] = (runs[-1][0], last, *caused)
+            else:
+                runs.append((sample, last, *caused))
+        return runs
+
     def watermark(self, time: float) -> None:
         """Nothing at or before a time will come."""
         if self.newest >= 0:
@@ -172,16 +193,20 @@ class PythonEarlyMonitor:
 
     def finish(self) -> Any:
         """End the trace; return what that makes known."""
+        before = self.state()
         self.finished = True
-        if self._verdict:
-            self._compute()
-            return self._result()
-        rest = []
-        for formula in self._outputs:
-            found = self._bounds(formula)
-            rest.append((0, [self._pair(found, i) for i in range(self.newest + 1)]))
-        start = self.origin() if self.newest >= 0 else None
-        return rest, start
+        try:
+            if self._verdict:
+                self._compute()
+                return self._result()
+            rest = []
+            for formula in self._outputs:
+                found = self._bounds(formula)
+                rest.append((0, [self._pair(found, i) for i in range(self.newest + 1)]))
+            return rest, self.origin() if self.newest >= 0 else None
+        except BaseException:
+            self.restore(before)
+            raise
 
     def verdicts(self, output: int) -> list[Any]:
         """The verdicts of an output that the last call decided."""

@@ -8,10 +8,11 @@ import numpy as np
 
 from rtamt.compiler.plan import DEFINED, Plan
 from rtamt.compiler.shared import Shape
+from rtamt.engine.cores import threads
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
-from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.plan import Scan
     from rtamt.compiler.program import Program
+    from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import DiscreteTrace
@@ -41,7 +43,7 @@ class Evaluator:
     def plan(self, n: int) -> tuple[Plan, list[Run]]:
         """Return the plan for traces of n samples, and what runs the program of each stage and the last one."""
         # A trace longer than every bound needs no clipping, so that one plan serves all such traces.
-        clip = min(n, self._longest + 1)
+        clip = n if n <= self._longest else self._longest + 1
         last = self._plan
         if last is None or last[0] != clip:
             plan = self._shape.plan(self._period, clip)
@@ -83,6 +85,18 @@ class Evaluator:
                 flat[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs), n=n)
         values = runs[-1].rows(flat, count, n)
         return None if values is None else values[0].reshape(count, n)
+
+
+class StoredEvaluator(Evaluator):
+    """Evaluates a plan without formulas."""
+
+    def __init__(self, stored: StoredPlan) -> None:
+        self._asked = ()
+        self._stored = stored.plan, [Run(program) for program in stored.programs()]
+
+    def plan(self, n: int) -> tuple[Plan, list[Run]]:  # noqa: ARG002 - longer bounds change no value
+        """See :class:`Evaluator`."""
+        return self._stored
 
 
 class BoundsEvaluator(Evaluator):
@@ -143,7 +157,7 @@ class Run:
         values: list[FloatArray]
         try:
             if self._evaluator is not None:
-                values = self._evaluator.run(inputs, n)
+                values = self._evaluator.run(inputs, n, threads)
             else:
                 calls = calls_of(program, SampleDriver)
                 values = core().evaluate(program.code(), inputs, n, calls)
@@ -167,12 +181,16 @@ def failed(
     if isinstance(error, RuntimeError):
         return not_made(program, error)
     sample = error.args[1]
+    where = at_sample(sample, float(trace.times[sample]))
+    if program.metadata is not None:
+        return undefined_text(program.metadata.meanings.get(error.args[0], UNNAMED), where)
     formula = culprit(error, program, asked, plan.original)
-    return undefined(formula, at_sample(sample, float(trace.times[sample])))
+    return undefined(formula, where)
 
 
 def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:
     """Return the values of a custom operator of unbounded future, by its definition."""
+    assert scan.meaning is not None
     values = defined_column(scan.meaning, trace.period, operands)
     wrong = np.flatnonzero(np.isnan(values))
     if len(wrong):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Timestamps
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from rtamt.engine.discrete.fleet import DiscreteFleet
     from rtamt.language.formula import Formula
 
 
@@ -358,6 +359,16 @@ class Monitor(MonitorBase, OnlineMonitor):
         if self._times.original is not None:
             self._times = replace(self._times, original=None)
             self._connect(inner_of(self._backend))
+
+    def records(
+        self, capacity: int, *, restart: bool, state: bytes | None, identities: Mapping[str, str]
+    ) -> DiscreteFleet | None:
+        """See :class:`OnlineMonitor`."""
+        from rtamt.engine.discrete.fleet import DiscreteFleet, has_records  # monitors do not wait for it
+
+        if not has_records(self):
+            return None
+        return DiscreteFleet(self, capacity, restart=restart, state=state, identities=identities)
 
     @property
     def _last_time(self) -> float | None:

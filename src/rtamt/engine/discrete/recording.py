@@ -45,13 +45,13 @@ def _columns_of(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
     library = kind.__module__.partition(".")[0]
     if kind.__name__ != "DataFrame" or library not in ("pandas", "polars"):
         return None
-    columns = list(data.columns)
+    columns = data.columns  # a list, or an index, of which a list takes longer than all the rest
     wanted = [name for name in (TIME, *names) if name in columns]
     if len(wanted) != len(columns) or wanted[0] != TIME:
         check_frame(data, TIME, names)
-    if library == "pandas" and len(data.index) * len(columns) <= _SMALL and len(set(columns)) == len(columns):
+    if library == "pandas" and len(data.index) * len(columns) <= _SMALL and columns.is_unique:
         values = data.to_numpy()  # a frame takes longer to return a column than an evaluation of it takes
-        return {name: values[:, columns.index(name)] for name in wanted}
+        return {name: values[:, columns.get_loc(name)] for name in wanted}
     return {name: data[name].to_numpy() for name in wanted}
 
 

@@ -1,0 +1,214 @@
+"""Many monitors of one formula in discrete time: a record for each key in the compiled core.
+
+The results are those of one :class:`Monitor` for each key, bit for bit.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rtamt.engine.discrete.backends import SampleProgram
+from rtamt.engine.native import core
+from rtamt.errors import EvaluationError, TraceError, UsageError
+from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.signals.arrays import TIME, columns_of
+from rtamt.signals.coding import require_truths
+from rtamt.signals.counting import refuse_implausible
+from rtamt.signals.data_errors import nan_error, unknown_variable
+from rtamt.signals.regular import irregular
+from rtamt.signals.samples import read_time
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.signals.arrays import FloatArray
+
+
+class Known(NamedTuple):
+    """What a batch has made known, in its order; ``times``: that each value is for, NaN where none is known."""
+
+    values: FloatArray
+    known: NDArray[np.bool_]
+    times: FloatArray
+    warming: NDArray[np.bool_]
+
+
+class DiscreteFleet:
+    """Runs the program of a monitor for many keys.
+
+    ``monitor``: of the core, without custom operators (see :func:`has_records`). ``restart``: whether a gap between
+    samples begins a new trace of the key. ``identities``: what stands for the names of variables in the state, where
+    their declarations decide what a number means.
+    """
+
+    def __init__(
+        self,
+        monitor: Monitor,
+        capacity: int,
+        *,
+        identities: Mapping[str, str] = MappingProxyType({}),
+        restart: bool = False,
+        state: bytes | None = None,
+    ) -> None:
+        session = monitor._session
+        assert isinstance(session, SampleProgram)
+        self._monitor, self._session = monitor, session
+        program = session.program
+        made_of = float(monitor.period), monitor._tolerance, restart, capacity
+        try:
+            names = [identities.get(name, name) for name in program.inputs]
+            self._core = core().Fleet(program.code(), names, *made_of, state)
+            if state is not None:
+                self._core.keys()  # decodes texts
+        except MemoryError:
+            raise UsageError(
+                f"a fleet for {capacity} keys needs more memory than this machine gives; lower the capacity"
+            ) from None
+        except UnicodeDecodeError:
+            raise UsageError("this is not the state of a fleet: a key is no UTF-8") from None
+        except ValueError as error:
+            raise UsageError(_sentence(error)) from None
+
+    def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[FloatArray, dict[str, FloatArray]]:
+        """Return a batch as arrays; raise :class:`TraceError` for data that is not one."""
+        monitor = self._monitor
+        given = [times, *(columns.get(name) for name in monitor.input_names)]
+        if not monitor._types and len(given) == len(columns) + 1 and all(map(_is_column, given)):
+            refuse_implausible(times, TIME)
+            if all(len(column) == len(times) for column in given):
+                return times, dict(columns)
+        for name in columns:
+            if name not in monitor.input_names and name not in monitor._declared:
+                raise unknown_variable(name, monitor.input_names)
+        stamps, found, _ = columns_of({**columns, "time": times}, monitor.input_names, None, monitor._types)
+        assert stamps is not None
+        return stamps.seconds, found
+
+    def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> list[Known]:
+        """Take a batch; return what became known of each output. Raises for wrong data, and nothing has changed."""
+        for name, type_ in self._monitor._types.items():
+            require_truths(
+                name,
+                type_,
+                np.where(np.isnan(columns[name]), 0.0, columns[name]),
+                lambda i: f"index {i} of the batch, key {keys[i].item()!r}, time {times[i]:.15g} s",
+            )
+        n = len(times)
+        made = [
+            Known(np.empty(n), np.empty(n, np.bool_), np.empty(n), np.empty(n, np.bool_))
+            for _ in self._session.program.outputs
+        ]
+        outputs = [(k.values, k.known.view(np.uint8), k.times, k.warming.view(np.uint8)) for k in made]
+        given = [columns[name] for name in self._monitor.input_names]
+        try:
+            rejected = self._core.update(rows_of(keys), times, given, outputs)
+        except ValueError as error:
+            raise UsageError(_sentence(error)) from None
+        if rejected is not None:
+            raise self._error(keys, times, rejected)
+        return made
+
+    def _error(self, keys: NDArray[Any], times: FloatArray, rejected: Any) -> Exception:
+        """Return the error for a batch that the core rejected: that of a monitor, with key and index."""
+        index, reason, sample, last, instruction, moment = rejected
+        where = f"key {keys[index].item()!r} at index {index} of the batch"
+        time = float(times[index])
+        if reason == "full":
+            return UsageError(
+                f"{where} is new, and the fleet has its {self.capacity} keys already; drop or expire keys, or make "
+                f"a fleet of a larger capacity"
+            )
+        if reason == "undefined":
+            failure = core().Undefined(instruction, sample)
+            culprit = undefined(self._session.culprit(failure), at_sample(sample, moment))
+            return EvaluationError(f"{where}: {culprit}")
+        monitor = self._monitor
+        error: Exception
+        if reason == "value":
+            error = nan_error(monitor.input_names[instruction], sample, time)
+        elif reason == "gap":
+            error = irregular(sample, time, last, monitor.period, monitor._tolerance)
+        else:
+            try:
+                read_time(time, sample, last)
+            except TraceError as wrong:
+                error = wrong
+        variable = monitor.input_names[instruction] if reason == "value" else "time"
+        return TraceError(f"{where}: {error}", variable=variable, index=index, time=time)
+
+    @property
+    def capacity(self) -> int:
+        """How many keys there may be."""
+        return int(self._core.capacity)
+
+    @property
+    def memory(self) -> int:
+        """Bytes of state by now."""
+        return int(self._core.state_bytes)
+
+    def __len__(self) -> int:
+        return int(self._core.size)
+
+    def contains(self, key: NDArray[Any]) -> bool:
+        """Return whether the key of an array of one is there."""
+        return bool(self._core.contains(rows_of(key)))
+
+    def keys(self) -> list[Any]:
+        """Return all keys, in no particular order."""
+        return list(self._core.keys())
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """Forget keys; return the index of the first that is not there, and forget none then."""
+        missing: int | None = self._core.drop(rows_of(keys))
+        return missing
+
+    def expire(self, before: float) -> int:
+        """Forget the keys whose last sample is before a time; return how many."""
+        return int(self._core.expire(before))
+
+    def snapshot(self) -> bytes:
+        """Return the state of all keys."""
+        return bytes(self._core.snapshot())
+
+
+def _is_column(values: Any) -> bool:
+    """Return whether the core can read values as they are."""
+    return (
+        values.__class__ is np.ndarray
+        and values.ndim == 1
+        and values.dtype == np.float64
+        and values.flags.c_contiguous
+        and values.flags.aligned
+    )
+
+
+def has_records(monitor: Any) -> bool:
+    """Return whether a monitor can run as a :class:`DiscreteFleet`."""
+    session = getattr(monitor, "_session", None)
+    return (
+        isinstance(session, SampleProgram)
+        and not session.calls
+        and not session.program.worst_case
+        and monitor._times.plain
+        and monitor._episodes is None
+        and len(monitor._formulas) == 1
+    )
+
+
+def rows_of(keys: NDArray[Any]) -> NDArray[Any]:
+    """Return keys as the core reads them: texts and bytes as rows of characters."""
+    if keys.dtype.kind == "i":
+        return keys
+    width = keys.dtype.itemsize // (4 if keys.dtype.kind == "U" else 1)
+    return keys.view(np.uint32 if keys.dtype.kind == "U" else np.uint8).reshape(len(keys), width)
+
+
+def _sentence(error: ValueError) -> str:
+    text = str(error).rstrip(".")
+    return text[:1].lower() + text[1:]
