@@ -1,19 +1,16 @@
-// The C API: no exception leaves it, and each failure becomes a status and a sentence.
-
+// The C API of monitors.
 #include "rtamt.h"
+
+#include "boundary.hpp"
 #include "monitor.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <exception>
-#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-using rtamt::c_api::Monitor;
-using rtamt::c_api::Undefined;
+using namespace rtamt::c_api;
 
 struct rtamt_monitor {
     explicit rtamt_monitor(std::span<const std::uint8_t> program) : monitor(program) {}
@@ -27,27 +24,7 @@ struct rtamt_monitor {
 
 namespace {
 
-constexpr const char* out_of_memory = "There is not enough memory.";
 constexpr const char* no_monitor = "There is no monitor: it was not created.";
-constexpr const char* no_place = "The place for the result is null: pass an address.";
-
-// Calls `work` and returns its status; `say` takes the message of a failure.
-template <class Work, class Say>
-[[nodiscard]] rtamt_status guarded(Work&& work, Say&& say) noexcept {
-    try {
-        std::forward<Work>(work)();
-        return RTAMT_OK;
-    } catch (const std::bad_alloc&) {
-        say(out_of_memory);
-        return RTAMT_NO_MEMORY;
-    } catch (const std::length_error&) { // of a container
-        say(out_of_memory);
-        return RTAMT_NO_MEMORY;
-    } catch (const std::exception& exception) {
-        say(exception.what());
-        return RTAMT_REFUSED;
-    }
-}
 
 void remember(rtamt_monitor& handle, std::string_view sentence) noexcept {
     try {
@@ -74,32 +51,6 @@ template <class Work>
         },
         [&](const char* sentence) { remember(*handle, sentence); });
     return undefined && status == RTAMT_OK ? RTAMT_UNDEFINED : status;
-}
-
-// Memory of the caller's that is to hold so many items.
-template <class Item>
-[[nodiscard]] std::span<Item> items(Item* memory, std::size_t count, const char* what) {
-    if (memory == nullptr && count != 0) {
-        throw std::invalid_argument(std::string(what) + " are null: pass the address of " +
-                                    std::to_string(count) + ", or the number 0.");
-    }
-    return {memory, count};
-}
-
-template <class Item>
-void put(Item* place, Item item) noexcept {
-    if (place != nullptr) *place = item;
-}
-
-[[nodiscard]] std::span<const std::uint8_t> bytes(const void* memory, std::size_t size) noexcept {
-    return {static_cast<const std::uint8_t*>(memory), memory == nullptr ? 0 : size};
-}
-
-void copy_message(const char* sentence, char* message, std::size_t room) noexcept {
-    if (message == nullptr || room == 0) return;
-    const std::size_t length = std::min(std::strlen(sentence), room - 1);
-    std::memcpy(message, sentence, length);
-    message[length] = '\0';
 }
 
 template <class List>
@@ -264,16 +215,10 @@ rtamt_status rtamt_clone(rtamt_monitor* monitor, rtamt_monitor** copy) {
 
 rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t room, size_t* size) {
     return error_boundary(monitor, [&](Monitor& self) {
-        if (size == nullptr) throw std::invalid_argument(no_place);
         const auto saved = self.save();
-        *size = saved.size();
-        if (state == nullptr) return;
-        if (room < saved.size()) {
-            throw std::invalid_argument("The state takes " + std::to_string(saved.size()) +
-                                        " bytes, and there is room for " + std::to_string(room) +
-                                        ": make room for all of them.");
-        }
-        std::memcpy(state, saved.data(), saved.size());
+        rtamt::c_api::save(
+            state, room, size, [&] { return saved.size(); },
+            [&](std::span<std::uint8_t> out) { std::ranges::copy(saved, out.begin()); });
     });
 }
 

@@ -134,17 +134,17 @@ RTAMT_API rtamt_status rtamt_set_parameter_by_name(rtamt_monitor* monitor, const
 
 /* Discrete time: takes the next sample, `count` values, one an input. For each of the first
  * `outputs` outputs, `results` receives the value that has become known, the one `lag` samples ago;
- * it is not known in the first `lag` samples. Allocates nothing, unless the program is one of bounds
- * (rtamt compile --verdict interval): its outputs are lower and upper, bounds of the robustness at
- * the start of the trace for every possible continuation, verdict (infinite, with its sign) and
- * decided_since, the seconds from the first sample to the one that decided; these two are not known
- * while the verdict is open. */
+ * it is not known in the first `lag` samples. Allocates nothing, unless the program is one of
+ * bounds (rtamt compile --verdict interval): its outputs are lower and upper, bounds of the
+ * robustness at the start of the trace for every possible continuation, verdict (infinite, with its
+ * sign) and decided_since, the seconds from the first sample to the one that decided; these two are
+ * not known while the verdict is open. */
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
                                   rtamt_value* results, size_t outputs);
 
-/* Dense time: takes samples; those of one input at increasing ticks. rtamt_last_output has what became
- * known. The trace starts when every input has started; where several requirements read different
- * inputs, all inputs must start at the same tick. */
+/* Dense time: takes samples; those of one input at increasing ticks. rtamt_last_output has what
+ * became known. The trace starts when every input has started; where several requirements read
+ * different inputs, all inputs must start at the same tick. */
 RTAMT_API rtamt_status rtamt_push(rtamt_monitor* monitor, const rtamt_sample* samples,
                                   size_t count);
 
@@ -157,8 +157,8 @@ RTAMT_API rtamt_status rtamt_reset(rtamt_monitor* monitor);
 /* What the last rtamt_push or rtamt_finish made known of an output: returns how many values, and
  * where their steps (indices of samples, in dense time ticks from which on the value holds) and the
  * values themselves are, valid until the next call; either place may be null. */
-RTAMT_API size_t rtamt_last_output(const rtamt_monitor* monitor, uint32_t output, const int64_t** steps,
-                            const double** values);
+RTAMT_API size_t rtamt_last_output(const rtamt_monitor* monitor, uint32_t output,
+                                   const int64_t** steps, const double** values);
 
 /* Returns 1 and the last step at which an output is known, or 0 if it is not known anywhere, and -1
  * for a null monitor; the place may be null. */
@@ -180,6 +180,72 @@ RTAMT_API rtamt_status rtamt_save(rtamt_monitor* monitor, void* state, size_t ro
 /* Takes over a state that a monitor of the same program has saved; a damaged one is refused, and a
  * forged one does no harm. */
 RTAMT_API rtamt_status rtamt_restore(rtamt_monitor* monitor, const void* state, size_t size);
+
+/* ---- many keys ------------------------------------------------------------------------------- */
+
+/* Many monitors of one program for discrete time, by key: vehicles, machines, sessions. A call that
+ * fails leaves every key as it was. */
+typedef struct rtamt_fleet rtamt_fleet;
+
+/* What a sample has made known of an output. */
+typedef struct rtamt_fleet_value {
+    double value; /* 0 where it is not known */
+    double time;  /* that the value is for; NaN where it is not known */
+    int32_t known;
+    int32_t warming; /* whether it is not known because the program was another one before */
+} rtamt_fleet_value;
+
+/* A new fleet for at most `capacity` keys. A gap between two samples of a key may differ from the
+ * period by `tolerance` periods, such as 0.1. Its parameters have the values of the program.
+ * `message` as for rtamt_create. */
+RTAMT_API rtamt_status rtamt_fleet_create(const void* program, size_t size, size_t capacity,
+                                          double tolerance, rtamt_fleet** fleet, char* message,
+                                          size_t room);
+
+/* Frees a fleet; NULL is none. */
+RTAMT_API void rtamt_fleet_destroy(rtamt_fleet* fleet);
+
+/* The reason why the last call failed, valid until the next call. */
+RTAMT_API const char* rtamt_fleet_message(const rtamt_fleet* fleet);
+
+/* Takes a batch of `count` samples, keys in any order: the key and the time in seconds of each, and
+ * a column of `count` values for each input. A new key starts a trace. `results` receives the
+ * values of the first `outputs` outputs, one sample after another. After RTAMT_REFUSED and
+ * RTAMT_UNDEFINED, `rejected` is the index in the batch, or `count` if no sample is wrong; it may
+ * be null. */
+RTAMT_API rtamt_status rtamt_fleet_update(rtamt_fleet* fleet, const int64_t* keys,
+                                          const double* times, const double* const* columns,
+                                          size_t count, rtamt_fleet_value* results, size_t outputs,
+                                          size_t* rejected);
+
+/* The same with texts as keys. The keys of a fleet are all integers or all texts. */
+RTAMT_API rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* const* keys,
+                                               const double* times, const double* const* columns,
+                                               size_t count, rtamt_fleet_value* results,
+                                               size_t outputs, size_t* rejected);
+
+/* Forgets keys; where one is not there, it is refused, and all stay. */
+RTAMT_API rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count);
+RTAMT_API rtamt_status rtamt_fleet_drop_text(rtamt_fleet* fleet, const char* const* keys,
+                                             size_t count);
+
+/* Forgets the keys whose last sample is before a time; `dropped` becomes how many, and may be null.
+ */
+RTAMT_API rtamt_status rtamt_fleet_expire(rtamt_fleet* fleet, double before, size_t* dropped);
+
+/* How many keys there are; 0 for a null fleet. */
+RTAMT_API size_t rtamt_fleet_size(const rtamt_fleet* fleet);
+
+/* Writes the state of all keys, as rtamt_save does; the bytes are the same on all machines
+ * (docs/reference/fleet-state.md). */
+RTAMT_API rtamt_status rtamt_fleet_save(rtamt_fleet* fleet, void* state, size_t room, size_t* size);
+
+/* A new fleet in a state that rtamt_fleet_save has written, maybe of another program: what the two
+ * programs share goes on where it was. A damaged state is refused, and a forged one does no harm.
+ * `capacity`: 0 for that of the state. */
+RTAMT_API rtamt_status rtamt_fleet_restore(const void* program, size_t size, const void* state,
+                                           size_t state_size, size_t capacity, double tolerance,
+                                           rtamt_fleet** fleet, char* message, size_t room);
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,7 @@
 #include "early_monitor.hpp"
 #include "evaluator.hpp"
 #include "failures.hpp"
+#include "fleet.hpp"
 #include "monitor_module.hpp"
 #include "offline.hpp"
 #include "online.hpp"
@@ -63,6 +64,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_online(m);
     rtamt::python::add_offline(m, exceptions);
     rtamt::python::add_evaluator(m, exceptions);
+    rtamt::python::add_fleet(m);
     rtamt::python::add_recording(m);
     rtamt::python::add_tick_points(m);
 

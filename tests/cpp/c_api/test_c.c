@@ -49,8 +49,8 @@ int main(void) {
     put(0xFFFFFFFFU, 4);
     put(0xFFFFFFFFU, 4);
     end = 32 + 40; /* and nothing but zeros */
-    put(0, 4); /* output */
-    put(1, 8); /* a step of 1/2 s */
+    put(0, 4);     /* output */
+    put(1, 8);     /* a step of 1/2 s */
     put(2, 8);
     put_text("");
     put_text("x");
@@ -79,6 +79,23 @@ int main(void) {
         return fail(rtamt_message(monitor));
     }
     rtamt_destroy(monitor);
+
+    rtamt_fleet* fleet = NULL;
+    if (rtamt_fleet_create(program, end, 10, 0.1, &fleet, message, sizeof message) != RTAMT_OK) {
+        return fail(message);
+    }
+    const char* const keys[] = {"a", "b", "a"};
+    const double times[] = {0.0, 7.0, 0.5};
+    const double numbers[] = {1.0, 2.0, 3.0};
+    const double* const columns[] = {numbers};
+    rtamt_fleet_value found[3];
+    size_t rejected = 0;
+    if (rtamt_fleet_update_text(fleet, keys, times, columns, 3, found, 1, &rejected) != RTAMT_OK ||
+        rejected != 3 || found[2].value != 3.0 || !found[2].known || found[1].time != 7.0) {
+        return fail("a batch in, the values of each sample out");
+    }
+    if (rtamt_fleet_size(fleet) != 2) return fail("two keys");
+    rtamt_fleet_destroy(fleet);
     puts("the C API speaks C");
     return 0;
 }

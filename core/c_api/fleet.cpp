@@ -1,0 +1,276 @@
+// The C API of fleets.
+#include "../fleet/fleet.hpp"
+
+#include "../program/metadata.hpp"
+#include "boundary.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+using namespace rtamt::c_api;
+using rtamt::Metadata;
+using rtamt::Program;
+using rtamt::fleet::Batch;
+using rtamt::fleet::Fleet;
+using rtamt::fleet::KeyKind;
+using rtamt::fleet::KeySpan;
+using rtamt::fleet::Output;
+using rtamt::fleet::Rejected;
+
+struct rtamt_fleet {
+    Metadata metadata;
+    Fleet fleet;
+    std::string message;
+    const char* shown = ""; // the message, or a sentence that needs no memory
+    std::vector<double> values;
+    std::vector<double> times;
+    std::vector<std::uint8_t> flags;
+};
+
+namespace {
+
+// A batch was rejected at this sample.
+struct RejectedBatch : std::invalid_argument {
+    RejectedBatch(const std::string& sentence, const Rejected& why)
+        : std::invalid_argument(sentence), rejected(why) {}
+    Rejected rejected;
+};
+
+[[nodiscard]] std::string shown(double number) {
+    char text[32];
+    (void)std::snprintf(text, sizeof text, "%.15g", number);
+    return text;
+}
+
+[[nodiscard]] std::string name_of(const KeySpan& keys, std::size_t index) {
+    if (keys.kind == KeyKind::integer) return std::to_string(keys.integers[index]);
+    return "'" + std::string(keys.texts[index]) + "'";
+}
+
+[[nodiscard]] std::string sentence_of(const rtamt_fleet& handle, const Batch& batch,
+                                      const Rejected& why) {
+    const std::string where = "Key " + name_of(batch.keys, why.index) + " at index " +
+                              std::to_string(why.index) + " of the batch ";
+    const std::string time = shown(batch.times[why.index]) + " s";
+    switch (why.reason) {
+    case Rejected::Reason::full:
+        return where + "is new, and the fleet has its " +
+               std::to_string(handle.fleet.settings().capacity) +
+               " keys already: drop keys, or make a larger fleet.";
+    case Rejected::Reason::value:
+        return where + "has NaN as '" + handle.metadata.inputs[why.instruction] + "' at " + time +
+               ": leave the sample out.";
+    case Rejected::Reason::gap:
+        return where + "has a sample at " + time + ", which is not one period of " +
+               shown(handle.fleet.settings().period) + " s after the one at " + shown(*why.last) +
+               " s.";
+    case Rejected::Reason::undefined: {
+        const auto found = handle.metadata.meanings.find(why.instruction);
+        const std::string what = found != handle.metadata.meanings.end()
+                                     ? "'" + found->second + "'"
+                                     : "instruction " + std::to_string(why.instruction);
+        return where + "has no value of " + what + " at sample " + std::to_string(why.samples) +
+               ": it is 0/0, inf - inf, 0 * inf, or a function outside its domain.";
+    }
+    case Rejected::Reason::time:
+        break;
+    }
+    if (!why.last || !std::isfinite(batch.times[why.index])) {
+        return where + "has the time " + time + ": give a finite number of seconds.";
+    }
+    return where + "has a sample at " + time + ", which is not after the one at " +
+           shown(*why.last) + " s.";
+}
+
+template <class Work>
+[[nodiscard]] rtamt_status error_boundary(rtamt_fleet* handle, Work&& work) noexcept {
+    if (handle == nullptr) return RTAMT_REFUSED;
+    bool undefined = false;
+    const auto remember = [&](const char* sentence) noexcept {
+        try {
+            handle->message = sentence;
+            handle->shown = handle->message.c_str();
+        } catch (const std::bad_alloc&) {
+            handle->shown = out_of_memory;
+        }
+    };
+    const rtamt_status status = guarded(
+        [&] {
+            try {
+                std::forward<Work>(work)(*handle);
+            } catch (const RejectedBatch& rejected) {
+                undefined = rejected.rejected.reason == Rejected::Reason::undefined;
+                throw;
+            }
+        },
+        remember);
+    return undefined && status == RTAMT_REFUSED ? RTAMT_UNDEFINED : status;
+}
+
+[[nodiscard]] KeySpan span_of(const int64_t* keys, std::size_t count) {
+    return {KeyKind::integer, items(keys, count, "The keys"), {}};
+}
+
+// The texts are in `held`.
+[[nodiscard]] KeySpan span_of(const char* const* keys, std::size_t count,
+                              std::vector<std::string_view>& held) {
+    for (const char* key : items(keys, count, "The keys")) {
+        if (key == nullptr) throw std::invalid_argument("A key is null: pass a text.");
+        held.emplace_back(key);
+    }
+    return {KeyKind::text, {}, held};
+}
+
+void update(rtamt_fleet& handle, const KeySpan& keys, const double* times,
+            const double* const* columns, rtamt_fleet_value* results, std::size_t outputs,
+            std::size_t* rejected) {
+    const std::size_t count = keys.size();
+    put(rejected, count);
+    const Program& program = handle.fleet.program();
+    const std::size_t all = program.outputs.size();
+    if (outputs > all) {
+        throw std::invalid_argument("The program has " + std::to_string(all) + " outputs, not " +
+                                    std::to_string(outputs) + ".");
+    }
+    Batch batch{keys, items(times, count, "The times").data(),
+                items(columns, count == 0 ? 0 : program.inputs, "The columns")};
+    for (const double* column : batch.columns)
+        (void)items(column, count, "The values of a column");
+    (void)items(results, count * outputs, "The places for the results");
+    handle.values.resize(count * all);
+    handle.times.resize(count * all);
+    handle.flags.resize(2 * count * all);
+    std::vector<Output> places;
+    places.reserve(all);
+    for (std::size_t k = 0; k < all; ++k) {
+        places.push_back({handle.values.data() + k * count, handle.flags.data() + k * count,
+                          handle.times.data() + k * count,
+                          handle.flags.data() + (all + k) * count});
+    }
+    if (const auto why = handle.fleet.update(batch, places)) {
+        put(rejected, why->index);
+        throw RejectedBatch(sentence_of(handle, batch, *why), *why);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < outputs; ++k) {
+            const Output& from = places[k];
+            results[i * outputs + k] = {from.values[i], from.when[i], from.known[i],
+                                        from.warming[i]};
+        }
+    }
+}
+
+void drop(rtamt_fleet& handle, const KeySpan& keys) {
+    if (const auto missing = handle.fleet.drop(keys)) {
+        throw std::invalid_argument("There is no key " + name_of(keys, *missing) + ".");
+    }
+}
+
+// A fleet as `make` makes it of a program, the names of its inputs and its settings.
+template <class Make>
+[[nodiscard]] rtamt_status create(const void* program, std::size_t size, std::size_t capacity,
+                                  double tolerance, rtamt_fleet** fleet, char* message,
+                                  std::size_t room, Make&& make) {
+    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
+    if (fleet == nullptr) {
+        say(no_place);
+        return RTAMT_REFUSED;
+    }
+    *fleet = nullptr;
+    return guarded(
+        [&] {
+            Program parsed = Program::parse(bytes(program, size));
+            Metadata metadata = Metadata::parse(parsed);
+            if (!metadata.early.empty()) {
+                throw std::invalid_argument("A fleet runs no programs of bounds.");
+            }
+            if (!(tolerance >= 0.0)) {
+                throw std::invalid_argument("The tolerance must be 0 or more.");
+            }
+            const Fleet::Settings settings{metadata.seconds(), tolerance, false, capacity};
+            Fleet made = make(std::move(parsed), metadata.inputs, settings);
+            *fleet = new rtamt_fleet{std::move(metadata), std::move(made), {}, "", {}, {}, {}};
+        },
+        say);
+}
+
+} // namespace
+
+extern "C" {
+
+rtamt_status rtamt_fleet_create(const void* program, size_t size, size_t capacity, double tolerance,
+                                rtamt_fleet** fleet, char* message, size_t room) {
+    return create(program, size, capacity, tolerance, fleet, message, room,
+                  [](Program&& parsed, const auto& names, const Fleet::Settings& settings) {
+                      return Fleet(std::move(parsed), names, settings);
+                  });
+}
+
+rtamt_status rtamt_fleet_restore(const void* program, size_t size, const void* state,
+                                 size_t state_size, size_t capacity, double tolerance,
+                                 rtamt_fleet** fleet, char* message, size_t room) {
+    return create(program, size, capacity, tolerance, fleet, message, room,
+                  [&](Program&& parsed, const auto& names, const Fleet::Settings& settings) {
+                      return Fleet::restore(std::move(parsed), names, settings,
+                                            bytes(state, state_size));
+                  });
+}
+
+void rtamt_fleet_destroy(rtamt_fleet* fleet) { // NOLINT(misc-const-correctness): the C API
+    delete fleet;
+}
+
+const char* rtamt_fleet_message(const rtamt_fleet* fleet) {
+    return fleet == nullptr ? "There is no fleet: it was not created." : fleet->shown;
+}
+
+rtamt_status rtamt_fleet_update(rtamt_fleet* fleet, const int64_t* keys, const double* times,
+                                const double* const* columns, size_t count,
+                                rtamt_fleet_value* results, size_t outputs, size_t* rejected) {
+    return error_boundary(fleet, [&](rtamt_fleet& self) {
+        update(self, span_of(keys, count), times, columns, results, outputs, rejected);
+    });
+}
+
+rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* const* keys,
+                                     const double* times, const double* const* columns,
+                                     size_t count, rtamt_fleet_value* results, size_t outputs,
+                                     size_t* rejected) {
+    return error_boundary(fleet, [&](rtamt_fleet& self) {
+        std::vector<std::string_view> held;
+        update(self, span_of(keys, count, held), times, columns, results, outputs, rejected);
+    });
+}
+
+rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count) {
+    return error_boundary(fleet, [&](rtamt_fleet& self) { drop(self, span_of(keys, count)); });
+}
+
+rtamt_status rtamt_fleet_drop_text(rtamt_fleet* fleet, const char* const* keys, size_t count) {
+    return error_boundary(fleet, [&](rtamt_fleet& self) {
+        std::vector<std::string_view> held;
+        drop(self, span_of(keys, count, held));
+    });
+}
+
+rtamt_status rtamt_fleet_expire(rtamt_fleet* fleet, double before, size_t* dropped) {
+    return error_boundary(fleet,
+                          [&](rtamt_fleet& self) { put(dropped, self.fleet.expire(before)); });
+}
+
+size_t rtamt_fleet_size(const rtamt_fleet* fleet) {
+    return fleet == nullptr ? 0 : fleet->fleet.size();
+}
+
+rtamt_status rtamt_fleet_save(rtamt_fleet* fleet, void* state, size_t room, size_t* size) {
+    return error_boundary(fleet, [&](rtamt_fleet& self) {
+        save(
+            state, room, size, [&] { return self.fleet.snapshot_size(); },
+            [&](std::span<std::uint8_t> out) { self.fleet.snapshot(out); });
+    });
+}
+
+} // extern "C"

@@ -1,0 +1,12 @@
+"""Many requirements, many recordings, many live streams.
+
+====================  =====================================================================
+module                purpose
+====================  =====================================================================
+fleet                 ``Fleet``: an array of monitors by key: vehicles, machines, sessions
+suite                 ``Suite``: many requirements compiled once into few programs
+groups                requirements that read a recording in the same way
+suite_bytes           the bytes of a suite: programs, and how recordings are read
+verdict_table         robustness and verdicts, one row per recording and requirement
+====================  =====================================================================
+"""

@@ -1,0 +1,261 @@
+"""An array of monitors of one specification, by key: vehicles, machines, sessions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from operator import methodcaller
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.usage_guard import UsageGuard, exclusive
+from rtamt.errors import TraceError, UsageError, choices, shown
+from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import dataclass
+from rtamt.specification import Specification
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.engine.discrete.fleet import DiscreteFleet
+    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.binding import Binding
+
+#: What is done where the next sample of a key is not one period after the last one.
+GAPS = ("reject", "restart")
+
+#: By type of keys, the character at their end that an array of numpy loses: two keys would be one.
+_PADDED: dict[type, Any] = {str: "\0", bytes: b"\0"}
+
+
+@dataclass(frozen=True, slots=True)
+class FleetUpdate:
+    """What a batch has made known, in the order of the batch.
+
+    ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
+    ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it
+    is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
+    """
+
+    values: FloatArray
+    known: NDArray[np.bool_]
+    times: FloatArray
+    warming: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+class Fleet:
+    """Monitors one specification for many keys, such as vehicles, in discrete time.
+
+    ``capacity``: the largest number of keys; memory is used only for those that have come. ``settings``: those of
+    ``Specification.monitor``. ``gaps``: what a gap between two samples of a key does that is not the period:
+    ``"reject"`` the batch, or ``"restart"`` the trace of the key with the sample after the gap.
+
+    Each key has the results of its own ``spec.monitor(**settings)``, bit for bit.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("always[0:1](x >= 3)")
+    >>> fleet = rtamt.Fleet(spec, capacity=100_000)
+    >>> _ = fleet.update_many(["car-1", "car-2"], [0.0, 7.0], {"x": [5.0, 4.0]})
+    >>> update = fleet.update_many(["car-2", "car-1"], [8.0, 1.0], {"x": [2.0, 9.0]})
+    >>> update.values, update.known, update.times
+    (array([-1.,  2.]), array([ True,  True]), array([7., 0.]))
+    """
+
+    def __init__(self, spec: Specification, capacity: int, *, gaps: str = "reject", **settings: Any) -> None:
+        self._open(spec, capacity, gaps, settings, None)
+
+    def _open(
+        self,
+        spec: Specification,
+        capacity: int | None,
+        gaps: str,
+        settings: Mapping[str, Any],
+        state: bytes | None,
+    ) -> None:
+        if not isinstance(spec, Specification):
+            raise UsageError(
+                f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
+            )
+        if gaps not in GAPS:
+            raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
+        monitor = spec.monitor(**settings)
+        records = monitor.records(
+            0 if capacity is None else _capacity(capacity),
+            restart=gaps == "restart",
+            state=state,
+            identities=_identities(spec),
+        )
+        if records is None:
+            raise UsageError(
+                "a fleet monitors the delayed robustness in discrete time, without operators of your own; "
+                "make a monitor for each key instead"
+            )
+        self._usage = UsageGuard()
+        self._binding: Binding = monitor._binding
+        self._engine: DiscreteFleet = records
+
+    @exclusive
+    def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
+        """Take a batch of samples: the key and the time of each, and a column of values for each variable.
+
+        ``keys``: integers, texts or bytes, in any order; samples of one key are in the order of their times. New keys
+        start a trace. Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an
+        operation has no value, with the key and the index in the batch; no key has changed then.
+        """
+        given = _keys(keys)
+        if not isinstance(columns, Mapping):
+            raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
+        seconds, found = self._engine.columns(times, self._binding.applied(dict(columns)))
+        if len(given) != len(seconds):
+            raise TraceError(
+                f"there are {len(given)} keys and {len(seconds)} times: give one of each for every sample"
+            )
+        (known,) = self._engine.update(given, seconds, found)
+        return FleetUpdate(*known)
+
+    @property
+    def capacity(self) -> int:
+        """The largest number of keys."""
+        return self._engine.capacity
+
+    @property
+    def memory(self) -> int:
+        """The size of the state in bytes, of the keys that there are."""
+        return self._engine.memory
+
+    def __len__(self) -> int:
+        return len(self._engine)
+
+    @exclusive
+    def __contains__(self, key: object) -> bool:
+        try:
+            given = _keys([key])
+        except TraceError:
+            return False
+        return self._engine.contains(given)
+
+    @exclusive
+    def keys(self) -> list[Any]:
+        """Return all keys, in no particular order."""
+        return self._engine.keys()
+
+    @exclusive
+    def drop(self, keys: Any) -> None:
+        """Forget keys: their next sample starts a new trace. Raises :class:`UsageError` for a key that is not there.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10)
+        >>> _ = fleet.update_many([1, 2], [0, 0], {"x": [5, 4]})
+        >>> fleet.drop([1])
+        >>> len(fleet), 1 in fleet, fleet.keys()
+        (1, False, [2])
+        """
+        given = _keys(keys)
+        missing = self._engine.drop(given)
+        if missing is not None:
+            raise UsageError(
+                f"the fleet has no key {given[missing].item()!r} (index {missing}); no key was dropped"
+            )
+
+    @exclusive
+    def expire(self, *, before: float) -> int:
+        """Forget the keys whose last sample is before a time in seconds; return how many.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10)
+        >>> _ = fleet.update_many([1, 2], [0, 60], {"x": [5, 4]})
+        >>> fleet.expire(before=30), fleet.keys()
+        (1, [2])
+        """
+        return self._engine.expire(before)
+
+    @exclusive
+    def snapshot(self) -> bytes:
+        """Return the state of all keys, in the format of [the state of a fleet](fleet-state.md).
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("once(x >= 3)")
+        >>> fleet = rtamt.Fleet(spec, capacity=10)
+        >>> _ = fleet.update_many([1], [0], {"x": [5]})
+        >>> rtamt.Fleet.restore(spec, fleet.snapshot()).update_many([1], [1], {"x": [0]}).values
+        array([2.])
+        """
+        return self._engine.snapshot()
+
+    @classmethod
+    def restore(
+        cls,
+        spec: Specification,
+        state: bytes,
+        *,
+        capacity: int | None = None,
+        gaps: str = "reject",
+        **settings: Any,
+    ) -> Fleet:
+        """Return a fleet in a state that :meth:`snapshot` returned, perhaps of another specification.
+
+        Parts of the formula that are the same go on where they were. For those that are new, or that read what is
+        new, no value is known until all samples that it depends on have come: ``FleetUpdate.warming``. ``capacity``:
+        by default that of the fleet of the snapshot. Raises :class:`UsageError` for bytes that are not a state.
+        """
+        if not isinstance(state, bytes):
+            raise UsageError(f"expected the bytes that snapshot() returns, got {shown(state)}")
+        made = cls.__new__(cls)
+        made._open(spec, capacity, gaps, settings, state)
+        return made
+
+
+def _capacity(given: Any) -> int:
+    if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 1:
+        raise UsageError(f"capacity is {shown(given)}, expected a number of keys, at least 1")
+    return int(given)
+
+
+def _keys(keys: Any) -> NDArray[Any]:
+    """Return keys as an array of int64, texts or bytes; raise :class:`TraceError` for anything else."""
+    given = keys
+    if not isinstance(keys, np.ndarray):
+        keys = list(keys)
+        kinds = {type(key) for key in keys}
+        if len(kinds) > 1:
+            names = ", ".join(sorted(kind.__name__ for kind in kinds))
+            raise TraceError(f"the keys are of several types ({names}): give integers, texts, or bytes")
+        if not keys:
+            return np.empty(0, np.int64)
+        if kinds <= _PADDED.keys() and any(map(methodcaller("endswith", _PADDED[kinds.pop()]), keys)):
+            raise TraceError(
+                "a key ends with the character 0, with which numpy pads texts and bytes: give integers, or texts "
+                "such as key.hex()"
+            )
+    try:
+        found = np.asarray(keys)
+    except (TypeError, ValueError):
+        found = np.empty(0, object)
+    if found.dtype.kind == "O" and isinstance(given, np.ndarray) and found.ndim == 1:
+        return _keys(found.tolist())
+    if found.ndim != 1 or found.dtype.kind not in "iuUS":
+        raise TraceError(f"the keys are {shown(given)}, expected a sequence of integers, texts, or bytes")
+    if found.dtype.kind == "u" and found.size and int(found.max()) >= 2**63:
+        raise TraceError(f"the key {int(found.max())} is beyond 64 bits with a sign; give it as text")
+    if found.dtype.kind in "iu":
+        return np.ascontiguousarray(found, np.int64)
+    return np.ascontiguousarray(found, found.dtype.newbyteorder("="))
+
+
+def _identities(spec: Specification) -> dict[str, str]:
+    """Return what stands for the names of variables in a state, where a declaration decides what a number means.
+
+    With another unit, another recorded name or other codes of members, what is remembered is of another signal.
+    """
+    found: dict[str, str] = {}
+    for each in spec.document.declarations:
+        parts = [each.unit, *each.columns]
+        kind = spec.document.types.get(each.name)
+        if isinstance(kind, Enumeration):
+            parts += [f"{member}={code}" for member, code in kind.members]
+        if each.kind == "var" and any(parts):
+            found[each.name] = "\0".join((each.name, *parts))
+    return found

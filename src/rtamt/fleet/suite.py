@@ -1,0 +1,307 @@
+"""``Suite``: many requirements compiled once into few programs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import StlError, UsageError, choices, placed, shown
+from rtamt.fleet.groups import Asking, Way, grouped, way_of
+from rtamt.fleet.suite_bytes import packed, unpacked
+from rtamt.fleet.verdict_table import SELECTABLE, Row, VerdictTable, number_of
+from rtamt.language.parsing.imports import library_of
+from rtamt.language.printing.printer import excerpt, to_text
+from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.results import first_violation
+from rtamt.signals.trace import Trace
+from rtamt.specification import Specification
+from rtamt.specification_recorded import Optional
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from typing_extensions import Unpack
+
+    from rtamt.engine.offline import Query
+    from rtamt.settings import EvaluationSettings
+    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.verdicts.prepared import Found
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteRequirement:
+    """A requirement of a suite: its unique ``name``, and what a report shows of it.
+
+    ``optional``: the variables that recordings may lack.
+    """
+
+    name: str
+    formula: str
+    description: str = ""
+    severity: str = "error"
+    optional: Optional = field(default_factory=Optional)
+
+
+class Suite:
+    """Many requirements, compiled once into few programs, over any number of recordings.
+
+    ``specs``: specifications, or a mapping from a name to a specification; each requirement in them has its own row,
+    and each is named by what stands after ``require``, else by the name of its specification, else by its text.
+    ``select``: what is computed, of ``"robustness"``, ``"satisfied"`` and ``"first_violation"``; to leave out the
+    robustness, or the other two, halves state and work. The other settings are those of
+    :meth:`Specification.evaluate`.
+
+    The values are those of :meth:`Specification.evaluate` on each requirement, bit for bit. Samples must be complete: a
+    missing one is an error in the rows of the requirements that read it. Programs are split so that
+    the registers of each fit the second-level cache. A suite is pickled as bytes of programs, see :meth:`to_bytes`.
+
+    >>> import rtamt
+    >>> suite = rtamt.Suite([rtamt.parse("require LOW: always(x <= 9); require HIGH: always(x >= 3)", period=1)])
+    >>> [(row.requirement, row.robustness, row.satisfied) for row in suite.evaluate({"x": [5, 2]})]
+    [('LOW', 4.0, True), ('HIGH', -1.0, False)]
+    """
+
+    def __init__(
+        self,
+        specs: Specification | Iterable[Specification] | Mapping[str, Specification],
+        *,
+        select: Iterable[str] = SELECTABLE,
+        tolerance: float | None = None,
+        **reading: Unpack[EvaluationSettings],
+    ) -> None:
+        self.select = _selected(select)
+        robustness = "robustness" in self.select
+        truth = len(self.select) > robustness
+        every = _named(specs)
+        asked = {}
+        for number, (name, spec) in enumerate(every):
+            query = _query_of(name, spec, {"tolerance": tolerance, **reading})
+            asked[number] = Asking(spec, query, robustness, truth)
+        self.requirements = tuple(_requirement(name, spec) for name, spec in every)
+        self._specs = dict(every)
+        self._settings: dict[str, Any] = {"tolerance": tolerance, **reading}
+        self._groups, why = grouped(asked)
+        self._apart = {number: (every[number][1], why[number]) for number in why}
+
+    # ---- evaluation ------------------------------------------------------------------------------
+
+    def evaluate(self, data: Any, *, recording: str = "") -> VerdictTable:
+        """Evaluate all requirements on one complete trace: a row for each, in their order.
+
+        ``data`` as for :meth:`Specification.evaluate`, with the variables of all requirements; ``recording``: its
+        name in the table. Wrong data and undefined values become the error in the rows of the requirements that
+        they concern.
+        """
+        rows: dict[int, Row] = {}
+        signals = data if isinstance(data, Trace) else _names_of(data)
+        for number, requirement in enumerate(self.requirements):
+            reason = requirement.optional.unchecked(signals) if requirement.optional.columns else ""
+            if reason:
+                rows[number] = Row(recording, requirement.name, unchecked=f"not checked: {reason}")
+        for group in self._groups:
+            kept = [number for number in group.inputs if number not in rows]
+            if kept:
+                for number, found, trace in group.of(kept).evaluate(data):
+                    rows[number] = self._row(recording, number, found, trace)
+        for number, (spec, _) in self._apart.items():
+            if number not in rows:
+                rows[number] = self._row_apart(recording, number, spec, data)
+        return VerdictTable([rows[number] for number in range(len(self.requirements))], self.select)
+
+    def _row(self, recording: str, number: int, found: Found | StlError, trace: DomainTrace | None) -> Row:
+        name = self.requirements[number].name
+        if isinstance(found, StlError):
+            return Row(recording, name, error=str(found))
+        at = None if found.violation is None or trace is None else number_of(trace.time(found.violation))
+        return Row(
+            recording,
+            name,
+            found.robustness,
+            found.satisfied if "satisfied" in self.select else None,
+            at if "first_violation" in self.select else None,
+            error=None if found.error is None else str(found.error),
+        )
+
+    def _row_apart(self, recording: str, number: int, spec: Specification, data: Any) -> Row:
+        """Return the row of a requirement that has its own program."""
+        name, robustness, violated, satisfied = self.requirements[number].name, None, None, None
+        try:
+            result = spec.evaluate(data, **self._settings)
+            robustness = result.robustness if "robustness" in self.select else None
+            if len(self.select) > ("robustness" in self.select):
+                satisfied = result.satisfied
+                violated = None if satisfied else number_of(first_violation(result))
+        except StlError as error:
+            return Row(recording, name, robustness, error=str(error))
+        return Row(
+            recording,
+            name,
+            robustness,
+            satisfied if "satisfied" in self.select else None,
+            violated if "first_violation" in self.select else None,
+        )
+
+    # ---- bytes -----------------------------------------------------------------------------------
+
+    def to_bytes(self) -> bytes:
+        """Return the suite as bytes: its programs, and how recordings are read, without any formula.
+
+        Raises :class:`UsageError` for a requirement that bytes cannot hold: over members of groups, with a custom
+        operator, or with a sampling period that each recording decides.
+
+        >>> import rtamt
+        >>> suite = rtamt.Suite([rtamt.parse("always(x >= 3)", period="100ms")])
+        >>> rtamt.Suite.from_bytes(suite.to_bytes()).evaluate({"x": [5, 4]}) == suite.evaluate({"x": [5, 4]})
+        True
+        """
+        for number, (_, why) in self._apart.items():
+            raise UsageError(
+                f"the requirement '{self.requirements[number].name}' cannot be stored with a suite: it {why}; "
+                f"leave it out, and evaluate it by itself"
+            )
+        for group in self._groups:
+            if group.way.domain.step is None:
+                name = self.requirements[next(iter(group.inputs))].name
+                raise UsageError(
+                    f"the requirement '{name}' cannot be stored with a suite: it has no sampling period, in which its "
+                    f"bounds are counted; give one, such as Suite(specs, period='100ms')"
+                )
+        return self._bytes
+
+    @cached_property
+    def _bytes(self) -> bytes:
+        return packed(self.select, self.requirements, self._groups)
+
+    @staticmethod
+    def from_bytes(code: bytes | bytearray | memoryview) -> Suite:
+        """Read a suite that :meth:`to_bytes` wrote; nothing is parsed or compiled.
+
+        The bytes need not be trusted: they are verified. Raises :class:`UsageError` for anything else.
+        """
+        select, requirements, groups = unpacked(code, SuiteRequirement)
+        suite = Suite.__new__(Suite)
+        suite.select, suite.requirements = select, requirements
+        suite._settings, suite._groups, suite._apart, suite._specs = {}, groups, {}, {}
+        return suite
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Suite.from_bytes, (self.to_bytes(),)
+
+    @property
+    def storable(self) -> bool:
+        """Whether :meth:`to_bytes` takes the suite."""
+        return not self._apart and all(group.way.domain.step is not None for group in self._groups)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """A hash of what is computed: that of the bytes or, where there are none, of texts and settings."""
+        if self.storable:
+            return hashlib.sha256(self.to_bytes()).hexdigest()
+        described: list[Any] = [self.select, sorted(self._settings.items(), key=str)]
+        for name, spec in self._specs.items():
+            document = spec.document
+            texts = (spec.text, document.selected, library_of(document), to_text(spec.formula))
+            read = (spec.period, spec.semantics, dict(spec.roles), spec.binding, spec.sampling, spec.backend)
+            described.append((name, spec.domain, *texts, dict(spec.parameters), *read))
+        return hashlib.sha256(repr(described).encode()).hexdigest()
+
+    def sent(self) -> tuple[Callable[..., Suite], tuple[Any, ...]]:
+        """Return a function and its arguments that make the suite in another process, with parsing if need be.
+
+        A pickle of a suite has no formulas; this has the specifications of a suite that is not :attr:`storable`.
+        """
+        if self.storable:
+            return Suite.from_bytes, (self.to_bytes(),)
+        return _again, (self._specs, self.select, self._settings)
+
+    @property
+    def ways(self) -> tuple[Way, ...]:
+        """How recordings are read for the requirements."""
+        apart = [way_of(spec) for spec, _ in self._apart.values()]
+        return (*(group.way for group in self._groups), *apart)
+
+    @property
+    def reads_everything(self) -> bool:
+        """Whether a requirement reads the members of groups, which each recording decides."""
+        return any(spec.groups for spec, _ in self._apart.values())
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """The variables that the requirements read, in order of appearance."""
+        return tuple(dict.fromkeys(name for way in self.ways for name in way.inputs))
+
+    def __len__(self) -> int:
+        return len(self.requirements)
+
+    def __repr__(self) -> str:
+        return f"<suite of {len(self)} requirements: {', '.join(self.select)}>"
+
+
+def _again(specs: Mapping[str, Specification], select: Sequence[str], settings: dict[str, Any]) -> Suite:
+    return Suite(specs, select=select, **settings)
+
+
+def _query_of(name: str, spec: Specification, settings: dict[str, Any]) -> Query:
+    try:
+        return spec._query(**settings)
+    except StlError as error:
+        raise placed(error, name) from None
+
+
+def _selected(select: Iterable[str]) -> tuple[str, ...]:
+    if isinstance(select, str):
+        raise UsageError(f"select is the text '{select}'; give a list of names, such as ['{select}']")
+    names = list(select)
+    for name in names:
+        if name not in SELECTABLE:
+            raise UsageError(
+                f"a suite cannot select {shown(name)}{choices(str(name), SELECTABLE, 'columns')}"
+            )
+    if not names:
+        raise UsageError(f"a suite selects nothing: give one or more of {', '.join(SELECTABLE)}")
+    return tuple(name for name in SELECTABLE if name in names)
+
+
+def _named(specs: Any) -> list[tuple[str, Specification]]:
+    """Return every requirement of every specification, with a unique name."""
+    given: list[tuple[str | None, Any]]
+    if isinstance(specs, Specification):
+        given = [(None, specs)]
+    elif isinstance(specs, Mapping):
+        given = [(str(name), spec) for name, spec in specs.items()]
+    elif isinstance(specs, str) or not hasattr(specs, "__iter__"):
+        raise UsageError(f"a suite takes specifications, got {shown(specs)}; rtamt.parse reads text")
+    else:
+        given = [(None, spec) for spec in specs]
+    found: list[tuple[str, Specification]] = []
+    for label, spec in given:
+        if not isinstance(spec, Specification):
+            raise UsageError(f"a suite takes specifications, got {shown(spec)}; rtamt.parse reads text")
+        several = spec.document.requirements
+        for known, one in zip(several, spec.requirements.values(), strict=True):
+            own = known.name if known.explicit or len(several) > 1 else spec.name or excerpt(spec.formula)
+            if label is not None:
+                own = label if len(several) == 1 else f"{label}: {known.name}"
+            found.append((own, one))
+    if not found:
+        raise UsageError("a suite needs one specification or more")
+    taken = Counter(name for name, _ in found)
+    seen: Counter[str] = Counter()
+    unique = []
+    for name, spec in found:
+        seen[name] += 1
+        unique.append((name if taken[name] == 1 else f"{name} ({seen[name]})", spec))
+    return unique
+
+
+def _requirement(name: str, spec: Specification) -> SuiteRequirement:
+    known = spec.document.requirements[0]
+    return SuiteRequirement(name, excerpt(spec.formula), known.description, known.severity, spec._optional)
+
+
+def _names_of(data: Any) -> Sequence[str]:
+    names = getattr(data, "columns", data)
+    return [str(name) for name in names] if hasattr(names, "__iter__") else []
