@@ -1,17 +1,20 @@
 """Compile a formula to a program: instructions, delays, parameters, and bytes that run without Python.
 
-=========  =====================================================================
-module     purpose
-=========  =====================================================================
-lower      formula to instructions: value numbering, lags, alignment of operands
-plan       formulas to one program (online) or a sequence of programs (offline)
-shared     programs and plans that are compiled once for all values of parameters
-graph      the graph that gives verdicts and bounds before the horizon, and its nodes
-early      formulas to that graph, and their values at the start of the trace
-causation  the parts of formulas in that graph, of which causation is computed
-hoist      constants out of windows and delays, which can then be shared
-passes     the passes over a program, and how to leave them out
-program    the program: instructions, serialisation, disassembly
-metadata   names, period and labels stored with a program
-=========  =====================================================================
+=============  =====================================================================
+module         purpose
+=============  =====================================================================
+lower          formula to instructions: value numbering, lags, alignment of operands
+time_lowering  what lowering decides by the time domain
+plan           formulas to one program (online) or a sequence of programs (offline)
+stored         plans without formulas, which bytes can carry
+slices         parts of a program: the instructions that some of its outputs need
+shared         programs and plans that are compiled once for all values of parameters
+graph          the graph that gives verdicts and bounds before the horizon, and its nodes
+early          formulas to that graph, and their values at the start of the trace
+causation      the parts of formulas in that graph, of which causation is computed
+hoist          constants out of windows and delays, which can then be shared
+passes         the passes over a program, and how to leave them out
+program        the program: instructions, serialisation, disassembly
+metadata       names, period and labels stored with a program
+=============  =====================================================================
 """

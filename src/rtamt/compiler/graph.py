@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import zlib
 from copy import copy
-from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.compiler.lower import seconds_per_step
@@ -18,6 +17,7 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import rank_of
+from rtamt.lazy_dataclasses import dataclass, field, fields, replace
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:

@@ -15,11 +15,11 @@ In dense time nothing is moved: changes of a signal that the operation removes w
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import replace
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.language.formula import Parameter
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,13 +53,15 @@ def hoist(program: Program) -> Program:
 
 def _moves(program: Program) -> dict[int, _Move]:
     """Return the instructions to move, each of them equal to another one then."""
-    found = [(place, ins) for place, ins in enumerate(program.instructions) if ins.opcode in _OPPOSITE]
-    if len({(ins.n, ins.lag) for _, ins in found}) == len(found):
-        return {}  # no two can become equal: most programs
+    windows = [(place, ins) for place, ins in enumerate(program.instructions) if ins.opcode in _OPPOSITE]
+    alike = Counter(
+        (ins.n, ins.lag) for _, ins in windows
+    )  # only these can become equal: in most programs none
+    found = [(place, ins) for place, ins in windows if alike[ins.n, ins.lag] > 1]
     moves = {place: move for place, ins in found if (move := _move(program, ins)).operations}
-    windows = Counter(move.window for move in moves.values())
-    windows.update(ins for _, ins in found if ins in windows)
-    return {place: move for place, move in moves.items() if windows[move.window] > 1}
+    readers = Counter(move.window for move in moves.values())
+    readers.update(ins for _, ins in found if ins in readers)
+    return {place: move for place, move in moves.items() if readers[move.window] > 1}
 
 
 def _move(program: Program, ins: Instruction) -> _Move:
@@ -75,10 +77,10 @@ def _move(program: Program, ins: Instruction) -> _Move:
             break
         if operation.opcode == "neg" or (operation.opcode == "sub" and before == operation.b):
             fill = -window.x if isinf(window.x) else window.x
-            window = replace(window, opcode=_OPPOSITE[window.opcode], x=fill)
+            window = window._replace(opcode=_OPPOSITE[window.opcode], x=fill)
         operations.append(place)
         place = before
-    return _Move(replace(window, a=place), tuple(reversed(operations)))
+    return _Move(window._replace(a=place), tuple(reversed(operations)))
 
 
 def _variable(program: Program, place: int) -> int | None:
@@ -142,13 +144,13 @@ def _of(program: Program, operation: int, value: int, places: Mapping[int, int],
     """Return an operation of ``value``, a place in the new program, instead of its variable operand."""
     ins, variable = program.instructions[operation], _variable(program, operation)
     a, b = (None if each is None else value if each == variable else places[each] for each in (ins.a, ins.b))
-    return replace(ins, a=a, b=b, lag=lag)
+    return ins._replace(a=a, b=b, lag=lag)
 
 
 def _reading(ins: Instruction, places: Mapping[int, int]) -> Instruction:
     """Return an instruction whose operands are at other places."""
     a, b = (None if each is None else places[each] for each in (ins.a, ins.b))
-    return replace(ins, a=a, b=b)
+    return ins._replace(a=a, b=b)
 
 
 def _unread(program: Program, moves: dict[int, _Move]) -> set[int]:

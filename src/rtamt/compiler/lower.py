@@ -2,8 +2,7 @@
 
 One function per kernel shape of the operator table, and a call for every operator without a kernel; no
 operator is named here. Time is counted in steps: samples, or ticks where signals have values between
-samples. The two differ only in the number of steps of a closed window, and in how until over [a, b] is
-composed for a > 0.
+samples; what differs between the two is in ``time_lowering.py``.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Sinc
 from rtamt.language.shares import rank_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -52,6 +51,7 @@ class Lowering(ABC):
         self.domain = domain
         self.period = period
         self.inputs = inputs
+        self.places = {name: place for place, name in enumerate(inputs)}
         self.clip = clip
         self.instructions: list[Instruction] = []
         self.origins: list[Formula | None] = []
@@ -74,12 +74,16 @@ class Lowering(ABC):
 
     def lower(self, formulas: Sequence[Formula]) -> list[int]:
         """Emit the instructions of formulas, operands first, and return the index of each formula's last one."""
+        found: dict[int, int] = {}  # by identity, since hashing formulas takes as long as lowering them
         for node in postorder(*formulas):
-            if node not in self.value_of:
-                self.value_of[node] = self._lower_node(node)
-        return [self.value_of[formula] for formula in formulas]
+            index = self.value_of.get(node)
+            if index is None:
+                index = self.value_of[node] = self._lower_node(node, found)
+            found[id(node)] = index
+        return [found[id(formula)] for formula in formulas]
 
-    def _lower_node(self, node: Formula) -> int:
+    def _lower_node(self, node: Formula, found: Mapping[int, int]) -> int:
+        """Return the index of a node, given those of its operands by identity."""
         # A parameter is never merged with another constant: its value may be changed.
         if isinstance(node, Parameter):
             return self.append(Instruction("const", x=node.value), node)
@@ -87,9 +91,9 @@ class Lowering(ABC):
             return self.emit(Instruction("const", x=node.value), node)
         if isinstance(node, Var):
             assert not node.bound, "quantifiers are resolved before"
-            return self.emit(Instruction("input", n=self.inputs.index(node.name)), node)
+            return self.emit(Instruction("input", n=self.places[node.name]), node)
         assert isinstance(node, Apply)
-        args = self.align([self.value_of[arg] for arg in node.args])
+        args = self.align([found[id(arg)] for arg in node.args])
         kernel = node.op.kernel
         if isinstance(kernel, Pointwise):
             return self.pointwise(node, kernel, args)
@@ -346,74 +350,4 @@ class Lowering(ABC):
 
     def chain(self, node: Apply, hold: int, goal: int, width: int, known: int) -> int:
         """Return until over a window that ends at the latest step, known at lag ``known``."""
-        if width == self.point:
-            lag = max(self.lag(hold), self.lag(goal))
-            return goal if known == lag else self.moved(goal, 0, -inf, known, node)
         return self.emit(Instruction("until", hold, goal, n=width, lag=known), node)
-
-
-class SampledLowering(Lowering):
-    """Signals have values at samples only: steps are samples; a closed window contains one more than its length."""
-
-    point = 1
-
-    @staticmethod
-    def until_just_before(period: Fraction) -> Fraction:
-        """Return how much shorter than a the closed window is that stands for [0, a)."""
-        return period
-
-    def ahead_of(self, node: Apply, x: int) -> int:
-        """Return x since x: x itself, and its last value after the last sample."""
-        distance, _ = self.bounds(node)
-        if distance == 0 or self.is_const(x):
-            return x
-        return self.emit(Instruction("since", x, x, lag=self.lag(x) + distance), node)
-
-    def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
-        """φ on [t, t') is "φ on [j - a, j) for every j from t + a to t'".
-
-        So a window over [t + a, t + b] alone sees all of it, and no second delay line is needed.
-        """
-        begin, end = bounds
-        if begin:
-            lag = max(self.lag(hold), self.lag(goal))
-            before = self.late(self.slid("min", hold, begin, lag, node), lag)
-            hold = self.moved(before, 1, inf, lag, node)
-            goal = self.emit(Instruction("min", hold, goal, lag=lag), node)
-        return self.chain(node, hold, goal, end - begin + 1, known)
-
-
-class ContinuousLowering(Lowering):
-    """Signals have values between samples: steps are ticks; a closed window contains as many as its length."""
-
-    point = 0
-
-    @staticmethod
-    def until_just_before(period: Fraction) -> Fraction:
-        """Signals are right-continuous: [0, a] and [0, a) differ only at isolated instants."""
-        return 0 * period
-
-    def ahead_of(self, node: Apply, x: int) -> int:
-        """The trace goes on with its last values."""
-        distance, _ = self.bounds(node)
-        return self.moved(x, 0, -inf, self.lag(x) + distance, node) if distance else x
-
-    def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
-        """φ until[a, b] ψ is φ on [t, t + a], and φ until[0, b - a] ψ from t + a on."""
-        begin, end = bounds
-        width = end - begin
-        if begin == 0:
-            return self.chain(node, hold, goal, width, known)
-        lag = max(self.lag(hold), self.lag(goal))
-        after = self.chain(node, hold, goal, width, known)
-        if node.op.tense is Tense.FUTURE:
-            first = self.emit(Instruction("slide_min", hold, n=begin, lag=self.lag(hold) + begin), node)
-            first = self.delayed(first, known)
-        else:
-            first = self.moved(self.slid("min", hold, begin, lag, node), width, inf, lag, node)
-        return self.emit(Instruction("min", after, first, lag=known), node)
-
-
-def lowering_of(domain: type[TimeDomain]) -> type[Lowering]:
-    """Return the lowering of a time domain."""
-    return ContinuousLowering if domain.continuous else SampledLowering

@@ -6,12 +6,12 @@ The byte format is described field by field in core/program/metadata.hpp.
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
+from rtamt.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -14,11 +14,11 @@ program: the header of the program contains those that it leaves out, one bit ea
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.hoist import hoist
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

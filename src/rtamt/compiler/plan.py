@@ -6,21 +6,21 @@ first over the whole trace and scanned backwards, and the result becomes an addi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.lower import lowering_of
 from rtamt.compiler.passes import passed
+from rtamt.compiler.time_lowering import lowering_of
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
 from rtamt.language.operators import STL, Until, Window
 from rtamt.language.parameters import with_values
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from rtamt.compiler.program import Program
     from rtamt.signals.domain_interface import TimeDomain
@@ -37,7 +37,7 @@ class Scan:
     name: str
     kind: str  # run_max, run_min or until; DEFINED: by the definition of ``meaning``
     outputs: tuple[int, ...]
-    meaning: Apply  # the formula that the result stands for
+    meaning: Apply | None  # the formula that the result stands for; None in plans without formulas
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +57,10 @@ class Plan:
 
     def original(self, formula: Formula) -> Formula:
         """Return a formula of this plan with scans replaced by their meaning, for messages."""
+        return self.originals()(formula)
+
+    def originals(self) -> Callable[[Formula], Formula]:
+        """Return :meth:`original` for many formulas."""
         meanings: dict[str, Formula] = {}
 
         def put_back(node: Formula, args: tuple[Formula, ...]) -> Formula:
@@ -66,8 +70,9 @@ class Plan:
 
         for stage in self.stages:
             for scan in stage.scans:
+                assert scan.meaning is not None
                 meanings[scan.name] = fold(scan.meaning, put_back)
-        return with_values([fold(formula, put_back)], self.program.parameters)[0]
+        return lambda formula: with_values([fold(formula, put_back)], self.program.parameters)[0]
 
 
 def compile_program(

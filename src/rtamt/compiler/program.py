@@ -14,11 +14,10 @@ from __future__ import annotations
 
 import struct
 import zlib
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.passes import bits_of, without_of
@@ -26,6 +25,7 @@ from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 
@@ -61,8 +61,7 @@ _VERSION = 1
 _CHECKSUM = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Instruction:
+class Instruction(NamedTuple):
     """One instruction: ``a`` and ``b`` are operands (indices of earlier instructions, or None).
 
     ``n`` is a width or distance in samples (of ``input``: which input; of ``call``: which call), ``x`` a
@@ -159,7 +158,7 @@ class Program:
         instructions = list(self.instructions)
         for place, origin in enumerate(self.origins):
             if isinstance(origin, Parameter) and instructions[place].opcode == "const":
-                instructions[place] = replace(instructions[place], x=values[origin.name])
+                instructions[place] = instructions[place]._replace(x=values[origin.name])
         return replace(self, instructions=tuple(instructions), parameters=values)
 
     def place_of(self, formula: Formula) -> int:

@@ -5,7 +5,6 @@ Formulas that differ in these values alone have the same instructions, apart fro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from rtamt.compiler.early import compile_graph
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.formula import Formula, Parameter, postorder
 from rtamt.language.parameters import with_values
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.discrete import Discrete
 

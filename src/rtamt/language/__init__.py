@@ -19,8 +19,8 @@ shares           the share of a window that an operator needs
 document         the content of a specification file
 quantifiers      ``group cars = "car_*"``, and the quantifiers over its members
 tables           ``table name = {(x, y), ...}``, a function of one number
+substitution     formulas with one part replaced
 parameters       values of parameters, set without parsing again
-lint             the table of warnings
 undefined_value  the error for undefined values, shared by both back ends
 definitions      define what each operator means: pure functions, and their interval extensions
 parsing          convert text to formulas and documents: tokens, grammar, declarations, templates, imports

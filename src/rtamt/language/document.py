@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
+from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,7 +38,8 @@ class Declaration:
     """A declared variable (with its role, if any), constant or parameter (with its value as written).
 
     ``unit``: as written, such as m/s. ``columns``: the recorded names of the variable, the preferred one first.
-    ``optional``: whether recordings may lack it; requirements that read it are then not checked.
+    ``optional``: whether recordings may lack it; requirements that read it are then not checked. ``range``: its least
+    and its greatest value, for analyses without a recording. ``rate``: its least and its greatest change, per second.
     """
 
     name: str
@@ -49,6 +50,8 @@ class Declaration:
     unit: str = ""
     columns: tuple[str, ...] = ()
     optional: bool = False
+    range: tuple[float, float] | None = None
+    rate: tuple[float, float] | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

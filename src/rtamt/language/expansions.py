@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import inf
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.rows import operator
 from rtamt.language.unwritten import AT_LEAST, BEFORE, GE, GT, PULSES
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from rtamt.language.records import Known

@@ -16,12 +16,12 @@ each use the previous one twice has 10¹⁸ nodes. Every traversal must visit ea
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from rtamt.language.equal_nodes import EqualNodes, representative
 from rtamt.language.value_types import Boolean, Enumeration
+from rtamt.lazy_dataclasses import dataclass, field, fields, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -156,6 +156,9 @@ class Var(Formula):
     span: Span | None = field(default=None, compare=False, repr=False)
     type: PartType = field(default=None, compare=False, repr=False)
 
+    def __hash__(self) -> int:
+        return hash(self.name)
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, init=False)
 class Apply(Formula):
@@ -189,9 +192,13 @@ class Apply(Formula):
         try:
             return self._hash
         except AttributeError:
-            for node in _lacking(self, "_hash"):
-                _store_hash(node, hash((node.op, node.args, node.interval)))
-            return self._hash
+            for arg in self.args:
+                if isinstance(arg, Apply) and not hasattr(arg, "_hash"):
+                    for node in _lacking(arg, "_hash"):
+                        _store_hash(node, hash((node.op, node.args, node.interval)))
+            found = hash((self.op, self.args, self.interval))
+            _store_hash(self, found)
+            return found
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Apply):

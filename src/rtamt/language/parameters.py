@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Parameter, folds, postorder
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

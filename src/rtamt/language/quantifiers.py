@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import inf
 from operator import add
@@ -30,6 +29,7 @@ from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
+from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -141,20 +141,23 @@ class FieldOf(Var):
     group: Group | None = None
 
 
-def _row(name: str, symbol: str, doc: str, sort: Sort, result: Sort, expansion: Expansion) -> Operator:
+def _row(
+    name: str, symbol: str, doc: str, sort: Sort, result: Sort, expansion: Expansion, phrase: str
+) -> Operator:
     example = f"{name} v in cars: v.x >= 3"
     row = Operator(name, (name,), Fixity.QUANTIFIER, 5, (sort,), result, doc, example, symbol)
-    return replace(row, expansion=expansion, units=unit_rules.plain if result is N else None)
+    return replace(row, expansion=expansion, phrase=phrase, units=unit_rules.plain if result is N else None)
 
 
 #: The quantifiers by their words. Those of a formula have a binder, see :func:`quantified`.
 QUANTIFIERS: Mapping[str, Operator] = MappingProxyType({
     "forall": _row("forall", r"\forall", "Every member that is present: the smallest value; +inf if there is none.",
-                   F, F, lambda body, _i: body),
+                   F, F, lambda body, _i: body, "for every {B}, {0}"),
     "exists": _row("exists", r"\exists", "Some member that is present: the largest value; -inf if there is none.",
-                   F, F, lambda body, _i: body),
+                   F, F, lambda body, _i: body, "for some {B}, {0}"),
     "count": _row("count", r"\#", "How many of the members that are present satisfy the formula, a number.",
-                  C, N, lambda body, _i: operator("if")(body, Const(1.0), Const(0.0))),
+                  C, N, lambda body, _i: operator("if")(body, Const(1.0), Const(0.0)),
+                   "the number of {B} for which {0}"),
 })  # fmt: skip
 
 

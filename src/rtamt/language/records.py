@@ -6,13 +6,13 @@ The table of the built-in operators is in ``operators.py``.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, Interval
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -230,6 +230,9 @@ class Operator:
     # the operands, and the monotonicity of the result in each operand.
     extension: Callable[..., Any] | None = None
     slopes: Callable[..., tuple[int | None, ...]] | None = None
+    # In English, by default its notation: {0} an operand, {I} the window, {D} the duration, {S} the share, {B} the
+    # binder.
+    phrase: str = ""
     fails: str = ""  # where a function has no value, for a message; by default several reasons are named
     binder: Binder | None = None  # of a quantifier in a formula
     # The unit of the result from those of the operands (``units/rules.py``); None: unknown.

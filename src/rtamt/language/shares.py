@@ -6,7 +6,6 @@ the trace: :func:`rank_of` counts both in steps.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 from math import ceil, inf
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Interval, Span
 from rtamt.language.units.durations import UNITS, decimal, exact
+from rtamt.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable

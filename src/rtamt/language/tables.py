@@ -12,7 +12,6 @@ line through both, before the first and after the last point the value there.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
 from functools import lru_cache
 from math import isinf
 from typing import TYPE_CHECKING, TypeAlias
@@ -25,6 +24,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.unwritten import reaches
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

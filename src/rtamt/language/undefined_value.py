@@ -13,6 +13,12 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 
+_WHY = "it is 0/0, inf - inf, 0 * inf, or a function outside its domain"
+
+#: The meaning of an operation without a text.
+UNNAMED = f"an operation\n{_WHY}"
+
+
 def undefined(formula: Formula, where: str) -> EvaluationError:
     """Return the error for an undefined value (0/0, inf - inf, …), or for a custom operator that returned NaN.
 
@@ -27,11 +33,20 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
             f"the operator '{formula.op.name}' gave NaN: '{excerpt(formula)}' has no value at {where}; "
             f"mend the operator, or change the formula or the data so that this cannot happen"
         )
+    return undefined_text(meaning_of(formula), where)
+
+
+def meaning_of(formula: Formula) -> str:
+    """Return what :func:`undefined_text` needs of a formula of built-in operators, as text."""
     why = formula.op.fails if isinstance(formula, Apply) else ""
+    return f"'{excerpt(formula)}'\n{why or _WHY}"
+
+
+def undefined_text(meaning: str, where: str) -> EvaluationError:
+    """Return the error for an undefined value of which only the text is known, see :func:`meaning_of`."""
+    formula, _, why = meaning.rpartition("\n")
     return EvaluationError(
-        f"'{excerpt(formula)}' has no value at {where}: "
-        f"{why or 'it is 0/0, inf - inf, 0 * inf, or a function outside its domain'}; "
-        f"change the formula or the data so that this cannot happen"
+        f"{formula} has no value at {where}: {why}; change the formula or the data so that this cannot happen"
     )
 
 

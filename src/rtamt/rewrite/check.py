@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 
@@ -12,6 +11,7 @@ from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
 from rtamt.language.units.durations import format_duration, is_less
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
 

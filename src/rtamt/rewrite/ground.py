@@ -7,12 +7,12 @@ nodes of the formula with other intervals; it is printed, and its spans point, a
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ the outer formula reads it d ahead.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -18,6 +17,7 @@ from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Bounds
 from rtamt.language.unwritten import COLUMN, PRESENT
 from rtamt.language.value_types import BOOLEAN
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon

@@ -10,7 +10,6 @@ both members must be present.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from functools import reduce
 from math import inf
 from operator import is_not
@@ -25,6 +24,7 @@ from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.language.unwritten import PRESENT, WHERE_PRESENT
 from rtamt.language.value_types import BOOLEAN
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.desugar import standing_for
 from rtamt.rewrite.partial import may_fail
 from rtamt.rewrite.presence import channel_of

@@ -14,7 +14,6 @@ predicates.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
 from typing import TypeAlias
@@ -24,6 +23,7 @@ from rtamt.language.formula import Apply, Const, Formula, located, variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.truth import replaced, truth
 

@@ -8,13 +8,13 @@ composed of these (added with a definition alone, or with arithmetic over formul
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeGuard
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Pointwise, Rank, Shift, Since, Sort, Tense, Until, Window
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:

@@ -20,6 +20,7 @@ binding           variables under their recorded names, in their declared units
 unit_conversion   from the unit of a recording to the declared one
 sampling          the latest values of variables as samples one period apart
 resampling        signals at other instants: a regular grid, or those of other signals
+slicing           a signal between two times
 listing           a trace as text: its signals topic by topic
 arrays            data (lists, arrays, frames, objects) to float64 arrays
 rows              many traces in one array for each variable, a trace in each row

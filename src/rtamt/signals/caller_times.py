@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from rtamt.errors import StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import positive_period
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -12,6 +10,7 @@ import numpy as np
 
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import UNITS, decimal, positive_period
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import Timestamps, check_numbers, columns_of, is_number, plain, timestamps, units_of
 from rtamt.signals.coding import NO_TYPES
@@ -128,11 +127,11 @@ class DiscreteTrace(DomainTrace):
     #: The unit of numeric timestamps that are not in seconds.
     unit: str | None = None
     #: The units of the variables whose source provides them.
-    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
     #: Lower and upper bounds of the samples of each variable; empty where all are known exactly.
-    bounds: Mapping[str, Bounds] = dataclasses.field(default_factory=dict)
+    bounds: Mapping[str, Bounds] = field(default_factory=dict)
     #: Which samples of a variable are missing.
-    missing: Mapping[str, Mask] = dataclasses.field(default_factory=dict)
+    missing: Mapping[str, Mask] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self._times)
@@ -190,14 +189,14 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         columns = {name: self.columns[name] for name in names}
         if self.bounds:
-            return dataclasses.replace(self, columns=columns)
+            return replace(self, columns=columns)
         return DiscreteTrace(
             self._times, columns, self.period, self.inferred, self.original, self.unit, self.units
         )
 
     def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
-        return dataclasses.replace(self, bounds=bounds, missing=missing)
+        return replace(self, bounds=bounds, missing=missing)
 
     def with_presence(self, channels: Mapping[str, str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
@@ -206,11 +205,11 @@ class DiscreteTrace(DomainTrace):
             channel: np.where(self.missing.get(name, none), 0.0, 1.0) for name, channel in channels.items()
         }
         exact = {channel: (values, values) for channel, values in made.items()}
-        return dataclasses.replace(self, columns={**self.columns, **made}, bounds={**self.bounds, **exact})
+        return replace(self, columns={**self.columns, **made}, bounds={**self.bounds, **exact})
 
     def with_units(self, units: Mapping[str, str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
-        return dataclasses.replace(self, units=units)
+        return replace(self, units=units)
 
     def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002
         """See :class:`DomainTrace`: all variables start with the first sample."""

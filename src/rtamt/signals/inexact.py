@@ -7,13 +7,13 @@ sample may have any value in the range of its variable, one with an uncertainty 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, Clocked, is_mapping, number_of
 

@@ -6,11 +6,11 @@ up to the next; cell 0 is where the recording starts. Both time domains are expl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.regular import merged
 
@@ -116,6 +116,11 @@ class Cells:
         i = int(np.searchsorted(self.starts, end, side="left")) - 1
         return i >= 0 and begin < int(self.ends[i])
 
+    def met_by(self, begins: Ints, ends: Ints) -> NDArray[np.bool_]:
+        """Return, for each of several [begin, end), of which none is empty, whether any cell is in it."""
+        last = np.searchsorted(self.starts, ends, side="left") - 1
+        return begins < np.append(self.ends, -4 * NEVER)[last]  # of -1, the last: there is none
+
     @property
     def count(self) -> int:
         """How many cells there are."""
@@ -172,6 +177,11 @@ class StepFunction:
         changes = self.changes[first:last].copy()
         changes[0] = begin
         return changes, self.values[first:last]
+
+    def stretches(self, value: float) -> tuple[Ints, Ints]:
+        """Return where the stretches begin and end on which the function has a value."""
+        having = np.flatnonzero(self.values == value)
+        return self.changes[having], np.append(self.changes, self.end)[having + 1]
 
     def mirrored(self, begin: int, end: int) -> StepFunction:
         """Return the part in [begin, end) as a function of -k."""

@@ -7,7 +7,6 @@ a channel that is 1 where it is present and 0 where it is not stands beside them
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +15,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.language.quantifiers import Field
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays

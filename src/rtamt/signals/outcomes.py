@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import EvaluationError
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
@@ -96,7 +96,9 @@ class Causation:
 
 @dataclass(frozen=True, slots=True)
 class CausationRun:
-    """Causation in dense time at every instant from ``begin`` up to but excluding ``end``; None: unbounded.
+    """Causation at every sample from ``begin`` to ``end``; None: unbounded.
+
+    In dense time: at every instant from ``begin`` up to but excluding ``end``.
 
     >>> from rtamt import CausationRun
     >>> CausationRun(0.0, 2.5, violation=-2.0, satisfaction=-2.0)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, shown
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.arrays import TIME, as_array, is_mapping
 from rtamt.signals.data_errors import missing_variable
 

@@ -5,13 +5,13 @@ Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError
+from rtamt.lazy_dataclasses import replace
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.regular import check_increasing

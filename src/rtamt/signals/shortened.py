@@ -6,11 +6,11 @@ nothing else: see ``settling``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.instants import StepFunction
 from rtamt.signals.regular import merged
 

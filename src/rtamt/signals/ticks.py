@@ -19,7 +19,6 @@ unchanged, and so is every other double that is the nearest to its own tick.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from fractions import Fraction
 from numbers import Rational
@@ -30,6 +29,7 @@ import numpy as np
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,

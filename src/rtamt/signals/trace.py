@@ -10,8 +10,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from fractions import Fraction
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, overload
 
@@ -19,15 +17,18 @@ import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration, positive_period
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.signals.arrays import TIME, Clocked, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
 from rtamt.signals.resampling import grid_of, resampled
 from rtamt.signals.signal import Signal
+from rtamt.signals.slicing import sliced
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
+    from fractions import Fraction
 
     from numpy.typing import NDArray
 
@@ -177,7 +178,7 @@ class Trace(Clocked):
         Signal(times=array([1., 2.]), values=array([4., 2.]))
         """
         if isinstance(name, slice):
-            return self._between(name)
+            return self.with_channels({each: sliced(each, self._channels[each], name) for each in self})
         channel = self.channel(name)
         times = np.arange(len(channel.values)) if channel.times is None else channel.times
         return Signal(times, channel.values)
@@ -251,25 +252,6 @@ class Trace(Clocked):
             raise UsageError("a DataFrame needs pandas, which is not installed: pip install pandas") from None
         series = {name: pd.Series(self[name].values, index=self[name].times) for name in self._channels}
         return pd.DataFrame(series).rename_axis(TIME)
-
-    def _between(self, times: slice) -> Trace:
-        if times.step is not None:
-            raise UsageError(
-                "a slice of a trace takes two times; put it on another time base with resample(period=...)"
-            )
-        found = {}
-        for name, channel in self._channels.items():
-            if channel.times is None:
-                raise TraceError(
-                    f"'{name}' has no timestamps, so that it has no times to slice", variable=name
-                )
-            low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
-            inside = _inside(channel.times, low, high)
-            table = None if channel.table is None else channel.table[_inside(channel.table, low, high)]
-            found[name] = replace(
-                channel, times=channel.times[inside], values=channel.values[inside], table=table
-            )
-        return self.with_channels(found)
 
     # ---- for the engine --------------------------------------------------------------------------
 
@@ -404,32 +386,6 @@ class Trace(Clocked):
 
     def _repr_html_(self) -> str:
         return html(self)
-
-
-def _inside(times: Times, low: Any, high: Any) -> NDArray[np.bool_]:
-    inside = np.ones(len(times), dtype=bool)
-    inside &= True if low is None else times >= low
-    inside &= True if high is None else times <= high
-    return inside
-
-
-def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
-    """Return an end of a slice as times of this type; None where it is open."""
-    if end is None:
-        return None
-    try:
-        if dtype.kind == "M":
-            return np.datetime64(end, "ns")
-        if dtype.kind == "m":
-            return (
-                end
-                if isinstance(end, np.timedelta64)
-                else np.timedelta64(round(Fraction(str(end)) * 10**9), "ns")
-            )
-        return float(end)
-    except (TypeError, ValueError):
-        kind = "a date such as '2026-05-01T12:00'" if dtype.kind == "M" else "a number of seconds"
-        raise UsageError(f"{shown(end)} cannot begin or end a slice of this trace; give {kind}") from None
 
 
 def in_seconds(times: Times) -> FloatArray:

@@ -6,7 +6,6 @@ not a number of hertz, although radians have no dimension.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import lcm
@@ -17,6 +16,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.language.units.library import in_unit, parsed, registry, same_text
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray

@@ -15,6 +15,7 @@ from rtamt.language.operators import Fixity
 from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.import_parser import ImportParser
 from rtamt.language.parsing.lexer import Token, is_name, quoted
+from rtamt.language.parsing.ranges import parse_range, parse_rate
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier, unquoted_pattern
 from rtamt.language.tables import begins_table, parse_table
@@ -235,6 +236,9 @@ class DeclarationParser(ImportParser):
         value: float | None = None
         columns: tuple[str, ...] = ()
         unit = "" if constant else self._unit(token)
+        numeric = type_ is None and type_name in TYPES
+        range_ = None if constant else parse_range(self, name, number=numeric)
+        rate = None if constant else parse_rate(self, name, number=numeric)
         if not constant and self.accept("="):
             columns = self._columns(name, type_name)
         elif self.accept("="):
@@ -259,7 +263,7 @@ class DeclarationParser(ImportParser):
             self._types[name] = type_
         unit = unit or self._unit(token)
         self._declarations[name] = Declaration(
-            name, type_name, kind, role, value, unit, columns, optional, token.span
+            name, type_name, kind, role, value, unit, columns, optional, range_, rate, token.span
         )
 
     def _columns(self, name: str, type_name: str) -> tuple[str, ...]:
@@ -333,12 +337,13 @@ class DeclarationParser(ImportParser):
             return float(code)
         if type_ is not None and token.text in ("true", "false"):
             return float(self.next().text == "true")
-        number = self._number()
+        number = self.signed_number()
         if type_ is not None and number not in (0.0, 1.0):
             raise self.error(f"a bool is true or false (1 or 0), got {token}", token.span)
         return number
 
-    def _number(self) -> float:
+    def signed_number(self) -> float:
+        """``[ "-" ] , ( number | "inf" )``."""
         minus = self.accept("-")
         if self.token.kind == "number":
             value = self.number().value

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import os
 import stat
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError, did_you_mean
 from rtamt.files import nearest_file
 from rtamt.language.parsing.templates import all_placed
+from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document

@@ -162,6 +162,17 @@ def tokenize(text: str, language: Language) -> Tokens:
     return Tokens(texts, starts, ends, symbols)
 
 
+def comments(text: str, language: Language) -> list[Span]:
+    """Return where the comments of a text are.
+
+    >>> from rtamt.language.operators import STL
+    >>> comments('x >= "a//b" // high', STL)
+    [Span(start=12, end=19)]
+    """
+    pattern, _ = _lexicon(language.spellings)
+    return [Span(*match.span()) for match in pattern.finditer(text) if _is_comment(match[0])]
+
+
 def _is_comment(piece: str) -> bool:
     return piece.startswith("//") or (piece.startswith("/*") and piece.endswith("*/") and len(piece) > 3)
 

@@ -23,7 +23,6 @@ is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
@@ -49,6 +48,7 @@ from rtamt.language.parsing.templates import Template, parse_use
 from rtamt.language.parsing.type_rules import takes_number
 from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

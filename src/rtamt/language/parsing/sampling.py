@@ -11,12 +11,12 @@ instant, whenever its samples came; with ``skip nan`` samples that are NaN are l
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import UNITS, format_duration, positive_period
+from rtamt.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+from rtamt.lazy_dataclasses import dataclass, field, fields
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

@@ -10,8 +10,10 @@
     statement   = assertion | requirement | template, see templates.py
     import      = ( "from" , module , "import" , word | "import" , '"' , path , '"' ) , [ ";" ]
     declaration = ( [ "optional" ] , [ "input" | "output" ] , type , name , [ "[" , unit , "]" ] ,
-                  [ "=" , recorded , { "or" , recorded } ] |
+                  [ range ] , [ rate ] , [ "=" , recorded , { "or" , recorded } ] |
                   ( "const" | "parameter" ) , type , name , "=" , value , [ "[" , unit , "]" ] ) , [ ";" ]
+    range       = "in" , "[" , value , "," , value , "]"
+    rate        = "rate" , "[" , value , "," , value , "]"
     recorded    = '"' , characters , '"'
     annotation  = "@" , "topic" , "(" , name , "," , topic , ")" , [ ";" ]
     assertion   = [ name , "=" ] , expression

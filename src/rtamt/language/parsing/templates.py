@@ -15,7 +15,6 @@ shared, not copied, and so are equal uses. The formula knows nothing of template
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isinf
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +23,7 @@ from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
+from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -15,7 +15,6 @@ product of a radius in m and a rate in rad/s is a speed in m/s.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, product
 from math import inf, isclose, pi
@@ -24,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.language.units.library import UnknownUnitError, is_none, resolved, shortest_text, unit_text
+from rtamt.lazy_dataclasses import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

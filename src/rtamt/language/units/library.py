@@ -6,7 +6,6 @@ Angles are base units here, as in pint: radians have no dimension, but one rpm i
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import inf
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.errors import StlError
 from rtamt.extras import library
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,7 +5,6 @@ A rule takes the measures of the operands and returns that of the result, or rai
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import isclose, isfinite, pi
@@ -27,6 +26,7 @@ from rtamt.language.units.dimensions import (
     resolve,
     times,
 )
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

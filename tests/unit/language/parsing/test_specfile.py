@@ -1,5 +1,7 @@
 """Specification texts of more than one formula."""
 
+from math import inf
+
 import pytest
 
 from rtamt.errors import NameInFormulaError, ParseError
@@ -195,3 +197,31 @@ def test_a_declared_name_may_hold_slashes_and_only_an_undeclared_one_divides():
     assert document.variables == ("robot/speed", "limit")
     assert str(document.formula) == '"robot/speed" >= limit / 2'
     assert str(parse_document("input float a; input float b; a/b >= 2").formula) == "a / b >= 2"
+
+
+def test_ranges_of_variables():
+    document = parse_document(
+        'input float v [m/s] in [0, 60] = "speed" or "v"  int n in [-inf, 3]; float in in [0.5, 1]; always(v + n > in)'
+    )
+    assert [(each.name, each.range) for each in document.declarations] == [
+        ("v", (0.0, 60.0)),
+        ("n", (-inf, 3.0)),
+        ("in", (0.5, 1.0)),
+    ]
+    assert document.declarations[0].columns == ("speed", "v")
+
+
+def test_rates_of_variables():
+    document = parse_document(
+        'float v [m/s] in [0, 60] rate [-8, 3] = "speed"  float rate rate [-inf, 0.5]  float w  rate[1](w) <= rate + v'
+    )
+    assert [(each.name, each.rate) for each in document.declarations] == [
+        ("v", (-8.0, 3.0)),
+        ("rate", (-inf, 0.5)),
+        ("w", None),
+    ]
+    assert str(document.formula) == "rate[1](w) <= rate + v"
+
+
+def test_a_variable_called_in_is_no_range():
+    assert parse_document("float v; float in  in >= v").declarations[0].range is None

@@ -1,0 +1,69 @@
+"""The sentences of a document: what each requirement says, and what the names in it mean."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from rtamt.language.formula import Apply, postorder
+from rtamt.language.printing.english import to_english
+from rtamt.language.printing.writing import PAGE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rtamt.language.document import Document
+    from rtamt.language.formula import Formula
+
+
+class Sentence(NamedTuple):
+    """What a requirement says: ``text`` in English, and for each name in it what that means."""
+
+    text: str
+    names: Mapping[str, str]
+
+    def __str__(self) -> str:
+        return " ".join((self.text, *(f"Here, {name} means: {text}" for name, text in self.names.items())))
+
+
+def sentences_of(document: Document) -> dict[str, Sentence]:
+    """Return the sentence of each requirement, by its name."""
+    units = {each.name: each.unit for each in document.declarations if each.unit}
+    named = {id(known): name for name, known in document.definitions.items() if isinstance(known, Apply)}
+    found = {}
+    for requirement in document.requirements:
+        formula = requirement.formula
+        found[requirement.name] = Sentence(
+            _sentence(formula, _others(named, formula), units),
+            {
+                named[id(part)]: _sentence(part, _others(named, part), units)
+                for part in reversed(postorder(formula))
+                if id(part) in named and part is not formula
+            },
+        )
+    return found
+
+
+def _others(named: Mapping[int, str], formula: Formula) -> dict[int, str]:
+    """Return the names of parts, but for that of a whole formula, which is written out."""
+    return {key: name for key, name in named.items() if key != id(formula)}
+
+
+def _sentence(formula: Formula, names: Mapping[int, str], units: Mapping[str, str]) -> str:
+    text = to_english(formula, names=names, units=units, limit=PAGE)
+    # A name is written as it is.
+    begins_with_word = (
+        isinstance(formula, Apply) and text[:1].islower() and not _begins_with_name(formula, names)
+    )
+    return f"{text[:1].upper() + text[1:] if begins_with_word else text}."
+
+
+def _begins_with_name(formula: Apply, names: Mapping[int, str]) -> bool:
+    """Return whether the first word of a sentence is a name."""
+    first: Formula = formula
+    while isinstance(first, Apply) and id(first) not in names:
+        english = to_english(first, names=names)
+        operands = [each for each in first.args if english.startswith(to_english(each, names=names))]
+        if not operands:
+            return False
+        first = operands[0]
+    return True

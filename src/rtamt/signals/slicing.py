@@ -1,0 +1,56 @@
+"""Cut a channel to the times of a slice."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, shown
+from rtamt.lazy_dataclasses import replace
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.signals.trace import Channel
+
+
+def sliced(name: str, channel: Channel, times: slice) -> Channel:
+    """Return the samples of a channel from one time to the other, both included."""
+    if times.step is not None:
+        raise UsageError(
+            "a slice of a trace takes two times; put it on another time base with resample(period=...)"
+        )
+    if channel.times is None:
+        raise TraceError(f"'{name}' has no timestamps, so that it has no times to slice", variable=name)
+    low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
+    inside = _inside(channel.times, low, high)
+    table = None if channel.table is None else channel.table[_inside(channel.table, low, high)]
+    return replace(channel, times=channel.times[inside], values=channel.values[inside], table=table)
+
+
+def _inside(times: NDArray[Any], low: Any, high: Any) -> NDArray[np.bool_]:
+    inside = np.ones(len(times), dtype=bool)
+    inside &= True if low is None else times >= low
+    inside &= True if high is None else times <= high
+    return inside
+
+
+def _bound(end: Any, dtype: np.dtype[Any]) -> Any:
+    """Return an end of a slice as times of this type; None where it is open."""
+    if end is None:
+        return None
+    try:
+        if dtype.kind == "M":
+            return np.datetime64(end, "ns")
+        if dtype.kind == "m":
+            return (
+                end
+                if isinstance(end, np.timedelta64)
+                else np.timedelta64(round(Fraction(str(end)) * 10**9), "ns")
+            )
+        return float(end)
+    except (TypeError, ValueError):
+        kind = "a date such as '2026-05-01T12:00'" if dtype.kind == "M" else "a number of seconds"
+        raise UsageError(f"{shown(end)} cannot begin or end a slice of this trace; give {kind}") from None
