@@ -1,0 +1,40 @@
+"""Analysis of requirements by a solver: what they allow, without a recording.
+
+``pip install 'rtamt[analysis]'``: z3. Its modules:
+
+===========  =====================================================================
+module       purpose
+===========  =====================================================================
+solver       z3 behind a small face: terms, questions, a time limit
+values       extended real numbers and verdicts as terms
+arithmetic   pointwise operators, by their opcodes
+sequences    temporal operators over traces of unknown length
+encoder      formulas as terms, by the operator table
+problem      what is asked of traces of at most N samples
+witness      a trace that was found, evaluated by the engine
+study        questions about requirements, and answers as sentences
+questions    one question each, as functions
+analysis     all questions about a specification
+difference   two versions of a specification
+===========  =====================================================================
+"""
+
+from rtamt.analysis.analysis import Analysis, analyze
+from rtamt.analysis.difference import diff
+from rtamt.analysis.encoder import NotCoveredError
+from rtamt.analysis.questions import equivalent, implies, satisfiable, valid
+from rtamt.analysis.study import Conclusion
+from rtamt.analysis.witness import Witness
+
+__all__ = [
+    "Analysis",
+    "Conclusion",
+    "NotCoveredError",
+    "Witness",
+    "analyze",
+    "diff",
+    "equivalent",
+    "implies",
+    "satisfiable",
+    "valid",
+]

@@ -1,0 +1,81 @@
+"""What the opcodes of the operator table compute, as terms: arithmetic that is linear piece by piece.
+
+An operator whose opcode is not among them, such as ``sqrt``, is not covered.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeAlias
+
+from rtamt.analysis.values import NotLinear, Number, Value, Values
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    Encoding: TypeAlias = Callable[..., Value]
+
+_HALF, _ZERO, _ONE = Fraction(1, 2), Fraction(0), Fraction(1)
+
+
+def _constant(number: Fraction) -> Number:
+    return Number(number, cases=((number, True),))
+
+
+def _sub(of: Values, a: Value, b: Value) -> Value:
+    return of.plus(a, of.minus(b))
+
+
+def _abs(of: Values, a: Value) -> Value:
+    return of.choose(of.reaches(a, _constant(_ZERO)), a, of.minus(a))
+
+
+def _sign(of: Values, a: Value) -> Value:
+    zero = _constant(_ZERO)
+    below = of.choose(of.exceeds(zero, a), _constant(-_ONE), zero)
+    return of.choose(of.exceeds(a, zero), _constant(_ONE), below)
+
+
+def _ceil(of: Values, a: Value) -> Value:
+    return of.minus(of.floor(of.minus(a)))
+
+
+def _round(of: Values, a: Value) -> Value:
+    half = _constant(_HALF)
+    up = of.floor(of.plus(a, half))
+    return of.choose(of.reaches(a, _constant(_ZERO)), up, of.minus(of.floor(of.plus(of.minus(a), half))))
+
+
+def _mod(of: Values, a: Value, b: Value) -> Value:
+    if not isinstance(b, Number) or len(b.cases) != 1 or b.cases[0][0] == 0:
+        raise NotLinear("its divisor is not a constant")
+    return _sub(of, a, of.times(b, of.floor(of.over(a, b))))
+
+
+def _at_least(of: Values, a: Value, b: Value) -> Value:
+    of.defined.append(of.reaches(a, b))
+    return a
+
+
+ENCODED: Mapping[str, Encoding] = MappingProxyType(
+    {
+        "neg": lambda of, a: of.minus(a),
+        "min": lambda of, a, b: of.least((a, b)),
+        "max": lambda of, a, b: of.greatest((a, b)),
+        "add": lambda of, a, b: of.plus(a, b),
+        "sub": _sub,
+        "mul": lambda of, a, b: of.times(a, b),
+        "div": lambda of, a, b: of.over(a, b),
+        "abs": _abs,
+        "sign": _sign,
+        "floor": lambda of, a: of.floor(a),
+        "ceil": _ceil,
+        "round": _round,
+        "mod": _mod,
+        "at_least": _at_least,
+        "holds_gt": lambda of, a, b: of.verdict(of.exceeds(a, b)),
+        "holds_ge": lambda of, a, b: of.verdict(of.reaches(a, b)),
+        "holds_eq": lambda of, a, b: of.verdict(of.equals(a, b)),
+    }
+)

@@ -1,0 +1,163 @@
+"""What is asked of traces of at most so many samples: wishes to fulfil together, and the trace that fulfils them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor, inf, isfinite, log10
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rtamt.analysis.encoder import Encoder, Limits
+from rtamt.analysis.solver import Solver
+from rtamt.analysis.witness import Wish, Witness
+from rtamt.language.formula import Const, Formula, postorder, variables
+from rtamt.lazy_dataclasses import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.analysis.solver import Truth
+
+#: Traces up to this length are shown in full: the end of a trace satisfies or violates much by itself.
+_SHORT = 8
+#: In longer traces the search for a margin takes at most so many times as long as the answer, and so many seconds more.
+_PATIENCE, _AT_LEAST = 1.0, 0.05
+
+#: Margins are powers of ten, so many, the first one of the magnitude of the greatest constant of the formulas.
+_MARGINS = 10
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the solver found: a trace, or that there is none, or nothing within the limit (``exists`` is None)."""
+
+    exists: bool | None
+    witness: Witness | None = None
+
+
+class Problem:
+    """The traces of 1 to ``samples`` samples (``whole``: of exactly so many) within the limits of variables."""
+
+    def __init__(
+        self,
+        samples: int,
+        period: Fraction,
+        limits: Mapping[str, Limits],
+        limit: float,
+        *,
+        whole: bool = False,
+    ) -> None:
+        self.period = period
+        self._solver = Solver(limit)
+        self._encoder = Encoder(self._solver, samples, period, limits, whole=whole)
+        self._whole = whole
+        self._exact: dict[tuple[Formula, bool], Truth] = {}
+        self._distant: dict[tuple[Formula, bool], Truth] = {}
+
+    def find(self, wishes: Sequence[Wish]) -> Answer:
+        """Look for a trace that fulfils all wishes, with a margin if there is one."""
+        if not self._whole:
+            return self._find(wishes)
+        # Wishes without common variables do not affect each other if the length is given.
+        columns: dict[str, NDArray[np.float64]] = {}
+        for group in related(wishes):
+            answer = self._find(group)
+            if answer.witness is None:
+                return answer
+            columns |= answer.witness.columns
+        return Answer(True, Witness(columns, self.period, tuple(wishes), len(self._encoder.inside)))
+
+    def _find(self, wishes: Sequence[Wish]) -> Answer:
+        exact = [self._truth(wish) for wish in wishes]
+        begin = monotonic()
+        if not (found := self._solver.ask(exact)):
+            return Answer(found)
+        long = len(self._encoder.inside) > _SHORT
+        patience = _PATIENCE * (monotonic() - begin) + _AT_LEAST if long else inf
+        exact += self._long(exact)
+        witness = self._witness(wishes)
+        clear = self._clear(wishes, exact, patience)
+        return Answer(True, witness if clear is None or not clear.confirmed else clear)
+
+    def _long(self, exact: Sequence[Truth]) -> list[Truth]:
+        """Return the condition that a short trace is not cut off early, after an answer that there is one."""
+        last = self._encoder.inside[-1]
+        if self._whole or len(self._encoder.inside) > _SHORT or self._solver.ask([*exact, last]):
+            return [last] if len(self._encoder.inside) <= _SHORT else []
+        self._solver.ask(exact)
+        return []
+
+    def conflict(self, wishes: Sequence[Wish]) -> list[int] | None:
+        """Return the indices of some wishes that cannot be fulfilled together; None where none are known."""
+        return self._solver.conflict([self._truth(wish) for wish in wishes])
+
+    def covers(self, wish: Wish) -> None:
+        """Raise :class:`NotCoveredError` if a part of the formula is not covered."""
+        self._truth(wish)
+
+    def _clear(self, wishes: Sequence[Wish], exact: Sequence[Truth], patience: float) -> Witness | None:
+        """Return a trace with the greatest margin of a few, None if none is found in so many seconds."""
+        end = monotonic() + patience
+        distant = [*exact, *map(self._distance, wishes)]
+        largest = _magnitude([wish.formula for wish in wishes])
+        found: Witness | None = None
+        # Where there is a margin there is every smaller one.
+        low, high = 0, _MARGINS
+        while low < high and (left := end - monotonic()) > 0:
+            middle = low if low == 0 else (low + high) // 2
+            margin = Fraction(10) ** (largest - middle)
+            if self._solver.ask([*distant, self._solver.at_most(margin, self._encoder.margin)], left):
+                found, high = self._witness(wishes), middle
+            else:
+                low = middle + 1
+        return found
+
+    def _truth(self, wish: Wish) -> Truth:
+        """Return whether a wish is fulfilled."""
+        key = (wish.formula, wish.holds)
+        if key not in self._exact:
+            truth = self._encoder.holds(wish.formula, wish.spec.text)[0]
+            fulfilled = truth if wish.holds else self._solver.no(truth)
+            self._exact[key] = self._solver.every((fulfilled, self._encoder.defined(wish.formula)))
+        return self._exact[key]
+
+    def _distance(self, wish: Wish) -> Truth:
+        """Return whether a wish is fulfilled with the margin."""
+        key = (wish.formula, wish.holds)
+        if key not in self._distant:
+            verdict = self._encoder.robust(wish.formula, wish.spec.text)[0]
+            self._distant[key] = verdict.yes if wish.holds else verdict.no
+        return self._distant[key]
+
+    def _witness(self, wishes: Sequence[Wish]) -> Witness:
+        """Return the trace of the last answer."""
+        solver = self._solver
+        n = sum(map(solver.is_true, self._encoder.inside))
+        columns = {
+            name: np.array([float(solver.value(value.real)) for value in self._encoder.columns[name][:n]])
+            for name in variables(*(wish.formula for wish in wishes))
+        }
+        return Witness(columns, self.period, tuple(wishes), n)
+
+
+def related(wishes: Sequence[Wish]) -> list[list[Wish]]:
+    """Return groups of wishes, of which each shares no variables with the others."""
+    groups: list[tuple[set[str], list[Wish]]] = []
+    for wish in wishes:
+        names, members = set(variables(wish.formula)), [wish]
+        for group in [group for group in groups if group[0] & names]:
+            names |= group[0]
+            members = [*group[1], *members]
+            groups.remove(group)
+        groups.append((names, members))
+    return [members for _, members in groups]
+
+
+def _magnitude(formulas: Sequence[Formula]) -> int:
+    """Return the decimal exponent of the greatest constant of formulas."""
+    constants = [abs(node.value) for node in postorder(*formulas) if isinstance(node, Const)]
+    return max((floor(log10(each)) for each in constants if each and isfinite(each)), default=0)

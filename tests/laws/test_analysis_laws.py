@@ -1,0 +1,65 @@
+"""The solver agrees with brute force over small grids, and the engine with every trace that it finds."""
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import rtamt
+from rtamt.analysis.arithmetic import ENCODED
+from rtamt.analysis.encoder import NotCoveredError
+from rtamt.analysis.study import Part, Study
+from rtamt.errors import StlError
+from rtamt.language.formula import variables
+from rtamt.language.operators import STL, Pointwise
+from tests.laws.analysis_grid import by_force, by_solver
+from tests.strategies import formulas
+
+
+def _encoded(op):
+    return not isinstance(op.kernel, Pointwise) or op.kernel.opcode in ENCODED
+
+
+def _real(op):
+    """Whole numbers without a range may take the solver any time."""
+    return _encoded(op) and op.name not in ("floor", "ceil", "round", "mod", "wrap")
+
+
+COVERED = st.one_of(
+    formulas(4, ("x",), unbounded_future=True, select=_encoded),
+    formulas(3, ("x", "y"), unbounded_future=True, select=_encoded),
+).filter(variables)
+
+
+@settings(max_examples=150)
+@given(COVERED)
+def test_the_solver_finds_what_every_trace_over_three_values_and_six_samples_shows(formula):
+    try:
+        found, shown = by_solver(formula), by_force(formula)
+    except (NotCoveredError, StlError):
+        assume(False)
+    assert found == shown
+
+
+@settings(max_examples=60)
+@given(formulas(4, unbounded_future=True, select=_real).filter(variables))
+def test_the_engine_confirms_each_trace_that_the_solver_finds(formula):
+    part = Part("", rtamt.parse("x").with_formula(formula))
+    try:
+        study = Study([part.spec], samples=5)
+        answers = [study.satisfiable(part), study.valid(part)]
+    except (NotCoveredError, StlError):
+        assume(False)
+    for answer in answers:
+        assert answer.holds is not None
+        assert answer.witness is None or answer.witness.confirmed
+
+
+@pytest.mark.parametrize("op", [op for op in STL if isinstance(op.kernel, Pointwise)], ids=lambda op: op.name)
+def test_an_operator_is_encoded_or_named_as_not_covered(op):
+    spec = rtamt.parse(op.example)
+    study = Study([spec], samples=3)
+    if op.kernel.opcode in ENCODED and op.name not in ("mul", "div"):
+        study.require_covered(spec.formula, spec)
+    elif op.kernel.opcode not in ENCODED:
+        with pytest.raises(NotCoveredError, match=f"'{op.spellings[0]}' is not linear"):
+            study.require_covered(spec.formula, spec)
