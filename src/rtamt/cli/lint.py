@@ -15,28 +15,37 @@ from rtamt.cli.command import (
     read_library,
     read_specification,
     warn,
-    warnings_of,
+    write_output,
 )
+from rtamt.cli.language import read_language
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
-from rtamt.errors import SpecificationError, StlError, line_and_column
-from rtamt.language.lint import RULES
+from rtamt.errors import BoundError, SpecificationError, StlError, line_and_column
+from rtamt.language.parsing.imports import Library
+from rtamt.language.parsing.specfile import parse_document
+from rtamt.language.units.durations import positive_period
+from rtamt.lint.fix import mended
+from rtamt.lint.report import findings
+from rtamt.lint.rules import ALL, SHORTER, UNUSED
 from rtamt.rewrite.check import check_online
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.language.document import Document
     from rtamt.language.formula import Span
+    from rtamt.lint.found import LintWarning
     from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Check specification files without evaluating them. Report each error: what is wrong, where (line, column and a
 caret) and how to fix it. Warn about valid but probably unintended formulas, such as a sum of a speed and a
-distance. A file without formulas is checked as one that others import.
+distance, or a limit outside the declared range of a signal. A file without formulas is checked as one that others
+import.
 
 Exit code: 0 all files are valid, 2 some have errors; with --strict, 1 if there are only warnings.
---json prints one object per line: {"file", "severity", "code", "message", "line", "column", "end_line",
+--json prints one object per line: {"file", "severity", "code", "message", "fixable", "line", "column", "end_line",
 "end_column"}. "end_column" is the column after the last character; "code" is null if the text is not a
 specification."""
 
@@ -44,21 +53,29 @@ _EPILOG = """\
 With --period, bounds must be whole numbers of periods. With --online, formulas with unbounded future are
 errors, because no monitor can run them.
 
+--fix rewrites the files: each finding that has a fix is mended, comments and layout are kept, and every formula
+keeps its meaning.
+
 Warnings, with the codes for --ignore: {warnings}.
+A comment in the text silences one, too: // lint: ignore[RT105]
 
 examples:
   rtamt lint examples/request_grant/spec.stl
+  rtamt lint limits.stl --fix
   rtamt lint ros/rtamt4ros/specs/*.stl --online --period 100ms"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
-    parser.epilog = _EPILOG.format(warnings=", ".join(f"{rule.code} ({rule.about})" for rule in RULES))
+    parser.epilog = _EPILOG.format(warnings=", ".join(f"{rule.code} ({rule.about})" for rule in ALL))
     add_specification_options(parser)
     parser.add_argument("more", metavar="SPEC", nargs="*", help="more specifications")
     add_time_option(parser)
     parser.add_argument("--online", action="store_true", help="reject formulas that a monitor cannot run")
+    parser.add_argument(
+        "--fix", action="store_true", help="rewrite the files without the findings that have a fix"
+    )
     add_ignore_option(parser)
     parser.add_argument("--strict", action="store_true", help="exit with 1 if there are warnings")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
@@ -78,19 +95,24 @@ def run(args: argparse.Namespace) -> int:
 def _lint(file: str, args: argparse.Namespace) -> int:
     """Check a file and print what is wrong with it; return 2 where there are errors, 1 where there are warnings."""
     try:
-        found = warnings_of(_check(file, args), args.ignore)
+        found = _findings(file, args)
     except StlError as error:
         if args.json:
             say(_as_json(file, "error", None, *_place(error)))
         else:
             complain(error)
         return ERROR
+    found = [each for each in found if each.code not in args.ignore]
     if args.quiet:
         shown = ("error", "warning") if args.strict else ("error",)
         found = [each for each in found if each.severity in shown]
     if args.json:
         for each in found:
-            say(_as_json(file, each.severity, each.code, each.message, each.text, each.span))
+            say(
+                _as_json(
+                    file, each.severity, each.code, each.message, each.text, each.span, each.fix is not None
+                )
+            )
     else:
         warn(found, file)
     if any(each.severity == "error" for each in found):
@@ -107,30 +129,90 @@ def _place(error: StlError) -> tuple[str, str | None, Span | None]:
 
 
 def _as_json(
-    file: str, severity: str, code: str | None, message: str, text: str | None, span: Span | None
+    file: str,
+    severity: str,
+    code: str | None,
+    message: str,
+    text: str | None,
+    span: Span | None,
+    fixable: bool = False,
 ) -> str:
-    row: dict[str, object] = {"file": file, "severity": severity, "code": code, "message": message}
+    row: dict[str, object] = {
+        "file": file,
+        "severity": severity,
+        "code": code,
+        "message": message,
+        "fixable": fixable,
+    }
     if text is not None and span is not None:
         begin, end = line_and_column(text, span.start), line_and_column(text, span.end)
         row |= dict(zip(("line", "column", "end_line", "end_column"), (*begin, *end), strict=True))
     return json_text(row)
 
 
-def _check(file: str, args: argparse.Namespace) -> Specification:
+def _findings(file: str, args: argparse.Namespace) -> list[LintWarning]:
+    """Return the warnings about a file, after it was mended if that is asked for."""
     if not os.path.isfile(file):
         raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
+    library = False
     try:
         spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time, runs=False)
-    except CommandError:
-        library = read_library(args, args.time, file)
-        if library is None:
+    except CommandError as error:
+        if isinstance(error.__cause__, BoundError) and (short := _short_bounds(file, args)):
+            return short
+        found = read_library(args, args.time, file)
+        if found is None:
             raise
-        return library
-    try:
-        _check_formula(spec, online=args.online)
-    except StlError as error:
-        raise CommandError(f"{file}: {error}") from error
-    return spec
+        spec, library = found, True
+    if not library:
+        try:
+            _check_formula(spec, online=args.online)
+        except StlError as error:
+            raise CommandError(f"{file}: {error}") from error
+    if args.fix and any(each.fix for each in spec.warnings) and _mend(file, spec, args, library=library):
+        return _findings(file, Namespace(**{**vars(args), "fix": False}))
+    return [each for each in spec.warnings if not (library and each.code == UNUSED)]
+
+
+def _short_bounds(file: str, args: argparse.Namespace) -> list[LintWarning]:
+    """Return the findings about bounds that no specification with this sampling period may have."""
+    period = None if args.period is None else positive_period(args.period)
+    document = _parsed(_text_of(file), file, args)
+    found = findings(document, read_language(args.language), period)
+    return [each for each in found if each.code == SHORTER]
+
+
+def _mend(file: str, spec: Specification, args: argparse.Namespace, *, library: bool) -> bool:
+    """Rewrite a file without the findings that have a fix; return whether there were any."""
+    text, ending = _text_of(file), "\ntrue" if library else ""
+    found = mended(
+        _parsed(text + ending, file, args),
+        lambda new: _parsed(new, file, args),
+        spec.language,
+        period=spec.period,
+        ignored=args.ignore,
+    )
+    if not found.codes:
+        return False
+    write_output(file, found.text.removesuffix(ending).encode())
+    if not args.json and not args.quiet:
+        count = len(found.codes)
+        codes = ", ".join(dict.fromkeys(sorted(found.codes)))
+        say(f"{file}: {count} {'finding' if count == 1 else 'findings'} fixed ({codes})")
+    return True
+
+
+def _text_of(file: str) -> str:
+    """Return a file's characters as they are, with the ends of its lines."""
+    with open(file, encoding="utf-8", newline="") as opened:
+        return opened.read()
+
+
+def _parsed(text: str, file: str, args: argparse.Namespace) -> Document:
+    folder = os.path.dirname(file) or os.curdir
+    return parse_document(
+        text, language=read_language(args.language), unit=args.unit, library=Library(folder)
+    )
 
 
 def _check_formula(spec: Specification, *, online: bool) -> None:
