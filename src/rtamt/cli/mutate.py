@@ -1,0 +1,125 @@
+"""``rtamt mutate``: is a requirement tight? Change it a little, and see whether the recordings notice."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from rtamt.cli.arguments import requirements_and_traces
+from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
+from rtamt.cli.parser import OK, VIOLATED
+from rtamt.cli.reading_options import add_reading_options, on_clock, read_for, reading_of, recording
+from rtamt.cli.terminal import Progress, say, table, width_of
+from rtamt.files import replacing
+from rtamt.readers.sql import shown
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rtamt.cli.reading_options import Reading
+    from rtamt.mutation import Mutation
+    from rtamt.signals.trace import Trace
+    from rtamt.specification import Specification
+
+_DESCRIPTION = """\
+Change a requirement in one place at a time: another operator, a constant that is a tenth larger or smaller, a bound
+that is. Evaluate each of these mutants on recordings. A recording kills a mutant if the verdicts of the mutant and
+of its requirement differ on it. A mutant that survives shows what no recording tests: a limit that may be too loose,
+or a case that was never recorded.
+
+Exit code: 0 all mutants are killed, 1 some survive, 2 error."""
+
+_EPILOG = """\
+SPEC and TRACE are the same as for 'rtamt check', and traces are read in the same way; SPEC is one specification.
+Mutants that are trivially equal to their requirement are left out. The table lists those that survive, with --all
+every mutant and what kills it. "alone" counts the mutants that no other recording kills.
+
+--json prints one object: {"score", "mutants": [{"name", "requirement", "kind", "change", "line", "column",
+"killed_by"}], "recordings": [{"name", "kills", "alone"}]}.
+
+examples:
+  rtamt mutate examples/request_grant/spec.stl examples/request_grant/*.csv
+  rtamt mutate requirement.stl logs/*.csv --all
+  rtamt mutate requirement.stl logs/*.csv -o matrix.png"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.description = _DESCRIPTION
+    parser.epilog = _EPILOG
+    add_specification_options(parser)
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help="recordings, as for 'rtamt check'")
+    add_time_option(parser)
+    add_reading_options(parser)
+    parser.add_argument("--all", action="store_true", help="list every mutant, not only those that survive")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="plot which recording kills which mutant (png, svg, pdf)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read the recordings, evaluate the mutants, print what survives."""
+    from rtamt.mutation import mutate
+
+    given, traces = requirements_and_traces(args, "mutate")
+    if len(given) > 1:
+        raise CommandError(f"'rtamt mutate' takes one specification; leave out '{given[1].given}'")
+    spec = given[0].spec
+    reading = reading_of(args, spec.input_names, whole=True)
+    recordings: dict[str, Trace] = {}
+    with Progress() as progress:
+        for number, trace in enumerate(traces):
+            progress.bar(number, len(traces), trace)
+            name = shown(trace)
+            if name in recordings:
+                raise CommandError(f"'{name}' is given twice; leave it out once")
+            recordings[name] = _read(args, spec, trace, reading)
+        progress.show("evaluating")
+        found = mutate(spec, recordings)
+    if args.json:
+        say(json_text(found.to_dict()))
+    else:
+        _print(found, every=args.all)
+    if args.output is not None:
+        _plot(found, args.output)
+    return VIOLATED if found.survivors else OK
+
+
+def _read(args: argparse.Namespace, spec: Specification, trace: str, reading: Reading) -> Trace:
+    """Read a recording as ``rtamt check`` does; of a quantified specification all signals, which may be of members."""
+    if spec.groups:
+        return recording(args, trace)
+    return on_clock(spec.binding.applied(read_for([spec], trace, reading)), spec, trace, reading)
+
+
+def _print(found: Mutation, *, every: bool) -> None:
+    survivors, width = found.survivors, width_of(sys.stdout)
+    dead = len(found.mutants) - len(survivors)
+    count = len(found.recordings)
+    recordings = f"{count} recording{'' if count == 1 else 's'}"
+    say(f"{dead} of {len(found.mutants)} mutants killed by {recordings}: score {found.score:.0%}")
+    rows = [("mutant", "requirement", "line", "change", "killed by")]
+    for mutant in found.mutants if every else survivors:
+        killers = found.killers(mutant)
+        by = "survives" if not killers else killers[0] if len(killers) == 1 else f"{len(killers)} recordings"
+        line = "" if mutant.line is None else f"{mutant.line}:{mutant.column}"
+        rows.append((mutant.name, mutant.requirement, line, mutant.change, by))
+    if len(found.specification.requirements) == 1:
+        rows = [(name, *rest) for name, _, *rest in rows]  # type: ignore[misc]
+    if len(rows) > 1:
+        say()
+        say(table(rows, width=width))
+    say()
+    kills = found.to_dict()["recordings"]
+    lines = [(each["name"], str(each["kills"]), str(each["alone"])) for each in kills]
+    say(table([("recording", "kills", "alone"), *lines], right=[1, 2], width=width))
+
+
+def _plot(found: Mutation, path: str) -> None:
+    axes = found.plot()
+    try:
+        with replacing(path) as new:
+            axes.figure.savefig(new, dpi=130)
+    except (OSError, ValueError) as error:
+        raise CommandError(f"cannot write the plot '{path}': {error}") from None
