@@ -1,0 +1,358 @@
+"""C2PO, the specification language of R2U2: read and written.
+
+Its formulas are mission-time linear temporal logic (MLTL): bounds are whole numbers of samples. Facts: R2U2,
+compiler/docs/user/language.md, and the precedence of its parser.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from rtamt.errors import SpecificationError, UsageError
+from rtamt.interchange.conversion import Conversion, Rejection
+from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
+from rtamt.interchange.written import Names, ReadRequirement, specification_text
+from rtamt.language.formula import Apply, Formula, Interval, Span, Var, fold, postorder
+from rtamt.language.operators import STL, Fixity, Tense
+from rtamt.language.rows import function, infix
+from rtamt.language.units.durations import decimal
+from rtamt.language.value_types import BOOLEAN, Boolean, Enumeration
+from rtamt.lazy_dataclasses import dataclass, field
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rtamt.language.value_types import ValueType
+    from rtamt.specification import Specification
+
+_SECTIONS = ("STRUCT", "ENUM", "INPUT", "DEFINE", "FTSPEC", "PTSPEC")
+_MARK = re.compile(r"[A-Za-z_]\w*|[{};]")
+_COMMENT = re.compile(r"--[^\n]*")
+_NAME = re.compile(r"[A-Za-z_]\w*")
+#: What makes a file larger than any that is written by hand.
+_LONGEST = 2_000_000
+
+
+def _release(a: Formula, b: Formula, interval: Interval | None) -> Formula:
+    return STL["not"](_until(STL["not"](a), STL["not"](b), interval))
+
+
+def _until(a: Formula, b: Formula, interval: Interval | None) -> Formula:
+    """Return ``a U[l,u] b`` of MLTL, where a need not hold before the interval begins."""
+    if interval is None or interval.end is None or interval.begin == 0:
+        return STL["until"](a, b, interval=interval)
+    begin, rest = interval.begin, interval.end - interval.begin
+    inner = STL["until"](a, b, interval=Interval(0 * begin, rest))
+    return STL["eventually"](inner, interval=Interval(begin, begin))
+
+
+def _since(a: Formula, b: Formula, interval: Interval | None) -> Formula:
+    if interval is not None and interval.begin > 0:
+        raise InexpressibleError("'S' with a lower bound above 0 is not covered: write 'O' and 'H'")
+    return STL["since"](a, b, interval=interval)
+
+
+def _previous(initial: Formula, a: Formula, _interval: Interval | None) -> Formula:
+    return STL["delay"](a, initial, interval=Interval(Fraction(1), Fraction(1)))
+
+
+#: Operators bind as in its parser: unary and temporal prefix operators tighter than arithmetic.
+C2PO = Dialect(
+    "C2PO",
+    (
+        Word("abs", "abs"),
+        Word("sqrt", "sqrt"),
+        *PLAIN,
+        Word("not", "!", 120),
+        Word("always", "G", 120),
+        Word("eventually", "F", 120),
+        Word("historically", "H", 120),
+        Word("once", "O", 120),
+        Word("until", "U", 60),
+        Word("since", "S", 60),
+        Word("and", "&&"),
+        Word("or", "||"),
+        Word("implies", "->", 20, Fixity.LEFT),
+        Word("iff", "<->", 20),
+        Word("xor", "xor", 20),
+    ),
+    own=(
+        (infix("release", "R", 60, "", "a R[0:5] b", bounds=STL["until"].bounds, tense=Tense.FUTURE,
+               definition=STL["until"].definition), _release),
+        (infix("power", "pow", 110, "", "x pow 2", operands=STL["mul"].operands, result=STL["mul"].result,
+               definition=STL["pow"].definition), lambda a, b, _i: STL["pow"](a, b)),
+        (infix("remainder", "\ue000", 110, "", "x % 2", operands=STL["mul"].operands, result=STL["mul"].result,
+               definition=STL["mod"].definition), lambda a, b, _i: STL["mod"](a, b)),
+        (function("prev", 2, "", "prev(0, x)", definition=STL["add"].definition), _previous),
+    ),
+    meanings={"until": _until, "since": _since},
+    characters={"%": "\ue000"},
+)  # fmt: skip
+
+_STREAM_NOTE = (
+    "R2U2 reports a verdict for every instant; a requirement is satisfied if all of them are true, so that each "
+    "specification is read as 'always'"
+)
+_END_NOTE = "R2U2 reports nothing for instants whose windows reach beyond the trace; here they end with it"
+_EQUAL_NOTE = "R2U2 compares floats with a tolerance that its build fixes; here '==' is exact"
+
+
+@dataclass
+class _File:
+    """What has been read so far."""
+
+    types: dict[str, ValueType] = field(default_factory=dict)
+    numbers: list[str] = field(default_factory=list)
+    enumerations: dict[str, Enumeration] = field(default_factory=dict)
+    definitions: dict[str, Formula] = field(default_factory=dict)
+    unknown: dict[str, str] = field(default_factory=dict)
+    requirements: list[ReadRequirement] = field(default_factory=list)
+    rejected: list[Rejection] = field(default_factory=list)
+
+
+def read_c2po(text: str, period: Fraction | None = None) -> Conversion:
+    """Convert a C2PO file to a specification.
+
+    Args:
+        text: the content of the file.
+        period: the sampling period in seconds, by default 1: bounds of C2PO are numbers of samples.
+
+    Returns:
+        The specification, what it cannot express (structures, arrays, bitwise operators, the mission time), and where
+        R2U2 differs.
+
+    Raises:
+        UsageError: the text has no specification.
+
+    >>> print(read_c2po("INPUT a: bool; x: float; FTSPEC S1: a -> F[0,5](x > 3);").text.splitlines()[-1].strip())
+    always(a -> eventually[0:5](x > 3))
+    """
+    if len(text) > _LONGEST:
+        raise UsageError("the text is longer than 2 000 000 characters: split the file")
+    file, step = _File(), period or Fraction(1)
+    for section, statement in _statements(text):
+        _READERS[section](file, statement, step)
+    if not file.requirements and not file.rejected:
+        raise UsageError("there is no specification in the text: C2PO has them after FTSPEC or PTSPEC")
+    notes = [_STREAM_NOTE, _END_NOTE]
+    if any(
+        isinstance(n, Apply) and n.op.equates
+        for n in postorder(*(each.formula for each in file.requirements))
+    ):
+        notes.append(_EQUAL_NOTE)
+    roles = dict.fromkeys((*file.types, *file.numbers), "input")
+    return Conversion(
+        specification_text("Specifications of R2U2.", file.requirements, Names(roles), step),
+        tuple(each.name for each in file.requirements),
+        tuple(file.rejected),
+        tuple(notes),
+    )
+
+
+def _statements(text: str) -> Iterator[tuple[str, str]]:
+    """Yield each statement with its section."""
+    plain = _COMMENT.sub("", text)
+    section, start, depth = "", 0, 0
+    for match in _MARK.finditer(plain):
+        mark = match[0]
+        depth += (mark == "{") - (mark == "}")
+        if mark in _SECTIONS and not plain[start : match.start()].strip():
+            section, start = mark, match.end()
+        elif mark == ";" and depth <= 0:
+            statement, start, depth = plain[start : match.start()].strip(), match.end(), 0
+            if not section:
+                raise UsageError(f"a file of C2PO begins with one of {', '.join(_SECTIONS)}")
+            if statement:
+                yield section, statement
+    rest = plain[start:].strip()
+    if rest:
+        raise UsageError(f"'{rest[:40]}' has no ';' at its end")
+
+
+def _structure(file: _File, statement: str, _step: Fraction) -> None:
+    name = statement.partition(":")[0].strip()
+    file.unknown[name] = "a structure"
+
+
+def _enumeration(file: _File, statement: str, _step: Fraction) -> None:
+    name, _, body = statement.partition(":")
+    members: list[tuple[str, int]] = []
+    for code, member in enumerate(body.strip().strip("{}").split(","), 1):
+        label, _, value = member.partition(":")
+        members.append((label.strip(), int(value) if value.strip().isdigit() else code))
+    file.enumerations[name.strip()] = Enumeration(name.strip(), tuple(members))
+
+
+def _inputs(file: _File, statement: str, _step: Fraction) -> None:
+    names, _, kind = statement.rpartition(":")
+    kind = kind.strip()
+    for name in (each.strip() for each in names.split(",")):
+        if kind == "bool":
+            file.types[name] = BOOLEAN
+        elif kind in ("int", "float"):
+            file.numbers.append(name)
+        elif kind in file.enumerations:
+            file.types[name] = file.enumerations[kind]
+        else:
+            file.unknown[name] = f"of the type {kind or 'that is missing'}"
+
+
+def _define(file: _File, statement: str, _step: Fraction) -> None:
+    name, _, body = statement.partition(":=")
+    try:
+        file.definitions[name.strip()] = _formula(file, body.strip())
+    except (SpecificationError, InexpressibleError) as error:
+        file.unknown[name.strip()] = f"a definition that cannot be read ({_first_line(error)})"
+
+
+def _specification(file: _File, statement: str, step: Fraction) -> None:
+    label, colon, body = statement.partition(":")
+    number = len(file.requirements) + len(file.rejected)
+    if not colon or not _NAME.fullmatch(label.strip()):
+        label, body = f"spec_{number}", statement
+    name = label.strip()
+    try:
+        formula = _formula(file, body.strip().replace("=>", "->"))
+    except (SpecificationError, InexpressibleError) as error:
+        file.rejected.append(Rejection(name, str(error)))
+        return
+    file.definitions[name] = formula
+    file.requirements.append(ReadRequirement(name, _in_seconds(STL["always"](formula), step), statement))
+
+
+_READERS = {
+    "STRUCT": _structure,
+    "ENUM": _enumeration,
+    "INPUT": _inputs,
+    "DEFINE": _define,
+    "FTSPEC": _specification,
+    "PTSPEC": _specification,
+}
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).partition("\n")[0]
+
+
+def _formula(file: _File, text: str) -> Formula:
+    """Return the formula of an expression, with bounds in samples, as definitions have them."""
+    for match in _NAME.finditer(text):
+        if match[0] in file.unknown:
+            raise SpecificationError(
+                f"'{match[0]}' is {file.unknown[match[0]]}, which is not covered", text, Span(*match.span())
+            )
+    return C2PO.read(
+        text,
+        variables=[*file.types, *file.numbers],
+        types=file.types,
+        enumerations=file.enumerations,
+        definitions=file.definitions,
+    )
+
+
+def _in_seconds(formula: Formula, step: Fraction) -> Formula:
+    """Return a formula whose bounds are numbers of samples with bounds in seconds."""
+
+    def scaled(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        interval = node.interval
+        if interval is not None:
+            interval = Interval(interval.begin * step, None if interval.end is None else interval.end * step)
+        return node.op(*args, interval=interval)
+
+    return fold(formula, scaled)
+
+
+# ---- writing -------------------------------------------------------------------------------------
+
+
+def write_c2po(spec: Specification, _component: str | None = None) -> Conversion:
+    """Convert the requirements of a specification to a C2PO file.
+
+    Args:
+        spec: a specification in discrete time. A requirement ``always(φ)`` becomes the specification φ, whose verdicts
+            R2U2 reports at every instant; any other φ likewise, of which the first verdict counts.
+
+    Returns:
+        The file, and the requirements that C2PO cannot express: unbounded operators, past and future in one formula.
+
+    Raises:
+        UsageError: the specification is in dense time.
+
+    >>> import rtamt
+    >>> print(write_c2po(rtamt.parse("require R: always(x > 3 -> eventually[0:5](y > 3))", period=1)).text.strip())
+    INPUT
+        x, y: float;
+    <BLANKLINE>
+    FTSPEC
+        R: x > 3 -> F[0,5](y > 3);
+    """
+    if spec.domain.continuous:
+        raise UsageError("C2PO is about samples: read the specification in discrete time")
+    step = Fraction(1) if spec.period is None else Fraction(spec.period)
+    sections: dict[str, list[str]] = {"FTSPEC": [], "PTSPEC": []}
+    converted: list[str] = []
+    rejected: list[Rejection] = []
+    first: list[str] = []
+    formulas: list[Formula] = []
+    for requirement in spec.document.requirements:
+        formula = requirement.formula
+        everywhere = isinstance(formula, Apply) and formula.op is STL["always"] and formula.interval is None
+        inner = formula.args[0] if isinstance(formula, Apply) and everywhere else formula
+        name = re.sub(r"\W", "_", requirement.name)
+        try:
+            section = _section(inner)
+            sections[section].append(f"    {name}: {C2PO.write(inner, step)};")
+        except InexpressibleError as error:
+            rejected.append(Rejection(requirement.name, str(error)))
+            continue
+        formulas.append(inner)
+        converted.append(requirement.name)
+        if not everywhere:
+            first.append(name)
+    notes = [f"bounds are numbers of samples of {decimal(step)} s", _END_NOTE]
+    if first:
+        notes.append(f"of these, the verdict of the first instant counts: {', '.join(first)}")
+    lines = _declared(formulas)
+    for section, each in sections.items():
+        lines += [section, *each, ""] if each else []
+    return Conversion("\n".join(lines).rstrip() + "\n", tuple(converted), tuple(rejected), tuple(notes))
+
+
+def _section(formula: Formula) -> str:
+    """Return the section of a formula; raise where it has operators of both, or an unbounded one."""
+    tenses: set[Tense] = set()
+    for node in postorder(formula):
+        if isinstance(node, Apply) and node.op.tense is not Tense.NONE:
+            tenses.add(node.op.tense)
+            if node.interval is None or node.interval.end is None:
+                raise InexpressibleError(f"C2PO has bounded operators only, unlike '{node}'")
+    if len(tenses) > 1:
+        raise InexpressibleError("C2PO has no formulas of both future and past operators")
+    return "PTSPEC" if Tense.PAST in tenses else "FTSPEC"
+
+
+def _declared(formulas: list[Formula]) -> list[str]:
+    """Return the sections that declare the variables of formulas."""
+    kinds: dict[str, list[str]] = {}
+    enumerations: dict[str, Enumeration] = {}
+    for node in postorder(*formulas):
+        if isinstance(node, Var) and node.name not in (name for names in kinds.values() for name in names):
+            if not _NAME.fullmatch(node.name):
+                raise UsageError(
+                    f"'{node.name}' cannot be a variable of C2PO: use letters, digits and underscores"
+                )
+            kind = "float"
+            if isinstance(node.type, Boolean | Enumeration):
+                kind = node.type.name
+            if isinstance(node.type, Enumeration):
+                enumerations[kind] = node.type
+            kinds.setdefault(kind, []).append(node.name)
+    lines: list[str] = []
+    for each in enumerations.values():
+        members = ", ".join(f"{name}: {code}" for name, code in each.members)
+        lines += ["ENUM", f"    {each.name}: {{{members}}};", ""]
+    return [*lines, "INPUT", *(f"    {', '.join(names)}: {kind};" for kind, names in kinds.items()), ""]

@@ -1,0 +1,31 @@
+"""What a conversion gives: a text, and what of the source it does not have."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from rtamt.lazy_dataclasses import dataclass
+
+
+class Rejection(NamedTuple):
+    """A requirement that the other language cannot express, and the reason, one sentence."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Conversion:
+    """A converted set of requirements.
+
+    Attributes:
+        text: the content of the file.
+        converted: the names of the requirements that it contains.
+        rejected: those that it does not contain, each with the reason.
+        notes: where the two languages differ in what these requirements mean.
+    """
+
+    text: str
+    converted: tuple[str, ...]
+    rejected: tuple[Rejection, ...] = ()
+    notes: tuple[str, ...] = ()

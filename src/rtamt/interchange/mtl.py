@@ -1,0 +1,140 @@
+"""Formulas of py-metric-temporal-logic (``mtl.parse``): read and written, one a line.
+
+Facts: the grammar of github.com/mvcisback/py-metric-temporal-logic.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rtamt.errors import SpecificationError, UsageError
+from rtamt.interchange.conversion import Conversion, Rejection
+from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
+from rtamt.interchange.written import Names, ReadRequirement, specification_text
+from rtamt.language.formula import Apply, Interval, Var, fold, postorder
+from rtamt.language.operators import STL
+from rtamt.language.units.durations import decimal
+from rtamt.language.unwritten import TRUTH
+from rtamt.language.value_types import BOOLEAN
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from rtamt.language.formula import Formula
+    from rtamt.specification import Specification
+
+
+def _until(a: Formula, b: Formula, interval: Interval | None) -> Formula:
+    """Return ``a U[l,h] b``, of which the first operand must hold where the interval begins, too."""
+    found = STL["until"](a, b, interval=interval)
+    if interval is None:
+        return found
+    return STL["and"](STL["always"](a, interval=Interval(0 * interval.begin, interval.begin)), found)
+
+
+MTL = Dialect(
+    "py-metric-temporal-logic",
+    (
+        Word("true", "TRUE"),
+        Word("false", "FALSE"),
+        Word("not", "~ ¬", 130),
+        Word("always", "G", 130),
+        Word("eventually", "F", 130),
+        Word("next", "X \ue001", 130),
+        Word("until", "U", 60),
+        Word("unless", "W", 60),
+        Word("and", "& and"),
+        Word("or", "| or"),
+        Word("implies", "-> →"),
+        Word("iff", "<-> iff"),
+        Word("xor", "^ xor"),
+    ),
+    meanings={"until": _until},
+    characters={"@": "\ue001", "< >": "F  ", "[ ]": "G  "},
+)
+
+_ATOM = re.compile(r"\b[a-z_][A-Za-z_\d]*\b")
+_WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
+_LABEL = re.compile(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
+_NOTE = "py-metric-temporal-logic holds each value until the next sample: use --time dense for verdicts between samples"
+_END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
+
+
+def read_mtl(text: str, _period: Fraction | None = None) -> Conversion:
+    """Convert formulas of py-metric-temporal-logic to a specification.
+
+    Args:
+        text: one formula a line, each with an optional name and a colon before it. Its atoms become Booleans.
+
+    Raises:
+        UsageError: the text has no formula.
+
+    >>> print(read_mtl("R1: G(a -> F[0, 2] b)").text.splitlines()[-1].strip())
+    always(a -> eventually[0:2] b)
+    """
+    written: list[ReadRequirement] = []
+    rejected: list[Rejection] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        match = _LABEL.fullmatch(line)
+        name, source = (match["name"], match["formula"]) if match else (f"line_{number}", line.strip())
+        atoms = set(_ATOM.findall(source)) - _WORDS
+        try:
+            formula = MTL.read(source, variables=atoms, types=dict.fromkeys(atoms, BOOLEAN))
+        except SpecificationError as error:
+            rejected.append(Rejection(name, str(error)))
+            continue
+        written.append(ReadRequirement(name, formula, source))
+    if not written and not rejected:
+        raise UsageError("there is no formula in the text, such as: G(a -> F[0, 2] b)")
+    return Conversion(
+        specification_text("Formulas of py-metric-temporal-logic.", written, Names()),
+        tuple(each.name for each in written),
+        tuple(rejected),
+        (_NOTE, _END_NOTE),
+    )
+
+
+def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
+    r"""Convert the requirements of a specification to formulas of py-metric-temporal-logic, one a line.
+
+    Returns:
+        The formulas, and the requirements that it cannot express: it has no arithmetic, no comparisons and no past.
+
+    >>> import rtamt
+    >>> print(write_mtl(rtamt.parse("bool a\nbool b\nrequire R: always(a -> eventually[0:2] b)")).text.strip())
+    R: G (a -> F[0,2] b)
+    """
+    lines: list[str] = []
+    rejected: list[Rejection] = []
+    converted: list[str] = []
+    for requirement in spec.document.requirements:
+        try:
+            for node in postorder(requirement.formula):
+                if isinstance(node, Var) and (node.type is not BOOLEAN or not _ATOM.fullmatch(node.name)):
+                    raise InexpressibleError(
+                        f"'{node.name}' is no Boolean whose name begins with a small letter"
+                    )
+            text = fold(MTL.translated(requirement.formula), _grouped)
+        except InexpressibleError as error:
+            rejected.append(Rejection(requirement.name, str(error)))
+            continue
+        converted.append(requirement.name)
+        lines.append(f"{requirement.name}: {text}")
+    return Conversion("\n".join(lines) + "\n", tuple(converted), tuple(rejected), (_NOTE, _END_NOTE))
+
+
+def _grouped(node: Formula, args: tuple[str, ...]) -> str:
+    """Return the text of a node; in its grammar each infix operator stands in parentheses of its own."""
+    if not isinstance(node, Apply):
+        return str(node)
+    if node.op is TRUTH:
+        return args[0]
+    interval = node.interval
+    end = "" if interval is None else "inf" if interval.end is None else str(decimal(interval.end))
+    word = node.op.spellings[0] + ("" if interval is None else f"[{decimal(interval.begin)},{end}]")
+    if len(args) == 2:
+        return f"({args[0]} {word} {args[1]})"
+    return word if not args else f"{word}{args[0]}" if word == "~" else f"{word} {args[0]}"

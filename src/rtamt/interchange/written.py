@@ -1,0 +1,97 @@
+"""The text of a specification that is read from another format."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import Const, Formula, Var, postorder
+from rtamt.language.printing.printer import to_text
+from rtamt.language.units.durations import decimal
+from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.lazy_dataclasses import dataclass, field
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from fractions import Fraction
+
+_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+
+
+@dataclass(frozen=True, slots=True)
+class ReadRequirement:
+    """A requirement with its text in the other format, which becomes a comment, and a description."""
+
+    name: str
+    formula: Formula
+    source: str
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """What a text declares: roles of variables ("input", "output"), constants and parameters with their values."""
+
+    roles: Mapping[str, str] = field(default_factory=dict)
+    constants: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+
+def specification_text(
+    title: str, requirements: Iterable[ReadRequirement], names: Names, step: Fraction | None = None
+) -> str:
+    """Return the text of a specification.
+
+    Args:
+        title: the first line, a comment.
+        requirements: in the order of the source.
+        names: what the formulas use.
+        step: the sampling period in seconds; None for none.
+    """
+    written = list(requirements)
+    nodes = postorder(*(each.formula for each in written))
+    used = {node.name for node in nodes if isinstance(node, Const)}
+    lines = [f"// {title}", ""]
+    lines += [f"sample {decimal(step)}s", ""] if step is not None else []
+    kinds = {id(node.type): node.type for node in nodes if isinstance(node, Var)}
+    for kind in kinds.values():
+        if isinstance(kind, Enumeration):
+            members = ", ".join(f"{member} = {code}" for member, code in kind.members)
+            lines.append(f"enum {kind.name} {{ {members} }}")
+    for word, values in (("const", names.constants), ("parameter", names.parameters)):
+        lines += [
+            f"{word} float {quoted(name)} = {value!r}" for name, value in values.items() if name in used
+        ]
+    types = {node.name: _type(node) for node in nodes if isinstance(node, Var)}
+    for name, kind_name in types.items():
+        role = names.roles.get(name)
+        lines.append(f"{role + ' ' if role else ''}{kind_name} {quoted(name)}")
+    taken = {*types, *names.constants, *names.parameters}
+    for each in written:
+        name = each.name if each.name not in taken else f"REQ-{each.name}"
+        about = f' "{_escaped(each.description)}"' if each.description else ""
+        lines += [
+            "",
+            f"// {' '.join(each.source.split())}",
+            f"require {_id(name)}{about}:",
+            f"    {to_text(each.formula, parameters=True)}",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _type(variable: Var) -> str:
+    kind = variable.type
+    return "bool" if kind is BOOLEAN else kind.name if isinstance(kind, Enumeration) else "float"
+
+
+def quoted(name: str) -> str:
+    """Return a name as a specification has it, in quotes where it needs them."""
+    return str(Var(name))
+
+
+def _id(name: str) -> str:
+    return name if _ID.fullmatch(name) else f'"{_escaped(name)}"'
+
+
+def _escaped(text: str) -> str:
+    return text.replace('"', '""')

@@ -1,0 +1,179 @@
+"""Specifications of R2U2, Breach and py-metric-temporal-logic, read and written."""
+
+from fractions import Fraction
+
+import pytest
+
+import rtamt
+from rtamt.errors import UsageError
+from rtamt.interchange import FORMATS
+from rtamt.interchange.breach import read_breach, write_breach
+from rtamt.interchange.c2po import read_c2po, write_c2po
+from rtamt.interchange.mtl import read_mtl, write_mtl
+
+C2PO = """\
+-- two requests
+ENUM
+    Mode: {Idle, Busy: 4};
+INPUT
+    a, b: bool; x: float; m: Mode; values: int[10];
+DEFINE
+    near := abs(x - prev(22.0, x)) < 1.0; twice := G[0,2] near;
+FTSPEC
+    %s
+PTSPEC
+    O[1,3] b;
+"""
+
+
+def c2po(formula: str, period: str = "1/2") -> str:
+    found = read_c2po(C2PO % f"R: {formula};", Fraction(period))
+    assert found.rejected == ()
+    spec = rtamt.parse(found.text)
+    assert str(spec.requirements["spec_1"].formula) == "always(once[0.5:1.5] b)"
+    return str(spec.requirements["R"].formula).removeprefix("always")
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("a -> F[0,5] (x > 3)", "(a -> eventually[0:2.5](x > 3))"),
+        ("G[0,5] a && b", "(always[0:2.5] a and b)"),
+        ("a -> b -> a", "((a -> b) -> a)"),
+        ("a == b", "(a <-> b)"),
+        ("m == Busy || m != Idle", "(m == Busy or m != Idle)"),
+        ("x % 3 + x pow 2 >= 1", "(mod(x, 3) + pow(x, 2) >= 1)"),
+        ("twice", "(always[0:1](abs(x - delay[0.5](x, 22)) < 1))"),
+        ("a U[0,3] b", "(a until[0:1.5] b)"),
+        ("a U[1,3] b", "(eventually[0.5:0.5](a until[0:1] b))"),
+        ("a R[0,3] b", "(not(not a until[0:1.5] not b))"),
+        ("a => b", "(a -> b)"),
+    ],
+)
+def test_a_formula_of_c2po(formula: str, expected: str) -> None:
+    assert c2po(formula) == expected
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        ("values[3] > 1", "'values' is of the type int[10], which is not covered"),
+        ("rate(x) > 1", "'rate' is not declared"),
+        ("a S[1,3] b", "'S' with a lower bound above 0 is not covered"),
+        ("a &&", "expected an operand after '&&'"),
+    ],
+)
+def test_what_is_left_out_of_c2po(formula: str, reason: str) -> None:
+    found = read_c2po(C2PO % f"R: {formula};")
+    assert found.converted == ("spec_1",)
+    assert found.rejected[0].reason.startswith(reason)
+
+
+def test_until_of_c2po_does_not_need_its_first_operand_before_the_interval() -> None:
+    text = read_c2po("INPUT a, b: bool; FTSPEC R: a U[2,3] b;").text.replace("always(", "(")
+    traces = {"time": [0, 1, 2, 3], "a": [False, False, True, True], "b": [False, False, False, True]}
+    assert rtamt.parse(text).evaluate(traces).satisfied is True
+    traces["a"] = [True, True, False, True]
+    assert rtamt.parse(text).evaluate(traces).satisfied is False
+
+
+def test_a_specification_as_c2po_and_back() -> None:
+    text = "bool a\nbool b\nfloat x\nrequire R: always(a -> always[0:3] b or x >= 2)\nrequire S: once[0:4](x < 1) and a"
+    written = write_c2po(rtamt.parse(text, period=1))
+    assert written.text == (
+        "INPUT\n    a, b: bool;\n    x: float;\n\nFTSPEC\n    R: a -> G[0,3] b || x >= 2;\n\n"
+        "PTSPEC\n    S: O[0,4](x < 1) && a;\n"
+    )
+    again = rtamt.parse(read_c2po(written.text).text)
+    assert [str(each.formula) for each in again.requirements.values()] == [
+        "always(a -> always[0:3] b or x >= 2)", "always(once[0:4](x < 1) and a)",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        ("always(eventually(x > 1))", "C2PO has bounded operators only"),
+        ("always(once[0:1](x > 1) -> eventually[0:1](x > 1))", "no formulas of both future and past"),
+        ("always((x > 1) until[1:2] (x > 2))", "C2PO has another meaning for"),
+        ("always(ceil(x) > 1)", "C2PO has no 'ceil'"),
+    ],
+)
+def test_what_c2po_cannot_express(formula: str, reason: str) -> None:
+    (rejected,) = write_c2po(rtamt.parse(f"require R: {formula}", period=1)).rejected
+    assert reason in rejected.reason
+
+
+BREACH = """\
+# limits
+param vmax=150, t1=1
+gear2 := gear[t]==2  # a part
+phi_stay := alw ((not gear2) => ev_[0, t1] (gear2))
+phi_speed := (alw_[0, 25] (speed[t]<vmax)) and
+    alw (RPM[t] < 4000)
+"""
+
+
+def test_a_file_of_breach() -> None:
+    found = read_breach(BREACH)
+    assert (found.converted, found.rejected) == (("phi_stay", "phi_speed"), ())
+    spec = rtamt.parse(found.text)
+    assert (
+        str(spec.requirements["phi_stay"].formula) == "always(not(gear == 2) -> eventually[0:1](gear == 2))"
+    )
+    assert str(spec.requirements["phi_speed"].formula) == "always[0:25](speed < 150) and always(RPM < 4000)"
+    written = write_breach(spec)
+    assert written.text.splitlines()[-1] == "phi_speed := alw_[0,25](speed[t] < vmax) and alw (RPM[t] < 4000)"
+    assert rtamt.parse(read_breach(written.text).text).formula == spec.formula
+
+
+def test_what_is_left_out_of_breach() -> None:
+    (rejected,) = read_breach("a := x[t] > 1\nb := x[t+1] - x[t] > 1").rejected
+    assert rejected.reason.startswith("'x[t+1]' is a signal at another time, which is not covered")
+    (written,) = write_breach(rtamt.parse("bool a\nalways a")).rejected
+    assert written.reason == "Breach has signals of numbers only, and 'a' is of the type bool"
+    with pytest.raises(UsageError, match="is no parameter with a number"):
+        read_breach("param a = b\nphi := x[t] > 1")
+    with pytest.raises(UsageError, match="there is no formula"):
+        read_breach("param a = 1")
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("G(a -> F[0, 2] b)", "always(a -> eventually[0:2] b)"),
+        ("(a & ~b)", "a and not b"),
+        ("< > [ ] a", "eventually(always a)"),
+        ("@a", "next a"),
+        ("(a W b)", "a unless b"),
+        ("(a U b)", "a until b"),
+        ("(a U[1,3] b)", "always[0:1] a and a until[1:3] b"),
+        ("(a ^ TRUE)", "a xor true"),
+    ],
+)
+def test_a_formula_of_py_metric_temporal_logic(formula: str, expected: str) -> None:
+    found = read_mtl(f"R: {formula}")
+    spec = rtamt.parse(found.text)
+    assert str(spec.formula) == str(rtamt.parse(f"bool a\nbool b\n{expected}").formula)
+    written = write_mtl(spec)
+    if "[1,3]" in formula:
+        assert "has another meaning for" in written.rejected[0].reason
+    else:
+        assert rtamt.parse(read_mtl(written.text).text).formula == spec.formula
+
+
+def test_what_py_metric_temporal_logic_cannot_express() -> None:
+    (rejected,) = write_mtl(rtamt.parse("always(x > 1)")).rejected
+    assert rejected.reason == "'x' is no Boolean whose name begins with a small letter"
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize(
+    "text", ["", "{" * 2000, "(" * 5000, "a := " + "-" * 5000, "INPUT " + "{ a" * 3000 + ";"]
+)
+def test_any_text_is_converted_or_rejected_at_once(name: str, text: str) -> None:
+    try:
+        found = FORMATS[name].read(text, None)
+    except UsageError:
+        return
+    assert found.rejected
