@@ -6,24 +6,22 @@ import os
 import threading
 from collections.abc import Iterable, Sized
 from contextlib import contextmanager
-from functools import partial
-from itertools import chain
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, placed, shown
+from rtamt.fleet.groups import Asking, grouped
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
-from rtamt.signals.binding import union
 from rtamt.verdicts.offline import findings_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from typing_extensions import Unpack
 
-    from rtamt.engine.offline import Query
+    from rtamt.fleet.groups import Group
     from rtamt.settings import EvaluationSettings
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 
@@ -136,8 +134,8 @@ def evaluate_all(
 
     ``data`` and the other arguments (``time=``, ``period=``, ...) are those of
     :meth:`Specification.evaluate`; ``data`` contains the variables of all requirements. Data are checked once,
-    and common sub-formulas are computed once. Each result equals that of ``evaluate``; in
-    dense time all signals must have a common instant.
+    and common sub-formulas are computed once. Each result equals that of ``evaluate``. The programs of the last
+    sets of specifications are kept for other data; for tables of many recordings see :class:`Suite`.
 
     Raises the errors of ``evaluate``; errors in bounds are prefixed with the index (from 0) of the
     requirement.
@@ -147,34 +145,45 @@ def evaluate_all(
     >>> [result.robustness for result in rtamt.evaluate_all(specs, {"x": [5, 2], "y": [0, 2]})]
     [-1.0, 1.0]
     """
-    queries = []
+    groups, apart = _grouped(specs, {"tolerance": tolerance, **reading})
+    results: dict[int, Result] = {}
+    for number in apart:
+        results[number] = specs[number].evaluate(data, tolerance=tolerance, **reading)
+    for group in groups:
+        trace = group.way.recording(data)
+        for number, asking in group.asked.items():
+            with _place(number):
+                asking.spec._check(asking.query, trace)
+        for number, signal in group.programs(trace.step).signals(trace):
+            spec, query = group.asked[number].spec, group.asked[number].query
+            own = spec._with_units(trace.select(spec.input_names))
+            results[number] = Result(spec, own, signal, query.semantics)
+    return [results[number] for number in range(len(specs))]
+
+
+def _grouped(specs: Sequence[Specification], reading: dict[str, Any]) -> tuple[list[Group], Iterable[int]]:
+    """Return the groups of specifications, and which have to be evaluated by themselves; kept for other data."""
+    try:
+        return _kept_groups(tuple(specs), tuple(reading.items()))
+    except TypeError:  # a setting that cannot be hashed, such as one of a wrong type
+        return _groups(tuple(specs), tuple(reading.items()))
+
+
+def _groups(
+    specs: tuple[Specification, ...], reading: tuple[tuple[str, Any], ...]
+) -> tuple[list[Group], Iterable[int]]:
+    asked, apart = {}, set()
     for number, spec in enumerate(specs):
         with _place(number):
-            queries.append(spec._query(tolerance=tolerance, **reading))
-    # One program serves all queries that read the recording in the same way.
-    alike: dict[Hashable, list[tuple[list[int], dict[str, tuple[str, str]]]]] = {}
-    results: dict[int, Result] = {}
-    for number, (spec, query) in enumerate(zip(specs, queries, strict=True)):
-        rule = query.domain.sampling(spec.sampling)
-        if spec.groups or (rule is not None and rule.hold):
-            results[number] = spec.evaluate(
-                data, tolerance=tolerance, **reading
-            )  # it has samples or members of its own
-            continue
-        groups = alike.setdefault((query.domain, query.unit, spec.backend), [])
-        places = spec.binding.places()
-        fitting = next(
-            (g for g in groups if all(g[1].get(n, place) == place for n, place in places.items())), None
-        )
-        if fitting is None:
-            fitting = ([], {})
-            groups.append(fitting)
-        fitting[0].append(number)
-        fitting[1].update(places)
-    for numbers, _ in chain.from_iterable(alike.values()):
-        asked = {number: (specs[number], queries[number]) for number in numbers}
-        results.update(_evaluate_alike(asked, data))
-    return [results[number] for number in range(len(specs))]
+            asked[number] = Asking(spec, spec._query(**dict(reading)))
+        if len(spec.requirements) > 1 and asked[number].query.domain.continuous:
+            apart.add(number)  # each may start at a different time
+    groups, others = grouped({number: each for number, each in asked.items() if number not in apart})
+    return groups, sorted(apart | others.keys())
+
+
+#: As many sets of specifications are remembered with their programs.
+_kept_groups = lru_cache(8)(_groups)
 
 
 def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result]:
@@ -194,49 +203,6 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     spec._check(query, recording)
     outputs = [one._outputs() for one in spec.requirements.values()]
     return requirements_of(spec, findings_of(outputs, recording, spec._signals_of), query.semantics)
-
-
-_Asked = dict[int, tuple["Specification", "Query"]]
-
-
-def _evaluate_alike(asked: _Asked, data: Any) -> Iterator[tuple[int, Result]]:
-    """Yield indices and results of queries in the same time domain."""
-    names = tuple(dict.fromkeys(name for spec, _ in asked.values() for name in spec.input_names))
-    spec, query = next(iter(asked.values()))
-    types = {name: type_ for spec, _ in asked.values() for name, type_ in spec.types.items()}
-    binding = union([spec.binding for spec, _ in asked.values()])
-    whole = query.record(binding.applied(data), names, types)
-    for number, (spec, query) in asked.items():
-        with _place(number):
-            spec._check(query, whole)
-    for number, (spec, query) in list(asked.items()):
-        if len(spec.requirements) > 1 and query.domain.continuous:  # each may start at a different time
-            yield number, spec._result(query, whole.select(spec.input_names))
-            del asked[number]
-    if not asked:
-        return
-    first, _ = next(iter(asked.values()))  # keeps the program for the next recording
-    for recording, numbers in _with_one_extent(asked, whole):
-        formulas = tuple(asked[number][1].formula for number in numbers)
-        for number, signal in zip(numbers, first._signals_of(formulas, recording), strict=True):
-            spec, query = asked[number]
-            yield (
-                number,
-                Result(spec, spec._with_units(whole.select(spec.input_names)), signal, query.semantics),
-            )
-
-
-def _with_one_extent(asked: _Asked, whole: DomainTrace) -> Iterator[tuple[DomainTrace, list[int]]]:
-    """Yield the parts of a recording that share a start and end, each with its queries.
-
-    The extent of a recording depends on the signals that a formula reads.
-    """
-    extents: dict[Hashable, list[int]] = {}
-    for number, (spec, _) in asked.items():
-        extents.setdefault(whole.select(spec.input_names).extent, []).append(number)
-    for numbers in extents.values():
-        names = dict.fromkeys(name for number in numbers for name in asked[number][0].input_names)
-        yield whole.select(names), numbers
 
 
 @contextmanager

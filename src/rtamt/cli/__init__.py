@@ -1,9 +1,9 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``ros2``, ``falsify``, ``info``, ``lint``, ``compile``, ``fmu``, ``packs``, ``operators``,
-``completion``. It has the functions ``configure`` and ``run``, and is imported when the command is used. The other
-modules are shared:
+``monitor``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``, ``analyze``, ``diff``,
+``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ===============  =============================================================
 module           purpose
@@ -14,8 +14,10 @@ arguments        specifications and recordings on the command line
 reading_options  options for reading recordings
 parameters       the option ``--set``
 language         the option ``--language``
+conclusions      the answers of analyses: text, JSON and plots
 outcome          the outcome of a requirement on a recording, as reports show it
 runner           every requirement on every recording, on all cores
+many             very many recordings: ``rtamt check --engine``
 early_outcomes   the same, reading a recording no further than the verdicts need
 chunks           a recording that is read in chunks
 bag              check a bag, and write a copy with the results
@@ -27,6 +29,7 @@ held_feed        streams whose variables arrive at any time, sampled by ``sample
 live_view        the live view of ``rtamt monitor``
 terminal         output, colours, tables, progress
 numpy_on_use     numpy is imported when a command first uses it
+facts            the properties that ``rtamt info`` prints
 compiled         ``rtamt info`` for compiled programs
 reports          JUnit, SARIF and HTML reports
 ===============  =============================================================
@@ -59,10 +62,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
             ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),
             ("falsify", "search for inputs that make a plant violate its requirement"),
+            ("mutate", "change a requirement a little, and list the changes that no recording notices"),
             ("info", "show the horizon, pastified form, program and memory of a requirement"),
+            ("new", "write a specification file from a pattern"),
+            ("describe", "print requirements as English sentences"),
             ("lint", "check specification files for errors and suspicious formulas"),
+            ("analyze", "find requirements that never hold, always hold, contradict or repeat others"),
+            ("diff", "show a trace on which two versions of a specification disagree"),
             ("compile", "compile a requirement to a program that runs without Python"),
             ("fmu", "export a requirement as an FMU"),
+            ("convert", "convert requirements of other tools, such as FRET, and the other way round"),
             ("packs", "list the packs of requirements, or print one"),
             ("operators", "list the operators of the language"),
             ("completion", "print the completion script for bash, zsh or fish"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import PACK, CommandError, read_specifications
@@ -13,12 +12,13 @@ from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
+from rtamt.lazy_dataclasses import replace
 from rtamt.readers.sql import shown
 from rtamt.texts import packs
 
 if TYPE_CHECKING:
     from argparse import Namespace
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from rtamt.cli.reading_options import Reading
     from rtamt.language.document import Requirement as Written
@@ -37,10 +37,7 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     A requirement is called by its ID (what stands after ``require``) where no other one has it.
     """
     given, traces = _split(args)
-    specs = [
-        _resampled(_renamed(spec, names_of(args.name)), args)
-        for spec in read_specifications(args, args.time, given)
-    ]
+    specs = prepared_specs(args, given)
     if not traces:
         raise CommandError(
             f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
@@ -53,6 +50,14 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     ids = Counter(known.name for spec in specs for known in spec.document.requirements if known.explicit)
     taken = ids + Counter(called)
     return [_rows(*each, taken) for each in zip(specs, given, called, strict=True)], traces
+
+
+def prepared_specs(args: Namespace, given: Sequence[str]) -> list[Specification]:
+    """Read specifications, with the recorded names and the sampling of the command line."""
+    return [
+        _resampled(_renamed(spec, names_of(args.name)), args)
+        for spec in read_specifications(args, args.time, given)
+    ]
 
 
 def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
@@ -111,7 +116,7 @@ def each_requirement(given: list[Requirement]) -> list[Requirement]:
 
 def _split(args: Namespace) -> tuple[list[str], list[str]]:
     given, traces = [args.spec], list(args.traces)
-    while traces and _is_specification(traces[0]) and _is_specification(given[-1]):
+    while traces and is_specification(traces[0]) and is_specification(given[-1]):
         given.append(traces.pop(0))
     if args.sql is not None:
         if traces:
@@ -120,12 +125,22 @@ def _split(args: Namespace) -> tuple[list[str], list[str]]:
     return given, traces
 
 
-def _is_specification(text: str) -> bool:
+def is_specification(text: str) -> bool:
     """Return whether an argument is a specification file or a pack, by its name."""
     return (
         text.lower().endswith(".stl")
         or text.startswith(PACK)
         or (text in packs() and not os.path.exists(text))
+    )
+
+
+def specification_files(folder: str) -> list[str]:
+    """Return the specification files in a folder and in the folders below it."""
+    return sorted(
+        os.path.join(place, name)
+        for place, _, names in os.walk(folder)
+        for name in names
+        if name.lower().endswith(".stl")
     )
 
 

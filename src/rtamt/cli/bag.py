@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
+from rtamt.lazy_dataclasses import replace
 from rtamt.readers.formats import is_bag
 from rtamt.results import signals_of
 from rtamt.ros.bags import Finding, write_mcap

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +30,7 @@ from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
 from rtamt.language.units.durations import format_duration
+from rtamt.lazy_dataclasses import replace
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
@@ -90,6 +90,12 @@ be read in part are read completely, but evaluated only as far as the verdict ne
 a recording may change early verdicts of some formulas ('rtamt info' reports this); these are checked on the whole
 recording.
 
+--engine checks very many recordings: on this machine (local), or on Ray or Spark. SPEC may be a folder of .stl files;
+recordings are files, folders, patterns, and addresses that fsspec reads. It prints how many recordings satisfy each
+requirement; -o writes the table, a row for each recording and requirement, as Parquet or CSV. A damaged recording
+becomes rows with its error. --manifest remembers results: a recording is checked again if it, the requirements or the
+options have changed; after a crash, the same command continues. --manifest alone selects the local engine.
+
 --json prints one object per line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
 "samples", "period", "episodes"}, with "description" and "severity" for formulas after 'require'; or
 {"requirement", "trace", "error"}, or {"requirement", "trace", "unchecked"} with the reason.
@@ -111,6 +117,7 @@ examples:
   rtamt check specs/*.stl logs/*.csv --junit report.xml --html report.html
   rtamt check "always(v >= 14)" flight.ulg --time dense --name "v=battery_status[1].voltage_v"
   rtamt check px4 flight.ulg --set tilt_error=10
+  rtamt check examples/request_grant 'examples/request_grant/*.csv' --engine local
   rtamt check limits.stl --sql sqlite:///log.db --query "select time, speed from log"
 """
 
@@ -151,6 +158,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="the number of processes (default: one per core, if faster)",
     )
+    parser.add_argument(
+        "--engine",
+        metavar="{local,ray,spark}",
+        help="check very many recordings: files, folders, patterns and addresses such as 's3://bucket/*.parquet'",
+    )
+    parser.add_argument(
+        "--manifest",
+        metavar="FILE",
+        help="remember results, so that only new or changed recordings are checked, also after a crash",
+    )
     add_ignore_option(parser)
     group.add_argument("--quiet", action="store_true", help="print errors only")
     group.add_argument(
@@ -169,6 +186,10 @@ def _page(
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate every requirement on every trace, and print the outcomes."""
+    if args.engine is not None or args.manifest is not None:
+        from rtamt.cli.many import run as run_many
+
+        return run_many(args)
     color = use_color(args.color, sys.stdout)
     given, traces = requirements_and_traces(args, "check")
     for each in [] if args.quiet else given:

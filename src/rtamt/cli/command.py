@@ -16,7 +16,6 @@ from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, choices, did_you_mean, readable
 from rtamt.files import nearest_file, write_bytes, write_text
-from rtamt.language.lint import CODES
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.readers.formats import METADATA, SUFFIXES
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterable, Sequence
 
-    from rtamt.language.lint import LintWarning
+    from rtamt.lint.found import LintWarning
     from rtamt.settings import Settings
     from rtamt.specification import Specification
 
@@ -104,9 +103,20 @@ def add_ignore_option(parser: argparse.ArgumentParser) -> None:
         metavar="CODE",
         action="append",
         default=[],
-        choices=CODES,
-        help=f"silence a warning: {', '.join(CODES)}; repeatable",
+        type=_code,
+        help="silence a warning by its code, such as RT105 ('rtamt lint --help' lists them); repeatable",
     )
+
+
+def _code(given: str) -> str:
+    """Return the code of a warning; :class:`argparse.ArgumentTypeError` for anything else."""
+    from argparse import ArgumentTypeError
+
+    from rtamt.lint.rules import CODES
+
+    if given not in CODES:
+        raise ArgumentTypeError(f"there is no code '{given}'{choices(given, CODES, 'codes')}")
+    return given
 
 
 def warnings_of(spec: Specification, ignored: Sequence[str]) -> list[LintWarning]:

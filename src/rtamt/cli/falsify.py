@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import json_number
@@ -13,6 +12,7 @@ from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
 from rtamt.files import replacing
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     import argparse

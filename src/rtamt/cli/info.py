@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
@@ -15,31 +14,22 @@ from rtamt.cli.command import (
     read_specification,
 )
 from rtamt.cli.compiled import after_passes, compiled, listing
+from rtamt.cli.facts import Facts, cut_operator, depth, gather, loose_variable
 from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
-from rtamt.compiler.plan import compile_program
-from rtamt.errors import BoundError, SpecificationError, UsageError, choices
+from rtamt.errors import UsageError, choices
 from rtamt.language.parsing.lexer import quoted
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import BOOLEAN, value_text
-from rtamt.rewrite.check import check_online
-from rtamt.rewrite.desugar import desugar
-from rtamt.rewrite.early import ends_differently, loose
-from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domains import DOMAINS
-from rtamt.verdicts.standalone import state_bytes
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
-    from fractions import Fraction
 
-    from rtamt.compiler.program import Program
     from rtamt.language.document import Declaration
-    from rtamt.language.formula import Formula
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
 
@@ -72,19 +62,6 @@ examples:
   rtamt info "always(alarm -> eventually[0:70ms](stop))" --time dense
   rtamt info "x >= 3 until[0:5] y >= 3" --latex
   rtamt info "a + b >= -2 and a - b <= 3" --program"""
-
-
-@dataclass(frozen=True, slots=True)
-class Facts:
-    """The properties of a requirement; None for those that it does not have."""
-
-    spec: Specification
-    step: Fraction  # seconds in which bounds are counted: the period, or in dense time the tick
-    horizon: Fraction | None = None
-    pastified: Formula | None = None
-    program: Program | None = None
-    memory: int | None = None  # bytes; also None in dense time, or where there is no compiled core to ask
-    offline_only: str | None = None  # why there is no program
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -169,49 +146,6 @@ def _refuse_reading_options(args: argparse.Namespace) -> None:
             )
 
 
-def gather(spec: Specification) -> Facts:
-    """Compute the properties; those that an online monitor cannot have stay None."""
-    domain = spec.domain.online
-    step = domain.step
-    assert step is not None
-    facts = Facts(spec, step)
-    try:
-        check_online(spec.formula, spec.text)
-        pastified = None if spec.groups else _pastified(spec)
-        facts = replace(facts, horizon=_depth(spec, spec.formula), pastified=pastified)
-        domain.check(spec.formula, spec.text)
-    except BoundError as error:
-        return replace(facts, offline_only=error.message)
-    if spec.groups:  # a program for each quantifier, which runs for each member
-        return facts
-    applied = desugar(_grounded(spec, _applied(spec)))
-    program = compile_program((applied,), step, spec.input_names, domain=type(spec.domain))
-    memory = state_bytes(program, domain, spec.backend)
-    return replace(facts, program=program, memory=memory)
-
-
-def _grounded(spec: Specification, formula: Formula) -> Formula:
-    """Return the formula as it is monitored, with closed bounds."""
-    return spec.domain.online.ground(formula)[0]
-
-
-def _depth(spec: Specification, formula: Formula) -> Fraction | None:
-    """Return the horizon of a formula."""
-    step = spec.domain.online.step
-    assert step is not None
-    return horizon(_grounded(spec, formula), step)
-
-
-def _pastified(spec: Specification) -> Formula | None:
-    """Return the pastified formula, None where there is none: of shared sub-formulas it may be too large."""
-    try:
-        return spec.pastified()
-    except BoundError:
-        raise
-    except SpecificationError:
-        return None
-
-
 def _variables(spec: Specification) -> list[dict[str, Any]]:
     declared = {declaration.name: declaration for declaration in spec.document.declarations}
     rows = []
@@ -264,36 +198,19 @@ def _requirements(facts: Facts) -> list[dict[str, Any]]:
     """Return the properties of each requirement; ``ahead``: its horizon in words."""
     rows = []
     for known in facts.spec.document.requirements:
-        depth = _depth(facts.spec, known.formula)
+        ahead = depth(facts.spec, known.formula)
         rows.append(
             {
                 "name": known.name,
                 "description": known.description,
                 "severity": known.severity,
                 "formula": printed(known.formula),
-                "horizon": None if depth is None else float(depth),
-                "ahead": "offline only" if depth is None else f"horizon {format_duration(depth)}",
+                "horizon": None if ahead is None else float(ahead),
+                "ahead": "offline only" if ahead is None else f"horizon {format_duration(ahead)}",
                 "explicit": known.explicit,
             }
         )
     return rows
-
-
-def _applied(spec: Specification) -> Formula:
-    """Return the formula under its semantics."""
-    return apply_semantics(spec.formula, spec.semantics, spec.roles)
-
-
-def _loose(facts: Facts) -> str | None:
-    """Return a variable that may make intervals wider than necessary."""
-    period = None if facts.spec.domain.continuous else facts.step
-    return loose(_grounded(facts.spec, _applied(facts.spec)), period)
-
-
-def _ending(facts: Facts) -> str | None:
-    """Return an operator whose windows may lose at the end of a discrete trace what was decided before."""
-    found = ends_differently(_grounded(facts.spec, boolean(facts.spec.formula)), {})
-    return None if found is None else found.op.name
 
 
 def _about_step(spec: Specification) -> str:
@@ -357,10 +274,10 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"horizon    {ahead}: the value at t is known at t + {ahead}"
         if not spec.groups:
             yield f"pastified  {'no: too large' if facts.pastified is None else printed(facts.pastified)}"
-    name = _loose(facts)
+    name = loose_variable(facts)
     wide = f"sound, but may be wider than necessary: '{name}' raises and lowers the robustness"
     yield f"intervals  {'tight' if name is None else wide}"
-    late = None if spec.domain.continuous else _ending(facts)
+    late = None if spec.domain.continuous else cut_operator(facts)
     changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
     yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
     if facts.program is None and facts.offline_only is None:
@@ -405,7 +322,7 @@ def _as_json(facts: Facts) -> str:
             "program": None if facts.program is None else facts.program.disassemble().splitlines(),
             "memory": facts.memory,
             "offline_only": facts.offline_only,
-            "tight": _loose(facts) is None,
-            "early_verdicts_hold": spec.domain.continuous or _ending(facts) is None,
+            "tight": loose_variable(facts) is None,
+            "early_verdicts_hold": spec.domain.continuous or cut_operator(facts) is None,
         }
     )

@@ -6,7 +6,6 @@ import json
 import sys
 from collections import deque
 from contextlib import nullcontext
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -31,6 +30,7 @@ from rtamt.cli.stdin_reader import Samples, lines_of
 from rtamt.cli.stream_members import StreamMembers
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import StlError, TraceError
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.sampling import HeldSampler

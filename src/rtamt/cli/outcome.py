@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time as clock
-from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import reduce
@@ -15,6 +14,7 @@ import numpy as np
 from rtamt.cli.command import short, stamp_text
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.language.operators import STL
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.readers.sql import shown
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text

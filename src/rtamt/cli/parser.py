@@ -9,13 +9,13 @@ import argparse
 import os
 import sys
 import textwrap
-from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.cli.terminal import say
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.files import same_file
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

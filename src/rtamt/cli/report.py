@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
@@ -13,6 +12,7 @@ from rtamt.cli.reading_options import add_instant_option, add_reading_options, r
 from rtamt.cli.reports.html import HtmlReport
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, say
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     import argparse

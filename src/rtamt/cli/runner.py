@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -29,6 +28,7 @@ from rtamt.cli.reading_options import (
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
+from rtamt.lazy_dataclasses import replace
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from rtamt.cli.reading_options import instant, whole_recording
 from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, UsageError
+from rtamt.lazy_dataclasses import replace
 from rtamt.plot.band import Band, band
 from rtamt.plot.scene import scene
 from rtamt.readers.sql import shown

@@ -1,0 +1,19 @@
+"""Suites over many recordings: in a process pool, and on the engines that users have.
+
+A *job* checks one recording after another and never fails: what is wrong with a recording becomes the error of its
+rows. Engines distribute recordings; a manifest remembers what is done.
+
+====================  =====================================================================
+module                purpose
+====================  =====================================================================
+recordings            the recordings that patterns and addresses name, each with its version
+job                   what is done with one recording, on every engine
+manifest              the results so far, in a file: nothing is computed twice
+local                 the engine on this machine: a process pool
+spark                 the engine on Apache Spark
+ray                   the engine on Ray Data
+check                 all recordings of a job, new ones by an engine and the others from the manifest
+====================  =====================================================================
+
+Needs nothing beyond the core for local files and the local engine; each other engine is an extra.
+"""
