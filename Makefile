@@ -134,7 +134,7 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.made
 
 # What readers and adapters need is tested as users install it: with the extras. Installed already, rtamt
 # itself is left as it is.
-EXTRAS := data,falsify,plot,report,ros,cli,completion,units
+EXTRAS := data,falsify,plot,report,ros,cli,completion,units,spark,ray,remote,analysis
 $(VENV)/.group-test: $(VENV)/.extras
 $(VENV)/.extras: $(VENV)/.core
 	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"
@@ -150,6 +150,8 @@ PACKAGES += ros-std-msgs python3-std-msgs python3-nav-msgs python3-geometry-msgs
 PACKAGES += valgrind
 # Octave, in which the block for Simulink runs, and what builds its gateway.
 PACKAGES += octave octave-dev
+# Java, in which Spark runs.
+PACKAGES += openjdk-17-jre-headless
 $(VENV)/.apt: Makefile tools/apt-packages $(VENV)/.made
 	@tools/apt-packages $(PACKAGES) && touch $@ || { echo "The tests that need it are skipped."; [ "$$CI" != true ]; }
 

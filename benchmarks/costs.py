@@ -26,10 +26,11 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import core
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.truth import replaced, truth
 from rtamt.signals.dense import Dense
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 ROUNDS = 7
 WINDOWS = (10, 1_000, 100_000, 1_000_000)
@@ -259,8 +260,48 @@ def memory(text: str) -> float:
     return float(core().memory(program.to_bytes())) / 8 / 100_000
 
 
+def registers(texts: Sequence[str]) -> float:
+    """Registers of one program for formulas, while it runs over blocks of samples: KB."""
+    program = compile_program(tuple(desugar(parse_formula(text)) for text in texts), Fraction(1))
+    rows = {row for _, row in core().layout(program.to_bytes()) if row is not None}
+    return len(rows) * 264 * 8 / 1000
+
+
+def together(texts: Sequence[str]) -> Callable[[], float]:
+    """Evaluate formulas in one program over 10^4 samples through the core: ns a formula and sample."""
+    n = 10_000
+    data = dict(zip("ab", np.random.default_rng(1).normal(size=(2, n)), strict=True))
+    program = compile_program(tuple(desugar(parse_formula(text)) for text in texts), Fraction(1), clip=n)
+    evaluator, inputs = core().Evaluator(program.code()), [data[name] for name in program.inputs]
+    return lambda: per(n * len(texts), lambda: evaluator.run(inputs, n))
+
+
+def predicate(n: int) -> Callable[[], float]:
+    """``evaluate`` of ``a >= 3`` over n samples: ns a sample."""
+    data, spec = {"a": np.random.default_rng(1).normal(size=n)}, rtamt.parse("a >= 3")
+    return lambda: per(n, lambda: spec.evaluate(data))
+
+
+def on_two_threads(text: str) -> Callable[[], float]:
+    """Evaluate a formula over 4 * 10^6 samples on one thread and on two: how many times as fast two are."""
+    n = 4_000_000
+    data = dict(zip("ab", np.random.default_rng(1).normal(size=(2, n)), strict=True))
+    program = compile_program((desugar(parse_formula(text)),), Fraction(1), clip=n)
+    evaluator, inputs = core().Evaluator(program.code()), [data[name] for name in program.inputs]
+    one, two = (lambda count=count: evaluator.run(inputs, n, lambda: count) for count in (1, 2))
+    return lambda: per(n, one) / per(n, two)
+
+
+def of_conditions(text: str) -> float:
+    """State of an online monitor of conditions: bytes a sample of its window of 10^5 samples."""
+    formula = replaced(desugar(parse_formula(text)), truth)
+    return float(core().memory(compile_program((formula,), Fraction(1)).to_bytes())) / 100_000
+
+
 def rows() -> list[Row]:
     """Return everything that is measured."""
+    shifted = [f"always[0:20](a >= {i / 100}) and b <= {3 + i / 50}" for i in range(1000)]
+    predicates = [" and ".join(f"a >= {i}" if i % 2 else f"b <= {i}" for i in range(20))]
     always = "always[0:{}](a + b >= -2)"
     memories = (
         "always[0:99999](x)",
@@ -281,6 +322,25 @@ def rows() -> list[Row]:
                 against_minimum(name, "[0:1000]"),
             )
             for name in ("sum", "mean")
+        ),
+        Row("1 000 formulas always[0:20](a >= c) and b <= d", "ns/each", 1.17, together(shifted)),
+        Row("evaluate a >= 3, 10^6 samples", "ns/sample", 2.0, predicate(10**6)),
+        Row("evaluate a >= 3, 10^7 samples", "ns/sample", 4.0, predicate(10**7)),
+        Row(
+            "two threads, always[0:100](a + b >= -2)",
+            "times as fast",
+            None,
+            on_two_threads(always.format(100)),
+        ),
+        Row("registers of 20 predicates", "KB", 58, partial(registers, predicates)),
+        Row("registers of 1 000 formulas", "KB", 10_000, partial(registers, shifted)),
+        *(
+            Row(f"memory of conditions, {text}", "bytes/sample", 0.125, partial(of_conditions, text))
+            for text in (
+                "always[0:99999](a >= 0)",
+                "once[99999:99999](a >= 0)",
+                "a >= 0 until[0:99999] b >= 0",
+            )
         ),
         Row("the first, data checked and copied", "ns/sample", None, offline_face(always.format(10))),
         *(

@@ -102,6 +102,25 @@ def watched_update(**settings: str) -> Callable[[], Callable[[int], None]]:
     return prepare
 
 
+def dense_points(signals: int) -> Callable[[], Callable[[int], None]]:
+    """``update(t, x0=v).points()`` in dense time, of a monitor of so many signals; the others do not change."""
+
+    def prepare() -> Callable[[int], None]:
+        text = " and ".join(f"x{i} >= 0" for i in range(signals))
+        update = rtamt.parse(text).monitor(time="dense").update
+        update(-1.0, **{f"x{i}": 1.0 for i in range(signals)})
+        samples = enumerate(np.tile(noise(2000, "x")["x"], 10).tolist())
+
+        def run(n: int) -> None:
+            for _ in range(n):
+                time, value = next(samples)
+                update(0.1 * time, x0=value).points()
+
+        return run
+
+    return prepare
+
+
 def update_many() -> Callable[[int], None]:
     """``monitor.update_many`` of chunks of 100 samples."""
     method = rtamt.parse(TWO).monitor().update_many
@@ -116,11 +135,13 @@ def update_many() -> Callable[[int], None]:
     return run
 
 
-def evaluate(samples: int) -> Callable[[], Callable[[int], None]]:
-    """``spec.evaluate`` of arrays."""
+def evaluate(samples: int, *, timed: bool = False) -> Callable[[], Callable[[int], None]]:
+    """``spec.evaluate`` of arrays, with timestamps or without."""
 
     def prepare() -> Callable[[int], None]:
         spec, data = rtamt.parse(TWO), noise(samples)
+        if timed:
+            data["time"] = np.arange(samples) * 1.0
 
         def run(n: int) -> None:
             for _ in range(n):
@@ -154,14 +175,17 @@ def evaluate_arrays() -> Callable[[int], None]:
     return run
 
 
-def parse_and_monitor() -> Callable[[int], None]:
+def parse_and_monitor(text: str) -> Callable[[], Callable[[int], None]]:
     """``rtamt.parse(text).monitor()``."""
 
-    def run(n: int) -> None:
-        for _ in range(n):
-            rtamt.parse(TWO).monitor()
+    def prepare() -> Callable[[int], None]:
+        def run(n: int) -> None:
+            for _ in range(n):
+                rtamt.parse(text).monitor()
 
-    return run
+        return run
+
+    return prepare
 
 
 def parse() -> Callable[[int], None]:
@@ -221,15 +245,19 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "step(x, y)": (400, step),
     "update(t, pairs), paper's API": (400, paper_update),
     "update(t, x=v), dense time": (400, watched_update(time="dense")),
+    "update(t, x=v).points(), dense time": (400, dense_points(1)),
+    "update(t, x0=v).points(), dense time, 64 signals": (400, dense_points(64)),
     "update(t, x=v), eager": (400, watched_update(verdict="eager")),
     "update(t, x=v), interval at start": (400, watched_update(verdict="interval", at="start")),
     "update(t, x=v), interval at every sample": (400, watched_update(verdict="interval", at="every")),
     "update_many, 100 samples": (20, update_many),
     "evaluate, 100 samples": (20, evaluate(100)),
+    "evaluate, 100 samples with timestamps": (20, evaluate(100, timed=True)),
     "evaluate, 10000 samples": (4, evaluate(10_000)),
     "evaluate_batch, a trace of 100 samples": (100, evaluate_batch),
     "evaluate_batch, an array, a trace of 100 samples": (1000, evaluate_arrays),
-    "parse and monitor": (4, parse_and_monitor),
+    "parse and monitor": (4, parse_and_monitor(TWO)),
+    "parse 900 characters and monitor": (2, parse_and_monitor(LONG)),
     "parse 900 characters": (2, parse),
     **{
         f"{CORE} a sample: {text}": (10_000, offline(text))

@@ -160,7 +160,7 @@ def measure(running: list[Tool], quick: bool) -> int:
 def fused(quick: bool) -> list[dict[str, Any]]:
     """Run the engine beside loops written by hand; samples in the cache, and in memory."""
     rows = []
-    for samples in (10_000,) if quick else (10_000, 1_000_000):
+    for samples in (10_000,) if quick else (10_000, 100_000, 1_000_000):
         command = [str(FUSED), str(samples), "5" if quick else "31"]
         said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         rows += [{"samples": samples, **json.loads(line)} for line in said.splitlines()]

@@ -22,6 +22,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.unit.report.browser import chromium
 from tools import patterns, signal_patterns, walkthrough
 
+from rtamt.analysis import diff
+
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
 README = "always((req >= 3) -> eventually[0:2](gnt >= 3))"
@@ -43,8 +45,17 @@ def draw() -> None:
     walkthrough.draw(IMAGES / "early.gif")
     patterns.draw(IMAGES)
     signal_patterns.draw(IMAGES)
+    analysis()
     gallery()
     reports()
+
+
+def analysis() -> None:
+    """Draw the trace on which the two versions of docs/how-to/analyze.md disagree."""
+    page = (IMAGES.parent / "how-to" / "analyze.md").read_text(encoding="utf-8")
+    old, new = (rtamt.parse(text) for text in re.findall(r"```stl title=.*?\n(.*?)```", page, re.DOTALL))
+    found = next(each for each in diff(old, new, samples=60).findings if each.witness is not None)
+    save(found.witness.plot(Figure()), "analyze.png")
 
 
 def gallery() -> None:

@@ -1,6 +1,5 @@
 """Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
-import ast
 from importlib import import_module
 from typing import Any
 
@@ -10,9 +9,11 @@ __version__ = "1.0.0.dev0"
 def _modules() -> dict[str, str]:
     """Return each public name with the module that defines it, from the stub: they are listed there alone."""
     with open(f"{__file__}i", encoding="utf-8") as stub_file:
-        stub = ast.parse(stub_file.read())
-    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
-    return {alias.name: str(node.module) for node in imports for alias in node.names}
+        imports = stub_file.read().split("\nfrom ")[
+            1:
+        ]  # of one name each; to import `ast` takes longer than the rest
+    parts = [statement.partition(" import ") for statement in imports]
+    return {names.lstrip("(\n ").partition(" as ")[0]: module for module, _, names in parts}
 
 
 _MODULES = _modules()

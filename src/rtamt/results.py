@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from rtamt.language.formula import Apply, variables
 from rtamt.language.operators import STL
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval

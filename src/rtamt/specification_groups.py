@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, choices
 from rtamt.language.document import Declaration
 from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members, resolved_document
 from rtamt.specification_recorded import RecordedSpecification

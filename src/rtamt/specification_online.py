@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
@@ -12,6 +11,7 @@ from rtamt.engine.online import OnlineMonitor, Watched
 from rtamt.errors import UsageError
 from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifier_streams import Splitting
 from rtamt.rewrite.semantics import apply_semantics

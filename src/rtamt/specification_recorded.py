@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.language.quantifiers import Declared
 from rtamt.signals.binding import Binding
@@ -15,9 +15,36 @@ from rtamt.specification_text import SpecificationText
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
+    from rtamt.language.parsing.sampling import Sampling
+
 
 #: Missing signals that are named.
 _NAMED = 3
+
+
+class Optional(NamedTuple):
+    """Variables that recordings may lack, each with its recorded names; ``rule``: how they are sampled."""
+
+    columns: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    rule: Sampling | None = None
+
+    def lacking(self, names: Collection[str] | Trace) -> dict[str, str]:
+        """Return those that a recording with these signals lacks, each with its recorded names as text."""
+        aliases = names.aliases if isinstance(names, Trace) else {}
+        empty = without_values(names, self.rule) if isinstance(names, Trace) else frozenset()
+        recorded = {*names, *aliases}
+        known = recorded - empty - {alias for alias, name in aliases.items() if name in empty}
+        lacking = {}
+        for name, columns in self.columns:
+            if name not in known and known.isdisjoint(columns):
+                only_nan = " other than NaN" if name in recorded or not recorded.isdisjoint(columns) else ""
+                lacking[name] = " or ".join(f"'{column}'" for column in columns) + only_nan
+        return lacking
+
+    def unchecked(self, names: Collection[str] | Trace) -> str:
+        """Return why a requirement that reads all of them cannot be checked; empty if it can."""
+        lacking = self.lacking(names)
+        return _listed(list(lacking.values())) if lacking else ""
 
 
 class RecordedSpecification(SpecificationText):
@@ -84,21 +111,19 @@ class RecordedSpecification(SpecificationText):
         >>> spec.unchecked(["z"])
         {'BAT': "no 'battery_status.voltage_v' or 'battery.voltage'"}
         """
-        aliases = names.aliases if isinstance(names, Trace) else {}
-        empty = without_values(names, self.sampling) if isinstance(names, Trace) else frozenset()
-        recorded = {*names, *aliases}
-        known = recorded - empty - {alias for alias, name in aliases.items() if name in empty}
-        lacking = {}
-        for name in sorted(self.optional - known):
-            columns = self._recorded_names.get(name, (name,))
-            if known.isdisjoint(columns):
-                only_nan = " other than NaN" if name in recorded or not recorded.isdisjoint(columns) else ""
-                lacking[name] = " or ".join(f"'{column}'" for column in columns) + only_nan
+        lacking = self._optional.lacking(names)
         return {
             name: _listed([lacking[each] for each in one.input_names if each in lacking])
             for name, one in self.requirements.items()
             if not lacking.keys().isdisjoint(one.input_names)
         }
+
+    @cached_property
+    def _optional(self) -> Optional:
+        recorded = self._recorded_names
+        return Optional(
+            tuple((name, recorded.get(name, (name,))) for name in sorted(self.optional)), self.sampling
+        )
 
     @cached_property
     def binding(self) -> Binding:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
@@ -11,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.online import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, types_of, variables
-from rtamt.language.lint import LintWarning, warnings_of
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
 from rtamt.language.parsing.grammar import is_number
@@ -22,6 +20,7 @@ from rtamt.language.parsing.type_rules import as_formula
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import positive_period
 from rtamt.language.value_types import WHOLE
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.quantifiers import resolve
@@ -39,8 +38,10 @@ if TYPE_CHECKING:
 
     from rtamt.language.document import Document
     from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.printing.sentences import Sentence
     from rtamt.language.units.durations import Duration
     from rtamt.language.value_types import ValueType
+    from rtamt.lint.found import LintWarning
     from rtamt.rewrite.quantifiers import Members
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
@@ -129,7 +130,25 @@ class SpecificationText:
             prev(x) - x <= 3
             ^^^^^^^^^^^^^^^^
         """
-        return warnings_of(self.document)
+        from rtamt.lint.report import findings
+
+        return findings(self.document, self.language, self.period)
+
+    def describe(self) -> Mapping[str, Sentence]:
+        """Return each requirement as an English sentence, by name.
+
+        A named sub-specification is written by its name; ``names`` of a sentence has what that means.
+
+        >>> import rtamt
+        >>> spec = rtamt.parse("near = gap < 30; require REQ-7: always(near -> eventually[0:1](brake > 0.5))")
+        >>> print(spec.describe()["REQ-7"].text)
+        At every instant from now on, if near, then at some instant within the next 1 s, brake is more than 0.5.
+        >>> dict(spec.describe()["REQ-7"].names)
+        {'near': 'gap is less than 30.'}
+        """
+        from rtamt.language.printing.sentences import sentences_of
+
+        return sentences_of(self.document)
 
     def select(self, name: str) -> Self:
         """Return the specification of one requirement or named sub-specification alone.

@@ -25,7 +25,8 @@ def run(capsys, monkeypatch, tmp_path):
     [
         (
             ["chek"],
-            f"there is no command 'chek'; did you mean 'check'? (commands: {', '.join(COMMANDS)}); see 'rtamt --help'",
+            f"there is no command 'chek'; did you mean 'check'? (commands: {', '.join([*COMMANDS][:16])} and "
+            f"{len(COMMANDS) - 16} more); see 'rtamt --help'",
         ),
         (["--verion"], "unknown option '--verion'; did you mean '--version'?; see 'rtamt --help'"),
         (["check"], "the following arguments are required: SPEC, TRACE; see 'rtamt check --help'"),

@@ -16,6 +16,7 @@ from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, fold, variables
+from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
@@ -176,3 +177,12 @@ def name_finite_numbers(node: Formula, args: tuple[Formula, ...]) -> Formula:
     if isinstance(node, Const) and np.isfinite(node.value):
         return Const(node.value, name=f"c{node.value}")
     return Apply(node.op, args, node.interval) if isinstance(node, Apply) else node
+
+
+def test_a_part_of_an_operator_without_a_value_is_called_by_the_name_of_the_operator() -> None:
+    """The sum below an integral was "Instruction 1"."""
+    formula = parse_formula("integral[0:1](x) >= 0")
+    monitor = c_api.Monitor(carried(formula))
+    monitor.step((-np.inf,))
+    with pytest.raises(c_api.RefusedError, match=r"'integral\[0:1\]\(x\)' has no value at sample 1"):
+        monitor.step((np.inf,))

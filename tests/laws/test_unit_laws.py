@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.language.lint import warnings_of
 from rtamt.language.parsing.specfile import parse_document
+from rtamt.lint.report import findings as warnings_of
 
 #: A variable of each unit; further expressions of it are made of others.
 UNITS = {

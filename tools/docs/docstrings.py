@@ -25,6 +25,10 @@ _ROLE = re.compile(r":(?:attr|class|data|exc|func|meth|mod):`~?([^`]+)`")
 class Prose(griffe.Extension):
     """Turns the docstrings of a package into sections."""
 
+    def on_alias_instance(self, *, alias: griffe.Alias, **_: object) -> None:
+        """Read our dataclasses as those of the standard library, which are type checked and documented alike."""
+        alias.target_path = alias.target_path.replace("rtamt.lazy_dataclasses.", "dataclasses.")
+
     def on_package(self, *, pkg: griffe.Module, **_: object) -> None:
         """Replace the sections of every docstring once all modules are loaded."""
         for thing in _objects(pkg):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from textwrap import dedent
@@ -16,16 +17,20 @@ import rtamt
 from rtamt.cli import COMMANDS, overview, parser_of
 from rtamt.language import enumerations, tables
 from rtamt.language import quantifiers as groups
-from rtamt.language.lint import RULES
 from rtamt.language.operators import STL, Bounds, Fixity, Tense
 from rtamt.language.parsing import parser, specfile, templates
+from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.quantifiers import QUANTIFIERS
 from rtamt.language.units import dimensions
+from rtamt.lint.fix import mended
+from rtamt.lint.report import findings
+from rtamt.lint.rules import ALL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
 
     from rtamt.language.operators import Operator
+    from rtamt.lint.found import Rule
 
 ROOT = Path(__file__).parents[2]
 
@@ -155,22 +160,43 @@ def _productions(module: object) -> str:
 def warnings() -> str:
     """Return the page of the warnings of ``rtamt lint``, from the table of its rules."""
     rows = [
-        f"| {rule.code} | {rule.severity} | {_cell(rule.about)} | `{_cell(rule.example)}` |" for rule in RULES
+        f"| [{rule.code}](warnings/{rule.code}.md) | {rule.severity} | {_cell(rule.about)} |" for rule in ALL
     ]
     return "\n".join(
         [
             "# Warnings\n",
             "Warnings report valid but suspicious specifications. `rtamt lint` and `rtamt check` print them on ",
-            "stderr, with the line and a caret; `--ignore CODE` silences a warning. They never prevent an ",
+            "stderr, with the line and a caret. They never prevent an ",
             "evaluation and do not change the exit code of `rtamt check`. That of `rtamt lint` is 2 for those of ",
             "severity error, and with `--strict` 1 for those of severity warning; `rtamt lint` alone prints notes. ",
-            "`--json` prints them for programs. In Python: `rtamt.parse(...).warnings`.\n",
-            "| code | severity | meaning | example |",
-            "|---|---|---|---|",
+            "`--json` prints them for programs. In Python: `rtamt.parse(...).warnings`. A guide is ",
+            "[Check requirements before the first recording](../how-to/lint.md).\n",
+            "`--ignore CODE` silences a warning, and so does a comment in the text: `// lint: ignore[CODE]` on the ",
+            "same line, or alone on the line above.\n",
+            "| code | severity | meaning |",
+            "|---|---|---|",
             *rows,
             "",
         ]
     )
+
+
+def warning(rule: Rule) -> str:
+    """Return the page of one warning: what is wrong, a bad and a good example."""
+    found = findings(parse_document(rule.bad))
+    fixed = mended(parse_document(rule.bad), parse_document, STL)
+    shown = "\n".join(map(str, found))
+    parts = [
+        f"# {rule.code}: {rule.about}\n",
+        f"{rule.why}\n",
+        f"Severity: {rule.severity}.\n",
+        f"Bad:\n\n```text\n{rule.bad}\n```\n",
+        f"```text\n{shown}\n```\n",
+        f"Good:\n\n```text\n{rule.good}\n```\n",
+    ]
+    if rule.code in fixed.codes:
+        parts.append(f"`rtamt lint --fix` writes:\n\n```text\n{fixed.text}\n```\n")
+    return "\n".join((*parts, "[All warnings](../warnings.md)\n"))
 
 
 def command_line() -> str:
@@ -206,6 +232,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         ),
     ),
     "Monitor": ("", ("Specification.monitor", "Monitor", "DenseMonitor")),
+    "Monitor many keys": ("", ("Fleet", "FleetUpdate")),
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (
@@ -216,11 +243,17 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
             "Causation", "CausationRun", "Cause", "calibrate",
         ),
     ),
+    "Very many recordings": (
+        "", ("Suite", "VerdictTable", "rtamt.scale", "rtamt.scale.check", "rtamt.scale.spark", "rtamt.scale.ray")
+    ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
     "Plot": ("", ("Result.plot", "Result.plot_tree")),
     "Read recordings": ("", ("read", "scan", "Trace", "Channel")),
     "Extend": ("", ("rtamt.extend", "rtamt.testing")),
     "Search": ("", ("rtamt.search",)),
+    "Analyze requirements": ("", ("rtamt.analysis",)),
+    "Other tools": ("Requirements of other tools, read and written.", ("rtamt.interchange",)),
+    "Mutation": ("", ("rtamt.mutation",)),
     "ROS": ("", ("rtamt.ros",)),
     "C and C++": (
         "Compiled requirements run without Python: see [the program](program.md).", ("Specification.compile",)
@@ -307,5 +340,6 @@ PAGES: dict[str, Callable[[], str]] = {
     "reference/command-line.md": command_line,
     "reference/api.md": api,
     "reference/warnings.md": warnings,
+    **{f"reference/warnings/{rule.code}.md": partial(warning, rule) for rule in ALL},
     "reference/messages.md": lambda: "\n".join(_messages()),
 }

@@ -51,6 +51,7 @@ SECTIONS = {
             "warnings",
         ],
     ),
+    "Warnings": ("reference/warnings", []),
     "Explanation": (
         "explanation",
         [
@@ -75,7 +76,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     nav: list[object] = [{"Home": "index.md"}, {"Tutorial": "tutorial.md"}]
     for title, (folder, first) in SECTIONS.items():
         found = {p.stem for p in (ROOT / "docs" / folder).glob("*.md")}
-        found |= {Path(page).stem for page in made if page.startswith(f"{folder}/")}
+        found |= {Path(page).stem for page in made if posixpath.dirname(page) == folder}
         ordered = [name for name in first if name in found] + sorted(found - set(first))
         nav.append({title: [f"{folder}/{name}.md" for name in ordered]})
     nav.append({"Project": ["changelog.md", "contributing.md", "security.md"]})

@@ -7,13 +7,13 @@ table. Parsing the text a second time with RTAMT's rules shows whether the diffe
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

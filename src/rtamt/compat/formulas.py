@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Real
 from typing import TYPE_CHECKING, Any
@@ -16,6 +15,7 @@ from rtamt.language.formula import Formula, Var, outermost, postorder, variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import canonical
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.ground import grounds
 from rtamt.rewrite.semantics import apply_semantics, boolean, semantics_of
 from rtamt.rewrite.truth import is_part_of_a_condition

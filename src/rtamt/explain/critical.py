@@ -9,7 +9,6 @@ one that overturns the verdict alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Protocol
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Until, Window
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import replace
 from itertools import accumulate
 from math import isinf
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from rtamt.explain.report import Listed, Reading, Stretch
 from rtamt.explain.sentences import predicate_text, reading
 from rtamt.language.formula import Var, types_of, variables
 from rtamt.language.value_types import value_text
+from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 

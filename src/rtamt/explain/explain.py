@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -161,14 +162,27 @@ class _Explainer:
 
     def _places(self, implicant: list[Interval], robustness: float) -> Iterator[Point]:
         """Yield the places of an implicant that have the value of the robustness."""
-        for interval in implicant:
-            changes, values = self._values[interval.name].between(interval.start, interval.end)
-            stops = (*changes[1:].tolist(), interval.end)
-            for start, stop, value in zip(changes.tolist(), stops, values.tolist(), strict=True):
-                if interval.sign * value == robustness:
-                    # In dense time a value moves on its whole segment, in discrete time each sample by itself.
-                    cells = (start,) if self._dense else range(start, stop)
-                    yield from (Point(there, interval.sign, interval.name) for there in cells)
+        of: dict[tuple[str, int], list[int]] = defaultdict(list)
+        for number, interval in enumerate(implicant):
+            of[interval.name, interval.sign].append(number)
+        found: list[tuple[int, int, int]] = []
+        for (name, sign), numbers in of.items():
+            starts, ends = self._values[name].stretches(sign * robustness)
+            firsts = np.searchsorted(ends, [implicant[number].start for number in numbers], side="right")
+            lasts = np.searchsorted(starts, [implicant[number].end for number in numbers], side="left")
+            for which in np.flatnonzero(firsts < lasts).tolist():
+                number = numbers[which]
+                interval = implicant[number]
+                for start, end in zip(
+                    starts[firsts[which] : lasts[which]].tolist(),
+                    ends[firsts[which] : lasts[which]].tolist(),
+                    strict=True,
+                ):
+                    found.append((number, max(start, interval.start), min(end, interval.end)))
+        for number, start, end in sorted(found):
+            # In dense time a value moves on its whole segment, in discrete time each sample by itself.
+            cells = (start,) if self._dense else range(start, end)
+            yield from (Point(there, implicant[number].sign, implicant[number].name) for there in cells)
 
     def _described(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
         """Return a place that has the value of the robustness as a critical point, and its cell."""

@@ -8,16 +8,20 @@ with two variables for a predicate (``Structure.polar``) that are +inf or -inf.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rtamt.explain.signals import truths
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.structure import literal, reaches
 from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
 
     from rtamt.engine.time_axis import TimeAxis
     from rtamt.explain.propagate import Demands
@@ -110,9 +114,7 @@ def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> 
     """
     kept: list[Interval] = []
     open_: list[Interval] = []
-    for interval in intervals:
-        asked = needs.leaves.get((interval.name, interval.sign))
-        plain = asked is not None and asked.cells.meets(interval.start, interval.end)
+    for interval, plain in zip(intervals, _are_needed(intervals, needs), strict=True):
         (kept if plain else open_).append(interval)
     open_.sort(key=lambda interval: (interval.start, interval.end))
     size = 1 << max(len(open_) - 1, 0).bit_length()
@@ -124,6 +126,21 @@ def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> 
         size //= 2
         groups = [group[i : i + size] for group in groups for i in range(0, len(group), size)]
     return kept + [interval for group in groups for interval in group]
+
+
+def _are_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.bool_]:
+    """Return of each interval whether ``needs`` asks for a part of it."""
+    plain = np.zeros(len(intervals), bool)
+    starts, ends = (
+        np.array([getattr(each, name) for each in intervals], np.int64) for name in ("start", "end")
+    )
+    of: dict[tuple[str, int], list[int]] = {}
+    for number, interval in enumerate(intervals):
+        of.setdefault((interval.name, interval.sign), []).append(number)
+    for literal_, numbers in of.items():
+        if (asked := needs.leaves.get(literal_)) is not None:
+            plain[numbers] = asked.cells.met_by(starts[numbers], ends[numbers])
+    return plain
 
 
 def _needed(

@@ -6,7 +6,6 @@ is chosen (see ``choices``). What is asked for at the predicates is enough for t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
 from rtamt.language.shares import rank_of
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Place, opcode, window_of
 from rtamt.signals.instants import NONE, Cells
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from html import escape
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.datetimes import nanoseconds_of
 
 if TYPE_CHECKING:

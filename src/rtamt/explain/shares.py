@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import deque
-from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ parameters; core/fmi/component.hpp counts in the same way.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import UsageError
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.clock import Clock
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick

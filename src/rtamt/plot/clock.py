@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text
 

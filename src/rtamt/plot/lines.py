@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Var, variables
 from rtamt.language.parsing.grammar import is_predicate as is_comparison
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

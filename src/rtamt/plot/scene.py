@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.offline import Evaluators
@@ -12,6 +11,7 @@ from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.band import Band, band
 from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges

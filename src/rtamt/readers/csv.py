@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import chain, islice
 from math import isinf, isnan
 from types import MappingProxyType
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import TraceError, shown
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.readers.dates import is_date
 
 if TYPE_CHECKING:

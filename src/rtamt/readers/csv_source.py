@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from codecs import getincrementaldecoder
-from dataclasses import replace
 from io import TextIOWrapper
 from itertools import chain, islice
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rtamt.errors import TraceError
+from rtamt.lazy_dataclasses import replace
 from rtamt.readers.csv import (
     Column,
     Header,

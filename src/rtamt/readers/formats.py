@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import importlib
 import os
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.readers.source import guarded, opening
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from itertools import groupby, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +14,7 @@ import numpy as np
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.source import Field, Source, Table, printable, reason

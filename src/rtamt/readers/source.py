@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import errno
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from rtamt import extras
 from rtamt.errors import StlError, TraceError
 from rtamt.files import nearest_file
+from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import platform
-from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from importlib.resources import files
 from math import inf
@@ -15,6 +14,7 @@ import numpy as np
 
 from rtamt.errors import readable
 from rtamt.extras import library
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.report.data import data_of
 from rtamt.report.signals import BUDGET, signals_of
 from rtamt.report.store import Store

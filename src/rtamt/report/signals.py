@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.lines import Line
 from rtamt.report.data import line_data
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
 from rtamt.files import replacing
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
 from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING
+
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from rtamt.ros.group import Group

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments

@@ -26,7 +26,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -34,6 +33,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, choices, did_you_mean, shown
 from rtamt.extras import library
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
 from rtamt.texts import load, parse

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.language.printing.printer import to_text
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.search.executor import Enough, Runs
 from rtamt.search.log import Evaluation, Record
 from rtamt.search.optimizers import optimizer as named_optimizer

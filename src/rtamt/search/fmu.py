@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import shutil
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     import os

@@ -17,13 +17,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from bisect import bisect_right
-from dataclasses import dataclass, fields
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
 from rtamt.errors import UsageError, shown, with_article
+from rtamt.lazy_dataclasses import dataclass, fields
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:

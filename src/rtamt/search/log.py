@@ -8,13 +8,14 @@ exactly like an uninterrupted one.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.files import write_text
+from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     import os

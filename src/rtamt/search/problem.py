@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.batch import evaluate_requirements
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
 from rtamt.signals.arrays import TIME, is_number

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ from hypothesis import strategies as st
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold
 from rtamt.language.operators import Bounds, Fixity, Language, Operator, Tense
 from rtamt.language.printing.printer import to_text
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.testing.strategies import formulas
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind, rank_arguments
+from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.reference import discrete as reference
 
 if TYPE_CHECKING:

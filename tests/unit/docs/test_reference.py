@@ -56,7 +56,7 @@ def test_an_example_of_a_method_in_cpp_runs(name):
 def test_the_tasks_come_in_the_order_in_which_a_user_meets_them(tool):
     page = tool("reference").api()
     tasks = [line.removeprefix("## ") for line in page.splitlines() if line.startswith("## ")]
-    assert tasks[:4] == ["Parse and load", "Evaluate", "Monitor", "Verdicts"]
+    assert tasks[:5] == ["Parse and load", "Evaluate", "Monitor", "Monitor many keys", "Verdicts"]
     shown = {line.removeprefix("::: ") for line in page.splitlines() if line.startswith(":::")}
     names = {f"rtamt.{getattr(rtamt, name).__name__}" for name in rtamt.__all__ if name != "STL"}
     assert names <= shown

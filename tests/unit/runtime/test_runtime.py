@@ -34,7 +34,7 @@ def test_no_damaged_program_is_taken():
 
 def test_a_window_that_no_memory_holds_is_refused_with_a_sentence():
     program = rtamt.parse("always[0:3](x)").compile()
-    wider = tuple(replace(i, n=2**45) if i.opcode == "slide_min" else i for i in program.instructions)
+    wider = tuple(i._replace(n=2**45) if i.opcode == "slide_min" else i for i in program.instructions)
     with pytest.raises(c_api.RefusedError) as refused:
         c_api.Monitor(replace(program, instructions=wider).to_bytes())
     assert refused.value.args == (c_api.NO_MEMORY, "There is not enough memory.")
