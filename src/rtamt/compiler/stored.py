@@ -100,6 +100,15 @@ class StoredPlan:
             needed.update(part.inputs)
         return StoredPlan(Plan(tuple(stages), program), self.settled)
 
+    def reads(self) -> list[frozenset[str]]:
+        """Return the variables that each output depends on."""
+        of_scan: dict[str, frozenset[str]] = {}
+        for stage in self.plan.stages:
+            read = _read_by_outputs(stage.program, of_scan)
+            for scan in stage.scans:
+                of_scan[scan.name] = frozenset[str]().union(*(read[output] for output in scan.outputs))
+        return _read_by_outputs(self.plan.program, of_scan)
+
     def programs(self) -> Iterator[Program]:
         """Yield all programs, in the order in which they run."""
         for stage in self.plan.stages:
@@ -131,6 +140,22 @@ class StoredPlan:
         if type(settled) is not int or not 0 <= settled < LATEST:
             raise damaged(f"it settles after {settled!r} ticks")
         return StoredPlan(Plan(tuple(stages), _fitting(programs, known)), settled)
+
+
+def _read_by_outputs(program: Program, of_scan: Mapping[str, frozenset[str]]) -> list[frozenset[str]]:
+    """Return the variables that each output of a program depends on; ``of_scan``: those of each scan."""
+    nothing = frozenset[str]()
+    read: list[frozenset[str]] = []
+    for instruction in program.instructions:
+        found = nothing
+        if instruction.opcode == "input":
+            name = program.inputs[instruction.n]
+            found = of_scan.get(name, frozenset((name,)))
+        for operand in (instruction.a, instruction.b):
+            if operand is not None and not read[operand] <= found:
+                found = found | read[operand]
+        read.append(found)
+    return [read[output] for output in program.outputs]
 
 
 def _fitting(programs: Iterator[Program], known: Collection[str]) -> Program:

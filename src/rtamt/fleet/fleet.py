@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 #: What is done where the next sample of a key is not one period after the last one.
 GAPS = ("reject", "restart")
 
+#: No fleet has as many keys.
+MOST = 2**31
+
 #: By type of keys, the character at their end that an array of numpy loses: two keys would be one.
 _PADDED: dict[type, Any] = {str: "\0", bytes: b"\0"}
 
@@ -211,15 +214,24 @@ class Fleet:
 def _capacity(given: Any) -> int:
     if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 1:
         raise UsageError(f"capacity is {shown(given)}, expected a number of keys, at least 1")
+    if given >= MOST:
+        raise UsageError(f"capacity is {shown(given)}, expected a number of keys below 2**31")
     return int(given)
 
 
 def _keys(keys: Any) -> NDArray[Any]:
     """Return keys as an array of int64, texts or bytes; raise :class:`TraceError` for anything else."""
     given = keys
+    if isinstance(keys, np.ma.MaskedArray):
+        masked = np.ma.getmaskarray(keys)
+        if masked.any():
+            raise _masked(int(masked.argmax()))
+        keys = given = keys.data
     if not isinstance(keys, np.ndarray):
         keys = list(keys)
         kinds = {type(key) for key in keys}
+        if type(np.ma.masked) in kinds:
+            raise _masked([key is np.ma.masked for key in keys].index(True))
         if len(kinds) > 1:
             names = ", ".join(sorted(kind.__name__ for kind in kinds))
             raise TraceError(f"the keys are of several types ({names}): give integers, texts, or bytes")
@@ -243,6 +255,10 @@ def _keys(keys: Any) -> NDArray[Any]:
     if found.dtype.kind in "iu":
         return np.ascontiguousarray(found, np.int64)
     return np.ascontiguousarray(found, found.dtype.newbyteorder("="))
+
+
+def _masked(index: int) -> TraceError:
+    return TraceError(f"the key at index {index} of the batch is masked: leave the sample out")
 
 
 def _identities(spec: Specification) -> dict[str, str]:

@@ -216,12 +216,12 @@ def _suite(
 def _group_of(given: Any, programs: Iterator[Program], select: Sequence[str]) -> Group:
     kind, step = DOMAINS[given["domain"]], _fraction(given["step"])
     domain = kind.of(step, given["tolerance"], step)
-    names = _names(given["names"])
+    names = _distinct(given["names"])
     binding = Binding(names, _pairs(given["columns"]), _pairs(given["units"]), _others(given["others"]))
     unit = None if given["unit"] is None else check_unit(given["unit"])
     types = {_text(name): _type_of(type_) for name, type_ in given["types"].items()}
     way = Way(domain, unit, binding, types, _rule_of(given["rule"]), _names(given["ending"]))
-    inputs = {_number(number): _names(read) for number, read in given["inputs"]}
+    inputs = {_number(number): _distinct(read) for number, read in given["inputs"]}
     for read in (*inputs.values(), types):
         for name in read:
             if name not in names:
@@ -233,16 +233,43 @@ def _group_of(given: Any, programs: Iterator[Program], select: Sequence[str]) ->
         wanted = (len(numbers) * ("robustness" in select), len(numbers) * (select != ("robustness",)))
         if not numbers or (len(prepared.outputs), len(prepared.joined)) != wanted:
             raise damaged("a program has other outputs than its requirements")
+        _require_readable(prepared, [inputs[number] for number in numbers])
         parts.append((numbers, prepared))
     if [number for numbers, _ in parts for number in numbers] != list(inputs):
         raise damaged("its programs do not hold every requirement once")
     return Group(way, inputs, None, Programs(tuple(parts)))
 
 
+def _require_readable(prepared: Prepared, inputs: Sequence[tuple[str, ...]]) -> None:
+    """Raise :class:`UsageError` unless each requirement can be evaluated without the others.
+
+    ``inputs``: the variables of each. A recording that suits only some of the requirements is read for these alone.
+    """
+    first, second, third = (
+        [] if plan is None else plan.reads()
+        for plan in (prepared.robustness, prepared.leaves, prepared.joining)
+    )
+    for place, names in enumerate(inputs):
+        read = set(prepared.inputs if prepared.domain.continuous else ())
+        if prepared.outputs:
+            read |= first[prepared.outputs[place]]
+        if prepared.joined:
+            joined = prepared.joined[place]
+            read.update(*(second[prepared.windows[window].output] for window in joined.windows))
+            values = [joined.value, *(output for _, output in joined.parts if output is not None)]
+            listed = {f"#{window}" for window in joined.windows}
+            if not frozenset[str]().union(*(third[value] for value in values)) <= listed:
+                raise damaged("a requirement joins windows that it does not list")
+            if not {window for window, _ in joined.parts if window is not None} <= set(joined.windows):
+                raise damaged("a requirement has a part that it does not list")
+        if not read <= set(names):
+            raise damaged("a program reads what its requirement does not")
+
+
 def _prepared_of(
     given: Any, programs: Iterator[Program], domain: TimeDomain, names: tuple[str, ...]
 ) -> Prepared:
-    inputs = _names(given["inputs"])
+    inputs = _distinct(given["inputs"])
     if not set(inputs) <= set(names):
         raise damaged("a program reads what its group does not")
 
@@ -319,6 +346,13 @@ def _text(given: Any) -> str:
 
 def _names(given: Any) -> tuple[str, ...]:
     return tuple(map(_text, given))
+
+
+def _distinct(given: Any) -> tuple[str, ...]:
+    names = _names(given)
+    if len(set(names)) != len(names):
+        raise damaged(f"it has {shown(given)}, a name twice")
+    return names
 
 
 def _pairs(given: Any) -> tuple[tuple[str, str], ...]:

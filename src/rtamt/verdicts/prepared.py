@@ -243,7 +243,8 @@ class Prepared:
                     violated += [at for at in (reduced[window][1],) if at is not None]
                 elif output is not None and not values[output] > 0:
                     violated.append(0)
-            found.append(Found(satisfied=False, violation=min(violated)))
+            # Programs that somebody has forged may be false without any part that is.
+            found.append(Found(satisfied=False, violation=min(violated, default=None)))
         return found
 
     # ---- programs --------------------------------------------------------------------------------

@@ -70,6 +70,12 @@ def filled(spec: rtamt.Specification = SPEC, **settings: Any) -> rtamt.Fleet:
             "the keys are of several types (int, str): give integers, texts, or bytes",
         ),
         (
+            np.ma.array([7, 8], mask=[False, True]),
+            [1, 1],
+            {"x": [1, 1]},
+            "the key at index 1 of the batch is masked: leave the sample out",
+        ),
+        (
             [2**63],
             [1],
             {"x": [1]},
@@ -109,7 +115,15 @@ def test_wrong_data_is_named_by_key_and_index_and_changes_nothing(
         (lambda _: rtamt.Fleet(SPEC, 3, gaps="hold"), "gaps is 'hold'"),
         (
             lambda _: rtamt.Fleet(SPEC, 2**31),
-            "a fleet for 2147483648 keys needs more memory than this machine gives; lower the capacity",
+            "capacity is 2147483648, expected a number of keys below 2**31",
+        ),
+        (
+            lambda _: rtamt.Fleet(SPEC, 2**70),
+            "capacity is 1180591620717411303424, expected a number of keys below 2**31",
+        ),
+        (
+            lambda _: rtamt.Fleet(rtamt.parse("once[0:10000000](x >= 3)"), 2**31 - 1),
+            "a fleet for 2147483647 keys needs more memory than this machine gives; lower the capacity",
         ),
         (
             lambda f: rtamt.Fleet.restore(SPEC, f.snapshot(), capacity=1),
@@ -179,6 +193,14 @@ def test_keys_that_numpy_would_take_for_the_same_are_rejected(keys: Any) -> None
         fleet.update_many(keys, [0, 0], {"x": [1, 2]})
     assert keys[1] not in fleet
     assert len(fleet) == 0
+
+
+def test_masked_arrays_without_a_masked_key_are_keys() -> None:
+    fleet = rtamt.Fleet(SPEC, 3)
+    fleet.update_many(np.ma.array([7, 8], mask=[False, False]), [0, 0], {"x": [1, 2]})
+    assert sorted(fleet.keys()) == [7, 8]
+    assert np.ma.array([7])[0] in fleet
+    assert np.ma.masked not in fleet
 
 
 def test_texts_in_the_other_byte_order_are_the_same_keys() -> None:
