@@ -24,7 +24,7 @@ from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.quantifiers import resolve
-from rtamt.rewrite.semantics import apply_semantics, semantics_of
+from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.domains import Defaults, time_domain
@@ -319,7 +319,7 @@ class SpecificationText:
         ``semantics``: by default that of the specification; see :func:`rtamt.rewrite.semantics.lower`.
         """
         chosen = self._semantics(semantics)
-        if not isinstance(chosen, str):
+        if not isinstance(chosen, str) or SEMANTICS[chosen] is standard:
             return apply_semantics(formula, chosen, self.roles)
         applied = self._lowered.get((formula, chosen))
         if applied is None:

@@ -12,7 +12,8 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.program import CallSite, Instruction, Program
+from rtamt.compiler.places import Places
+from rtamt.compiler.program import CallSite, Instruction, Program, instruction
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import rank_of
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from rtamt.signals.domain_interface import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
+
+#: Looking up a member of an enumeration takes as long as the rest of an instruction.
+_PAST = Tense.PAST
 
 
 def seconds_per_step(step: Fraction) -> tuple[tuple[str, float], ...]:
@@ -50,13 +54,15 @@ class Lowering(ABC):
     ) -> None:
         self.domain = domain
         self.period = period
+        self.ratio = period.as_integer_ratio()
         self.inputs = inputs
         self.places = {name: place for place, name in enumerate(inputs)}
         self.clip = clip
         self.instructions: list[Instruction] = []
         self.origins: list[Formula | None] = []
         self.index_of: dict[Instruction, int] = {}
-        self.value_of: dict[Formula, int] = {}
+        self.parameters: dict[Parameter, int] = {}
+        self.lowered: list[tuple[Formula, int]] = []
         self.calls: dict[CallSite, int] = {}
 
     def program(self, outputs: tuple[int, ...]) -> Program:
@@ -66,7 +72,7 @@ class Lowering(ABC):
             self.inputs,
             outputs,
             self.period,
-            self.value_of,
+            Places(self.lowered),
             tuple(self.origins),
             self.domain,
             tuple(self.calls),
@@ -74,52 +80,55 @@ class Lowering(ABC):
 
     def lower(self, formulas: Sequence[Formula]) -> list[int]:
         """Emit the instructions of formulas, operands first, and return the index of each formula's last one."""
-        found: dict[int, int] = {}  # by identity, since hashing formulas takes as long as lowering them
+        # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
+        found: dict[int, int] = {}
         for node in postorder(*formulas):
-            index = self.value_of.get(node)
-            if index is None:
-                index = self.value_of[node] = self._lower_node(node, found)
-            found[id(node)] = index
+            index = found[id(node)] = self._lower_node(node, found)
+            self.lowered.append((node, index))
         return [found[id(formula)] for formula in formulas]
 
     def _lower_node(self, node: Formula, found: Mapping[int, int]) -> int:
         """Return the index of a node, given those of its operands by identity."""
-        # A parameter is never merged with another constant: its value may be changed.
-        if isinstance(node, Parameter):
-            return self.append(Instruction("const", x=node.value), node)
-        if isinstance(node, Const):
-            return self.emit(Instruction("const", x=node.value), node)
+        if isinstance(node, Apply):
+            args = self.align([found[id(arg)] for arg in node.args])
+            kernel = node.op.kernel
+            if isinstance(kernel, Pointwise):
+                return self.pointwise(node, kernel, args)
+            if isinstance(kernel, Window):
+                return self.window(node, kernel, args[0])
+            if isinstance(kernel, Sum):
+                return self.sum(node, args[0])
+            if isinstance(kernel, Rank):
+                return self.rank(node, args[0])
+            if isinstance(kernel, Shift):
+                return self.shift_by_one(node, kernel, args[0])
+            if isinstance(kernel, Ahead):
+                return self.ahead_of(node, args[0])
+            if isinstance(kernel, Since):
+                return self.since(node, *args)
+            if isinstance(kernel, Until):
+                return self.until(node, *args)
+            return self.call(node, args)
         if isinstance(node, Var):
             assert not node.bound, "quantifiers are resolved before"
             return self.emit(Instruction("input", n=self.places[node.name]), node)
-        assert isinstance(node, Apply)
-        args = self.align([found[id(arg)] for arg in node.args])
-        kernel = node.op.kernel
-        if isinstance(kernel, Pointwise):
-            return self.pointwise(node, kernel, args)
-        if isinstance(kernel, Window):
-            return self.window(node, kernel, args[0])
-        if isinstance(kernel, Sum):
-            return self.sum(node, args[0])
-        if isinstance(kernel, Rank):
-            return self.rank(node, args[0])
-        if isinstance(kernel, Shift):
-            return self.shift_by_one(node, kernel, args[0])
-        if isinstance(kernel, Ahead):
-            return self.ahead_of(node, args[0])
-        if isinstance(kernel, Since):
-            return self.since(node, *args)
-        if isinstance(kernel, Until):
-            return self.until(node, *args)
-        return self.call(node, args)
+        assert isinstance(node, Const)
+        if isinstance(node, Parameter):
+            # Never merged with another constant: its value may be changed.
+            known = self.parameters.get(node)
+            if known is None:
+                known = self.parameters[node] = self.append(Instruction("const", x=node.value), node)
+            return known
+        return self.emit(instruction(("const", None, None, 0, node.value, 0)), node)
 
     # ---- emitting --------------------------------------------------------------------------------
 
     def emit(self, instruction: Instruction, origin: Formula) -> int:
         """Return the index of an instruction, adding it if necessary."""
-        index = self.index_of.get(instruction)
-        if index is None:
-            index = self.index_of[instruction] = self.append(instruction, origin)
+        new = len(self.instructions)
+        index = self.index_of.setdefault(instruction, new)
+        if index == new:
+            self.append(instruction, origin)
         return index
 
     def append(self, instruction: Instruction, origin: Formula) -> int:
@@ -142,6 +151,8 @@ class Lowering(ABC):
             return indices
         lags = [self.instructions[i].lag for i in indices]
         lag = max(lags)
+        if lags.count(lag) == len(lags):
+            return indices
         return [i if own == lag else self.delayed(i, lag) for i, own in zip(indices, lags, strict=True)]
 
     def delayed(self, index: int, lag: int) -> int:
@@ -163,8 +174,11 @@ class Lowering(ABC):
 
     def whole(self, bound: Fraction) -> int:
         """Return a bound in steps."""
-        period = self.period  # a division of fractions costs ten times as much
-        count, rest = divmod(bound.numerator * period.denominator, bound.denominator * period.numerator)
+        (a, b), (c, d) = (
+            bound.as_integer_ratio(),
+            self.ratio,
+        )  # a division of fractions costs ten times as much
+        count, rest = divmod(a * d, b * c)
         assert rest == 0, "bounds are checked before compilation"
         return count
 
@@ -188,16 +202,16 @@ class Lowering(ABC):
 
     def pointwise(self, node: Apply, kernel: Pointwise, args: list[int]) -> int:
         """Lower an operator on values at one instant."""
-        lag = max(self.lag(i) for i in args)
+        lag = max([self.instructions[i].lag for i in args])
         a, b = (*args, None)[:2]
-        return self.emit(Instruction(kernel.opcode, a, b, lag=lag), node)
+        return self.emit(instruction((kernel.opcode, a, b, 0, 0.0, lag)), node)
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:
         """Lower the largest or smallest value in a window."""
         begin, end = self.bounds(node)
         fill = _IDENTITY[kernel.reduce]
         lag = self.lag(x)
-        if node.op.tense is Tense.PAST:
+        if node.op.tense is _PAST:
             if end is None:
                 x = self.emit(Instruction(f"run_{kernel.reduce}", x, lag=lag), node)
             else:
@@ -249,7 +263,7 @@ class Lowering(ABC):
             most = operand.value * width
             if 0 <= most <= 2**53:  # exact in any order
                 return self.counting(x, most, lag, origin)
-        return self.emit(Instruction(f"slide_{reduce}", x, n=width, lag=lag), origin)
+        return self.emit(instruction((f"slide_{reduce}", x, None, width, 0.0, lag)), origin)
 
     def counting(self, x: int, most: float, lag: int, origin: Formula) -> int:
         """Return the sum over a window of a whole number: the sum so far, but no more than of a whole window."""

@@ -41,7 +41,8 @@ def passed(program: Program, without: Collection[str] = ()) -> Program:
     for name, rewrite in REWRITES.items():
         if name not in without:
             program = rewrite(program)
-    return replace(program, without=frozenset(without) & set(LOADED))
+    left_out = frozenset(without) & set(LOADED)
+    return replace(program, without=left_out) if left_out else program
 
 
 def bits_of(without: Collection[str]) -> int:

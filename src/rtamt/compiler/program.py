@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from functools import cached_property
+from functools import cached_property, partial
 from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -30,7 +30,7 @@ from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from fractions import Fraction
 
     from rtamt.language.formula import Apply, Formula
@@ -48,6 +48,8 @@ OPCODES = (
     "slide_sum", "run_sum",
     "rank_max", "rank_min",
 )  # fmt: skip
+
+_CODES = {opcode: code for code, opcode in enumerate(OPCODES)}
 
 #: Time domains, in the order of their codes.
 _DOMAINS = tuple(DOMAINS.values())
@@ -92,6 +94,12 @@ class Instruction(NamedTuple):
         if self.opcode.startswith("rank_"):
             parts.append(f"k={int(self.x)}")
         return " ".join(parts)
+
+
+#: An instruction of all its fields, in half the time of calling Instruction.
+instruction: Callable[[tuple[str, int | None, int | None, int, float, int]], Instruction] = partial(
+    tuple.__new__, Instruction
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,10 +221,10 @@ class Program:
             int(self.worst_case),
         )
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
-        for ins in self.instructions:
-            a = NO_OPERAND if ins.a is None else ins.a
-            b = NO_OPERAND if ins.b is None else ins.b
-            parts.append(_RECORD.pack(OPCODES.index(ins.opcode), a, b, 0, ins.n, ins.x, ins.lag))
+        pack = _RECORD.pack
+        for opcode, a, b, n, x, lag in self.instructions:
+            first, second = NO_OPERAND if a is None else a, NO_OPERAND if b is None else b
+            parts.append(pack(_CODES[opcode], first, second, 0, n, x, lag))
         parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
         body = b"".join(parts)
         return body + struct.pack("<I", zlib.crc32(body))

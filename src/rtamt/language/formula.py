@@ -393,6 +393,11 @@ def size(formula: Formula) -> int:
         return formula._size
 
 
+def operators_of(*formulas: Formula) -> set[Operator]:
+    """Return the operators of formulas: what depends on these alone is asked once for each."""
+    return {node.op for node in postorder(*formulas) if isinstance(node, Apply)}
+
+
 def types_of(*formulas: Formula) -> dict[str, ValueType]:
     """Return the types of the variables of formulas that are no plain numbers."""
     found: dict[str, ValueType] = {}

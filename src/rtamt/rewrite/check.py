@@ -60,15 +60,15 @@ def check_bounds(
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
+    a, b = step.as_integer_ratio()
     for node in postorder(spelled_out(formula)):
         if not isinstance(node, Apply) or node.interval is None:
             continue
         for bound in (node.interval.begin, node.interval.end):
             if bound is None:
                 continue
-            count, rest = divmod(  # of integers: a division of fractions costs ten times as much
-                bound.numerator * step.denominator, bound.denominator * step.numerator
-            )
+            c, d = bound.as_integer_ratio()
+            count, rest = divmod(c * b, d * a)  # a division of fractions costs ten times as much
             if rest != 0:
                 raise BoundError(
                     f"The operator bound must be a multiple of the {unit.setting}: "
@@ -200,8 +200,9 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
 
 def unbounded_future(formula: Formula) -> Apply | None:
     """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
+    future = Tense.FUTURE
     for node in postorder(spelled_out(formula)):
-        if isinstance(node, Apply) and reads_unbounded_future(node):
+        if isinstance(node, Apply) and node.op.tense is future and reads_unbounded_future(node):
             return node
     return None
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.language.formula import Apply, Formula, Span, fold, folds, postorder
-from rtamt.rewrite.truth import rebuilt, with_truths
+from rtamt.language.formula import Apply, Formula, Span, fold, folds, operators_of
+from rtamt.rewrite.truth import read_conditions, rebuilt, with_truths
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -80,8 +80,9 @@ def spelled_out(formula: Formula) -> Formula:
     >>> str(spelled_out(nand(Var("x"), Var("y"))))
     'not(x and y)'
     """
-    if not any(isinstance(node, Apply) and node.op.definition is None for node in postorder(formula)):
-        return with_truths(formula)
+    operators = operators_of(formula)
+    if all(op.definition is not None for op in operators):
+        return with_truths(formula) if read_conditions(operators) else formula
 
     def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply) or node.op.definition is not None:
@@ -99,14 +100,20 @@ def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
         return node
     if node.op.expansion is None or node.op.kernel is not None:
         return rebuilt(node, args)
-    span = node.span
+    return _expanded(node.op.expansion(*args, node.interval), {id(arg): arg for arg in args}, node.span)
 
-    def step(inner: Formula, below: tuple[Formula, ...]) -> Formula:
-        if not isinstance(inner, Apply):
-            return inner
-        return expand(Apply(inner.op, below, inner.interval, span), below)
 
-    return _rebuild_above(node.op.expansion(*args, node.interval), set(map(id, args)), step)
+def _expanded(node: Formula, done: dict[int, Formula], span: Span | None) -> Formula:
+    """Expand a node of an expansion, which has few; ``done``: what is known, by the identity of nodes."""
+    found = done.get(id(node))
+    if found is None:
+        if isinstance(node, Apply):
+            below = tuple([_expanded(child, done, span) for child in node.args])
+            found = expand(Apply(node.op, below, node.interval, span), below)
+        else:
+            found = node
+        done[id(node)] = found
+    return found
 
 
 def stamped(formula: Formula, operands: tuple[Formula, ...], span: Span | None) -> Formula:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
+    from rtamt.language.records import Operator
+
 
 def ground(formula: Formula, step: Fraction, *, continuous: bool = False) -> Formula:
     """Return the formula in a time domain with steps of ``step`` seconds; ``continuous`` in dense time.
@@ -48,10 +50,9 @@ def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = F
             return rebuilt(node, args)
         return Apply(node.op, args, interval, node.span)
 
-    if not any(
-        isinstance(node, Apply) and _grounded(node, step, continuous=continuous) is not node.interval
-        for node in postorder(*formulas)
-    ):
+    applied = [node for node in postorder(*formulas) if isinstance(node, Apply)]
+    implied = any(_implied(op, continuous=continuous) for op in {node.op for node in applied})
+    if not implied and not any(node.interval.is_open for node in applied if node.interval):
         return tuple(formulas)
     return folds(formulas, changed)
 
@@ -72,10 +73,15 @@ def closed(interval: Interval, step: Fraction) -> Interval:
     )
 
 
+def _implied(op: Operator, *, continuous: bool) -> bool:
+    """Return whether an operator without an interval is given that of one step."""
+    return op.one_tick if continuous else op.bounds is Bounds.DURATION
+
+
 def _grounded(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
     if node.interval is not None:
         return closed(node.interval, step)
-    if not (node.op.one_tick if continuous else node.op.bounds is Bounds.DURATION):
+    if not _implied(node.op, continuous=continuous):
         return None
     unit = next((unit for unit, seconds in UNITS.items() if (step / seconds).denominator == 1), "")
     return Interval(step, step, unit, unit, implied=True)

@@ -9,6 +9,9 @@ from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 
+#: Looking up a member of an enumeration takes as long as the rest of a node.
+_FUTURE, _NONE, _DURATION = Tense.FUTURE, Bounds.NONE, Bounds.DURATION
+
 
 def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None:
     """Return the temporal depth H(φ) in seconds, exact; None if it is unbounded.
@@ -35,34 +38,37 @@ def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
 def _counted(formula: Formula, period: Fraction) -> tuple[int, dict[int, int | None]]:
     """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add."""
     nodes = postorder(formula)
-    intervals = [node.interval for node in nodes if isinstance(node, Apply) and node.interval is not None]
-    parts = lcm(period.denominator, *{each.end.denominator for each in intervals if each.end is not None})
+    applied = [node for node in nodes if isinstance(node, Apply)]
+    ends = [node.interval.end for node in applied if node.interval is not None]
+    parts = lcm(period.denominator, *[end.denominator for end in ends if end is not None])
     step = period.numerator * (parts // period.denominator)
-    found: dict[int, int | None] = {}
-    for node in nodes:
-        deepest: int | None = 0
-        if isinstance(node, Apply):
-            for operand in node.args:
-                depth = found[id(operand)]
-                if depth is None or deepest is None:
-                    deepest = None
-                elif depth > deepest:
-                    deepest = depth
-            if deepest is not None and node.op.tense is Tense.FUTURE:
-                own = _own(node, parts, step)
-                deepest = None if own is None else deepest + own
-        found[id(node)] = deepest
+    found: dict[int, int | None] = dict.fromkeys(map(id, nodes), 0)
+    for node in applied:
+        deepest = 0
+        for operand in node.args:
+            depth = found[id(operand)]
+            if depth is None:
+                found[id(node)] = None
+                break
+            if depth > deepest:  # noqa: PLR1730 - max() takes three times as long
+                deepest = depth
+        else:
+            own = _own(node, parts, step) if node.op.tense is _FUTURE else 0
+            found[id(node)] = None if own is None else deepest + own
     return parts, found
 
 
 def _own(node: Apply, parts: int, step: int) -> int | None:
     """Return how far ahead of its operands an operator reads; ``step``: one sample."""
-    if node.op.bounds is Bounds.NONE:
+    if node.op.bounds is _NONE:
         return None if node.op.reach is None else node.op.reach * step
     if node.interval is None:
-        return step if node.op.bounds is Bounds.DURATION else None
+        return step if node.op.bounds is _DURATION else None
     end = node.interval.end
-    return None if end is None else end.numerator * (parts // end.denominator)
+    if end is None:
+        return None
+    numerator, denominator = end.as_integer_ratio()
+    return numerator * (parts // denominator)
 
 
 def reach(formula: Formula, step: Fraction) -> int:

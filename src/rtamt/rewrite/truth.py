@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, fold, postorder
+from rtamt.language.formula import Apply, Formula, fold, operators_of, postorder
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.unwritten import holds, is_truth
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
+
+    from rtamt.language.operators import Operator
 
 
 def truth(predicate: Formula) -> Formula:
@@ -72,7 +74,15 @@ def read_as_conditions(*formulas: Formula) -> set[int]:
     return _read_from(_conditions(*formulas))[0]
 
 
+def read_conditions(operators: Iterable[Operator]) -> bool:
+    """Return whether any of these operators reads an operand by its truth."""
+    condition = Sort.CONDITION
+    return any(condition in op.operands for op in operators)
+
+
 def _conditions(*formulas: Formula) -> list[Formula]:
+    if not read_conditions(operators_of(*formulas)):
+        return []
     return [
         operand
         for node in postorder(*formulas)
@@ -128,7 +138,9 @@ def _replaced(
 
 def rebuilt(node: Apply, args: tuple[Formula, ...]) -> Apply:
     """Return the node over new operands; the same object if they are the same objects."""
-    for new, old in zip(args, node.args, strict=True):
-        if new is not old:
+    old = node.args  # compared one by one: most nodes have one or two
+    assert len(args) == len(old)
+    for place, new in enumerate(args):
+        if new is not old[place]:
             return Apply(node.op, args, node.interval, node.span)
     return node
