@@ -51,7 +51,7 @@ NB_MODULE(_core, m) {
 
     const rtamt::python::Exceptions exceptions{
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),
-        nb::module_::import_("rtamt.engine.usage_guard").attr("in_use"),
+        nb::module_::import_("rtamt.usage_guard").attr("in_use"),
         new_exception(m, "Undefined",
                       "An operation made NaN; args are the instruction and the sample, or "
                       "the tick in dense time; online in discrete time `time` is that of the "

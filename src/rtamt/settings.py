@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 import numpy as np
 
-from rtamt.engine.engine import BACKENDS, engine_of
+from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language

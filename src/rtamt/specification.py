@@ -6,8 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.batch_results import evaluate_rows
-from rtamt.engine.engine import engine_of
-from rtamt.engine.offline import Evaluators, Query
+from rtamt.engine import Evaluators, Query, engine_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document

@@ -6,8 +6,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
-from rtamt.engine.engine import engine_of
-from rtamt.engine.online import OnlineMonitor, Watched
+from rtamt.engine import OnlineMonitor, Watched, engine_of
 from rtamt.errors import UsageError
 from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort

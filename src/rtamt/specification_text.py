@@ -7,7 +7,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.online import Watched
+from rtamt.engine import Watched
 from rtamt.errors import UsageError
 from rtamt.language.formula import Formula, outermost, types_of, variables
 from rtamt.language.operators import STL, Language

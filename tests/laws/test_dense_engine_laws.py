@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from rtamt.engine import Evaluators
 from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.offline import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, variables
 from rtamt.reference import dense as dense_reference

@@ -14,9 +14,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.engine import Watched
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
-from rtamt.engine.online import Watched
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, postorder, variables
 from rtamt.reference import dense as dense_reference

@@ -9,8 +9,8 @@ import numpy as np
 from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
+from rtamt.engine import Evaluators
 from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
-from rtamt.engine.offline import Evaluators
 from rtamt.rewrite.structure import Structure, settling
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.instants import StepFunction

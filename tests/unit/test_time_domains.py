@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import rtamt
-from rtamt.engine.engine import BACKENDS
+from rtamt.engine import BACKENDS
 from rtamt.signals.domains import DOMAINS
 
 SRC = Path(rtamt.__file__).parent

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,8 +65,7 @@ def after_passes(program: Program) -> Iterator[str]:
     yield "program"
     lines = program.disassemble().splitlines()
     width = max(len(line) for line in lines)
-    notes = [""] * len(lines) if program.domain.continuous else _places(program)
-    for line, note in zip(lines, notes, strict=True):
+    for line, note in zip_longest(lines, _places(program), fillvalue=""):
         yield f"  {line:{width}}  {note}".rstrip()
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compat.options import Language
-from rtamt.engine.discrete import backends as discrete
-from rtamt.engine.engine import BACKENDS
-from rtamt.engine.native import core
-from rtamt.engine.offline import Evaluators
+from rtamt.engine import BACKENDS, Evaluators, engine_of
+from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
 from rtamt.language.formula import Const
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import UNITS
-from rtamt.signals.discrete import Discrete
+from rtamt.signals.discrete import DISCRETE, Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -27,7 +25,7 @@ if TYPE_CHECKING:
 def is_compiled() -> bool:
     """Return whether the compiled core can be loaded."""
     try:
-        core()
+        compiled_backend(DISCRETE).require()
     except UsageError:
         return False
     return True
@@ -36,7 +34,7 @@ def is_compiled() -> bool:
 def require_core(what: str, instead: str) -> None:
     """Raise :class:`UsageError` for ``what`` if the core cannot be loaded; suggest ``instead``."""
     try:
-        core()
+        compiled_backend(DISCRETE).require()
     except UsageError as reason:
         raise UsageError(
             f"{what} needs the compiled core, which cannot be loaded; install the package with a C++ compiler "
@@ -81,8 +79,10 @@ class Stream:
     ) -> None:
         self._made_of = formulas, inputs, period, unit, tolerance, ignored
         self._unit = float(UNITS[unit])
-        self._session = discrete.BACKENDS[backend()].session(
-            formulas, inputs, Discrete(period, tolerance), ignored, strict=False, unit=UNITS[unit], parts=True
+        domain = Discrete(period, tolerance)
+        chosen: Any = engine_of(domain).backends[backend()]
+        self._session = chosen.session(
+            formulas, inputs, domain, ignored, strict=False, unit=UNITS[unit], parts=True
         )
         #: The monitor, which counts samples and gaps.
         self.monitor: Any = self._session.open()

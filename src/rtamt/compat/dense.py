@@ -14,9 +14,8 @@ from rtamt.compat.formulas import Formulas
 from rtamt.compat.objects import head_of
 from rtamt.compat.online import OnlineSpecification, require_past
 from rtamt.compat.options import Language, Semantics, sampling
+from rtamt.engine import Watched
 from rtamt.engine.dense.monitor import DenseMonitor, part_of
-from rtamt.engine.online import Watched
-from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import NameInFormulaError, StlError, UsageError
 from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
 from rtamt.language.operators import Tense
@@ -30,6 +29,7 @@ from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.dense import record_dense
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -11,13 +11,13 @@ from rtamt.compat.failures import raises_rtamt
 from rtamt.compat.objects import head_of
 from rtamt.compat.online import OnlineSpecification, require_past
 from rtamt.compat.options import Language, Semantics
-from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import Formula, Var
 from rtamt.language.units.durations import UNITS
 from rtamt.signals import arrays
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.samples import read_time, read_values
+from rtamt.usage_guard import exclusive, in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

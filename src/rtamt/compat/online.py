@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compat.failures import raises_rtamt
 from rtamt.compat.formulas import Formulas
 from rtamt.compat.objects import head_of
-from rtamt.engine.usage_guard import UsageGuard
 from rtamt.errors import RTAMTException, SpecificationError
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
 from rtamt.rewrite.pastify import pastify
 from rtamt.signals import arrays
+from rtamt.usage_guard import UsageGuard
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document

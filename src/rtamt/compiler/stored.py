@@ -10,6 +10,7 @@ from rtamt.compiler.plan import DEFINED, Plan, Scan, Stage
 from rtamt.compiler.slices import sliced
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply
+from rtamt.language.records import Blocks, Compiled
 from rtamt.language.undefined_value import meaning_of
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.desugar import as_written
@@ -30,6 +31,11 @@ _SAFE = frozenset(
 LATEST = 2**61
 
 _SCANS = ("run_max", "run_min", "until")
+
+
+def is_built_in(node: Formula) -> bool:
+    """Return whether the core has a built-in kernel for an operator, so that bytes can carry it."""
+    return not isinstance(node, Apply) or not isinstance(node.op.kernel, Blocks | Compiled | None)
 
 
 @dataclass(frozen=True, slots=True)

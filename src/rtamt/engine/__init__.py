@@ -1,5 +1,8 @@
 """Evaluate formulas on signals: offline on complete recordings, online sample by sample.
 
+Other packages import the names below from here; the back ends (``backend``) and the compiled core (``native``), which
+need longer to load, from their modules. Only the code for one time domain imports the folder of that domain.
+
 ==============  ============================================================================
 module          purpose
 ==============  ============================================================================
@@ -9,13 +12,33 @@ dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
 offline         evaluate queries on a recording; cache compiled plans
 offline_bounds  offline bounds of recordings with missing or uncertain samples
-time_axis        a recording divided into cells, as explanations evaluate it
+time_axis       a recording divided into cells, as explanations evaluate it
+apart           keep calls whose times are converted off the fast path
 online          watched formulas and copies, shared by the monitors
 quantifiers     monitors of quantifiers over members that come and go, in both time domains
-usage_guard     reject concurrent and reentrant use of a monitor
 native          load the compiled core
 cores           how many threads may evaluate one long trace
 user_operators  call custom operators from the core
 _core           the compiled core (``core/``); the stub describes its interface
 ==============  ============================================================================
 """
+
+from rtamt.engine.apart import Apart, inner_of
+from rtamt.engine.engine import BACKENDS, Engine, engine_of
+from rtamt.engine.offline import Evaluators, Query
+from rtamt.engine.online import OnlineMonitor, Watched, grounded
+from rtamt.engine.time_axis import TimeAxis
+
+__all__ = [
+    "BACKENDS",
+    "Apart",
+    "Engine",
+    "Evaluators",
+    "OnlineMonitor",
+    "Query",
+    "TimeAxis",
+    "Watched",
+    "engine_of",
+    "grounded",
+    "inner_of",
+]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
-from rtamt.engine.engine import BACKENDS
+from rtamt.compiler.stored import is_built_in
+from rtamt.engine.engine import BACKENDS, engine_of
 from rtamt.engine.native import core, culprit
-from rtamt.engine.user_operators import is_built_in
 from rtamt.errors import UsageError
 from rtamt.language.formula import postorder, types_of
 from rtamt.rewrite.desugar import desugar
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import CallSite, Program
     from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
+    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import BoundedSignal
 
 
@@ -116,6 +117,13 @@ C = TypeVar("C", bound=Backend)
 D = TypeVar("D", bound=Backend)
 
 
+class Place(NamedTuple):
+    """Where an instruction is computed: the ``root`` of its chain and its ``register``, None where there is none."""
+
+    root: int | None
+    register: int | None
+
+
 class Compiled(Backend):
     """The compiled core as a back end; ``definition`` evaluates what the core can only call."""
 
@@ -148,6 +156,14 @@ class Compiled(Backend):
     @abstractmethod
     def stored_evaluator(self, plan: StoredPlan) -> Callable[[Any], Sequence[Any]]:
         """Return what :meth:`evaluator` does, from a plan without formulas."""
+
+    @abstractmethod
+    def check(self, code: bytes, inputs: Sequence[str]) -> None:
+        """Raise :class:`ValueError` for the bytes of a program that the core does not run."""
+
+    def layout(self, program: Program) -> Sequence[Place]:  # noqa: ARG002
+        """Return where the core computes and keeps the value of each instruction; empty where nothing is merged."""
+        return ()
 
     def require(self) -> None:
         """See :class:`Backend`."""
@@ -205,6 +221,13 @@ class CompiledSession(Session):
     def calls(self) -> Sequence[CallSite]:
         """See :class:`Session`."""
         return self.program.calls
+
+
+def compiled_backend(domain: TimeDomain | type[TimeDomain]) -> Compiled:
+    """Return the compiled core as the back end of a time domain."""
+    backend = engine_of(domain).backends[BACKENDS[0]]
+    assert isinstance(backend, Compiled)
+    return backend
 
 
 def named(compiled: C, defined: D) -> Mapping[str, C | D]:

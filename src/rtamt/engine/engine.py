@@ -35,7 +35,7 @@ class Engine:
     read: Callable[[Any, Sequence[str], Any], DomainTrace | None] = field(default=lambda *_given: None)
 
 
-def engine_of(domain: TimeDomain) -> Engine:
+def engine_of(domain: TimeDomain | type[TimeDomain]) -> Engine:
     """Return the engine of a time domain."""
     found: Engine = domain.part("engine")
     return found

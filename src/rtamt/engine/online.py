@@ -6,7 +6,6 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printing.printer import excerpt
@@ -15,6 +14,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding
 from rtamt.signals.episodes import EpisodeTracker
+from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -50,16 +50,6 @@ def grounded(
 
 def _label(name: str | Formula) -> str:
     return excerpt(name) if isinstance(name, Formula) else str(name)
-
-
-def time_of(given: tuple[Any, ...]) -> Any:
-    """Return the only value without a name that ``update`` takes, the time of the sample."""
-    if len(given) != 1:
-        raise UsageError(
-            f"update() takes one time, and each variable by its name, such as update(0.5, x=1.0); got {len(given)} "
-            f"values without a name"
-        )
-    return given[0]
 
 
 class OnlineMonitor:

@@ -9,7 +9,6 @@ from abc import abstractmethod
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError
 from rtamt.language.formula import types_of
 from rtamt.language.quantifiers import JOINS
@@ -17,6 +16,7 @@ from rtamt.rewrite.presence import channel_of
 from rtamt.signals import arrays, members
 from rtamt.signals.binding import Binding
 from rtamt.signals.data_errors import unknown_variable
+from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence

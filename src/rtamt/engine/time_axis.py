@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
-
-from rtamt.signals.instants import StepFunction
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from fractions import Fraction
+    from typing import TypeAlias
 
     from rtamt.language.formula import Formula
+    from rtamt.signals.instants import StepFunction
 
-#: From a function of cells for each variable to one for each formula.
-Runner: TypeAlias = Callable[[Mapping[str, StepFunction]], list[StepFunction]]
+    #: From a function of cells for each variable to one for each formula.
+    Runner: TypeAlias = Callable[[Mapping[str, StepFunction]], list[StepFunction]]
 
 
 class TimeAxis(ABC):

@@ -17,7 +17,6 @@ import numpy as np
 
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps
-from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Bounds, Compiled
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.compiler.program import CallSite, Program
-    from rtamt.language.formula import Formula
+    from rtamt.language.formula import Apply
     from rtamt.language.operators import Operator
     from rtamt.signals.domain_interface import TimeDomain
 
@@ -264,8 +263,3 @@ def defined_signal(node: Apply, tick: Fraction, operands: Sequence[Events]) -> E
 
 def _begin(node: Apply, step: Fraction) -> int:
     return 0 if node.interval is None else int(node.interval.begin / step)
-
-
-def is_built_in(node: Formula) -> bool:
-    """Return whether the core has a built-in kernel for an operator."""
-    return not isinstance(node, Apply) or not isinstance(node.op.kernel, Blocks | Compiled | None)

@@ -21,7 +21,7 @@ from rtamt.signals.instants import NONE, Cells
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from rtamt.engine.time_axis import TimeAxis
+    from rtamt.engine import TimeAxis
     from rtamt.explain.minimise import Interval
     from rtamt.explain.report import CriticalPoint
     from rtamt.language.formula import Formula

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.engine import engine_of
-from rtamt.engine.offline import Evaluators
+from rtamt.engine import Evaluators, engine_of
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description

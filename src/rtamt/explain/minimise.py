@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.engine.time_axis import TimeAxis
+    from rtamt.engine import TimeAxis
     from rtamt.explain.propagate import Demands
     from rtamt.rewrite.structure import Place, Structure
 

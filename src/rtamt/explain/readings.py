@@ -28,7 +28,7 @@ from rtamt.signals.instants import NONE, Cells
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from rtamt.engine.time_axis import TimeAxis
+    from rtamt.engine import TimeAxis
     from rtamt.signals.instants import StepFunction
 
 #: What is asked of a number: cells at which it must not fall, and cells at which it must not rise.

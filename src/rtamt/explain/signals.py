@@ -14,7 +14,7 @@ from rtamt.signals.instants import Cells, StepFunction, two_valued
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.engine.time_axis import TimeAxis
+    from rtamt.engine import TimeAxis
     from rtamt.rewrite.structure import Structure
 
 

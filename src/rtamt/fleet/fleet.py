@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.specification import Specification
+from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.engine.engine import engine_of
-from rtamt.engine.offline import Query
+from rtamt.engine import Query, engine_of
 from rtamt.errors import StlError
 from rtamt.language.formula import Const
 from rtamt.lazy_dataclasses import dataclass, replace

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from rtamt.engine.offline import Query
+    from rtamt.engine import Query
     from rtamt.settings import EvaluationSettings
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.verdicts.prepared import Found

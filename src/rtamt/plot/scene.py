@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.offline import Evaluators
+from rtamt.engine import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.sentences import predicate_text
 from rtamt.language.formula import Apply, Var, variables

@@ -53,7 +53,7 @@ class Dense(TimeDomain):
     parts: ClassVar[Mapping[str, str]] = {
         "engine": "rtamt.engine.dense:ENGINE",
         "members": "rtamt.engine.dense.quantifiers:DenseMemberMonitor",
-        "stream": "rtamt.verdicts.streaming:DenseStream",
+        "stream": "rtamt.verdicts.dense_stream:DenseStream",
         "eager": "rtamt.verdicts.dense_early:DenseEagerMonitor",
         "interval": "rtamt.verdicts.dense_interval:DenseIntervalMonitor",
         "causation": "rtamt.verdicts.dense_causation:DenseCausationMonitor",

@@ -59,7 +59,7 @@ class Discrete(TimeDomain):
     setting: ClassVar[str] = "period"
     parts: ClassVar[Mapping[str, str]] = {
         "engine": "rtamt.engine.discrete:ENGINE",
-        "stream": "rtamt.verdicts.streaming:DiscreteStream",
+        "stream": "rtamt.verdicts.discrete_stream:DiscreteStream",
         "eager": "rtamt.verdicts.eager:EagerMonitor",
         "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",
         "causation": "rtamt.verdicts.discrete_causation:DiscreteCausationMonitor",

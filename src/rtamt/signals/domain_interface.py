@@ -35,7 +35,7 @@ class TimeDomain(ABC):
     """A time domain: the step in which bounds are counted, and the conversion of data to a trace.
 
     Immutable; ``rtamt.Discrete(...)`` and ``rtamt.Dense(...)``. What evaluates and monitors formulas in a
-    time domain is its engine (``rtamt.engine.engine``), one of its ``parts``.
+    time domain is its engine (``rtamt.engine.Engine``), one of its ``parts``.
     """
 
     __slots__ = ()

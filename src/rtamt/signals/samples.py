@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import TraceError, shown
+from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.value_types import BOOLEAN
 from rtamt.signals import arrays
 from rtamt.signals.coding import NO_TYPES, encoded_value, no_truth
@@ -17,6 +17,16 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.signals.coding import Types
+
+
+def time_of(given: tuple[Any, ...]) -> Any:
+    """Return the only value without a name that ``update`` takes, the time of the sample."""
+    if len(given) != 1:
+        raise UsageError(
+            f"update() takes one time, and each variable by its name, such as update(0.5, x=1.0); got {len(given)} "
+            f"values without a name"
+        )
+    return given[0]
 
 
 def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:

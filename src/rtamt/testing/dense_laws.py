@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.offline import Evaluators
+from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
@@ -77,7 +76,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     recording = record_dense(_ticks(trace), variables(formula), ONE)
     got: Any
     try:
-        signal = Evaluators("cpp")((formula,), recording)[0]
+        signal = Evaluators(BACKENDS[0])((formula,), recording)[0]
         got = _stepped(signal.times, signal.values)
     except EvaluationError as error:
         check_own_code(error)
@@ -95,8 +94,9 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
     expected = _densely_defined(formula, trace)
     assume(expected is not None)
     updates = draw(dense_chunkings(trace))
-    for backend in ("cpp", "python"):
-        monitor = DenseMonitor(formula, Dense(ONE), backend=backend)
+    domain = Dense(ONE)
+    for backend in BACKENDS:
+        monitor: Any = engine_of(domain).monitor(formula, domain, backend=backend)
         for _ in range(2):  # a reset monitor acts like a new one
             times: list[int] = []
             values: list[float] = []

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from hypothesis import assume
 
-from rtamt.engine.discrete.evaluate import Evaluator
-from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.errors import EvaluationError, SpecificationError
 from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense
@@ -22,7 +21,7 @@ from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
-from rtamt.signals.discrete import record_discrete
+from rtamt.signals.discrete import DISCRETE, record_discrete
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code, hold
 from rtamt.testing.dense_laws import DENSE_LAWS, has_dense_meaning
 from rtamt.testing.strategies import chunkings, traces
@@ -124,7 +123,7 @@ def _fast_is_the_definition(case: Case, draw: Callable[[Any], Any]) -> None:
     got: Array | None
     try:
         recording = record_discrete(columns, NAMES, ONE)
-        got = Evaluator((formula,), ONE)(recording)[0]
+        got = Evaluators(BACKENDS[0])((formula,), recording)[0].values
     except EvaluationError as error:
         check_own_code(error)
         got = None
@@ -139,8 +138,8 @@ def _online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
     sizes = draw(chunkings(len(columns["x"])))
     depth = horizon(formula)
     assert depth is not None
-    for backend in ("cpp", "python"):
-        monitor = Monitor(formula, backend=backend)
+    for backend in BACKENDS:
+        monitor: Any = engine_of(DISCRETE).monitor(formula, backend=backend)
         for _ in range(2):  # a reset monitor acts like a new one
             got: list[float] = []
             at = 0

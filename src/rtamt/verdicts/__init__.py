@@ -12,6 +12,8 @@ prepared              many requirements as programs: robustness, truth and first
 preparation           compile many requirements to such programs
 offline               first violations in a finished trace
 streaming             ``check_stream``: check a recording in chunks with bounded memory
+discrete_stream       the chunks of a recording in discrete time
+dense_stream          the chunks of a recording in dense time
 chunks                requirements over chunks: what a monitor computes for them, and their results
 modes                 the list of verdict modes of a monitor
 early                 what all monitors of verdicts and bounds before the horizon share

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.causation import Causes
     from rtamt.compiler.graph import Graph
-    from rtamt.engine.online import Watched
+    from rtamt.engine import Watched
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Causation, CausationRun

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.offline import Evaluators
+from rtamt.engine import Evaluators
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
 from rtamt.lazy_dataclasses import dataclass, field

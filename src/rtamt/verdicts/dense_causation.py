@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.online import time_of
-from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Causation, CausationRun
+from rtamt.signals.samples import time_of
+from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.causation import CausationMonitor, not_exact
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
 

@@ -9,8 +9,6 @@ import numpy as np
 
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.online import time_of
-from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError
 from rtamt.language.formula import own_variables
 from rtamt.language.operators import STL
@@ -22,7 +20,9 @@ from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import Causation, VerdictRun
+from rtamt.signals.samples import time_of
 from rtamt.signals.ticks import TimeScale
+from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession, Group
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.runs import compared, merged
+from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
 from rtamt.verdicts.prediction import later_steps

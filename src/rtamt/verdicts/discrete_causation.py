@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.online import time_of
-from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import UsageError
 from rtamt.signals.outcomes import Causation, CausationRun
+from rtamt.signals.samples import time_of
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.causation import CausationMonitor, not_exact
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rtamt.engine.discrete.apart import Apart, inner_of
+from rtamt.engine import Apart, inner_of
 from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.usage_guard import in_use
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
@@ -18,6 +17,7 @@ from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.signals.samples import read_time
+from rtamt.usage_guard import in_use
 from rtamt.verdicts.caller_clock import CallerClock, Timestamp
 from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.usage_guard import exclusive, in_use
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular
+from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 from rtamt.verdicts.interval import Change, IntervalMonitor
 from rtamt.verdicts.prediction import Later, later_samples

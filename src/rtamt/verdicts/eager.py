@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.engine.online import time_of
-from rtamt.engine.usage_guard import exclusive
 from rtamt.signals.outcomes import Verdict
+from rtamt.signals.samples import time_of
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
 
 if TYPE_CHECKING:

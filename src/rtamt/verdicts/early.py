@@ -11,12 +11,9 @@ from math import inf, isnan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.compiler.shared import Shape
+from rtamt.engine import Apart, OnlineMonitor, Watched, engine_of, grounded, inner_of
 from rtamt.engine.backend import Session
-from rtamt.engine.discrete.apart import Apart, inner_of
-from rtamt.engine.engine import engine_of
 from rtamt.engine.native import core
-from rtamt.engine.online import OnlineMonitor, Watched, grounded
-from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.language.parameters import with_values
 from rtamt.language.value_types import BOOLEAN
@@ -24,6 +21,7 @@ from rtamt.rewrite.presence import channel_of, presences, tracked
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded_value, no_truth
 from rtamt.signals.outcomes import Interval
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.evidence import Evidence, span_of
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.online import Watched
+from rtamt.engine import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
 from rtamt.lazy_dataclasses import dataclass, replace

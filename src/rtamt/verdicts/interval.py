@@ -9,11 +9,11 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.engine.online import time_of
-from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units.durations import duration
 from rtamt.rewrite.check import unbounded_future
+from rtamt.signals.samples import time_of
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.early import EarlyMonitor
 
 if TYPE_CHECKING:

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.quantifiers import SampledMembers
 from rtamt.engine.quantifiers import Plan
-from rtamt.engine.usage_guard import exclusive
 from rtamt.rewrite.presence import channel_of
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.engine import Watched
     from rtamt.engine.discrete.member_executors import Sample
-    from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.discrete import Discrete

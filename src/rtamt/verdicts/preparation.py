@@ -5,15 +5,15 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.engine.user_operators import is_built_in
+from rtamt.compiler.stored import is_built_in
+from rtamt.engine.backend import compiled_backend
 from rtamt.language.formula import Apply, Var, fold, postorder
 from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.discrete import DISCRETE
 from rtamt.verdicts.decompose import anchor
-from rtamt.verdicts.prepared import Asked, Joined, Prepared, Window, compiled_backend
-from rtamt.verdicts.standalone import layout
+from rtamt.verdicts.prepared import Asked, Joined, Prepared, Window
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.verdicts.decompose import Anchored, Leaf
 
-#: Registers of a program in discrete time, of 2 KiB each: together half of a second-level cache of 1 MiB.
+#: Registers of a program, of 2 KiB each: together half of a second-level cache of 1 MiB.
 REGISTERS = 256
 
 
@@ -44,7 +44,7 @@ def prepare(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomain)
     operator, whose code bytes cannot carry.
     """
     whole = _prepared(asked, inputs, domain)
-    if len(asked) > 1 and not domain.continuous:
+    if len(asked) > 1:
         plans = [plan for plan in (whole.robustness, whole.leaves) if plan is not None]
         if max(_registers(program) for plan in plans for program in plan.programs()) > REGISTERS:
             half = len(asked) // 2
@@ -113,4 +113,5 @@ def _joining(truths: Sequence[Anchored], found: Mapping[Leaf, int]) -> tuple[Sto
 
 
 def _registers(program: Program) -> int:
-    return 1 + max((register for _, register in layout(program) if register is not None), default=-1)
+    places = compiled_backend(program.domain).layout(program)
+    return 1 + max((place.register for place in places if place.register is not None), default=-1)

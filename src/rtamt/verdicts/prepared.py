@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.engine.backend import Compiled
-from rtamt.engine.engine import engine_of
+from rtamt.engine.backend import compiled_backend
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Var
 from rtamt.lazy_dataclasses import dataclass
@@ -303,13 +302,6 @@ class Prepared:
         return Prepared(
             self.domain, self.inputs, robustness, leaves, joining, moved, tuple(outputs), tuple(joined)
         )
-
-
-def compiled_backend(domain: TimeDomain) -> Compiled:
-    """Return the back end of the compiled core."""
-    backend = engine_of(domain).backends["cpp"]
-    assert isinstance(backend, Compiled)
-    return backend
 
 
 def _first(signal: Any) -> float:

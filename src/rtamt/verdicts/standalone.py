@@ -10,9 +10,8 @@ from rtamt.compiler.early import compile_starts
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
 from rtamt.compiler.program import Instruction, Program
-from rtamt.engine.engine import engine_of
-from rtamt.engine.native import core
-from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.engine import engine_of
+from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
 from rtamt.language.parameters import bounds_of
@@ -27,6 +26,7 @@ from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rtamt.engine.backend import Place
     from rtamt.signals.domain_interface import TimeDomain
 
 #: The outputs of a standalone program, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
@@ -153,10 +153,7 @@ def bounds_program(
 def check_code(program: Program, code: bytes) -> None:
     """Raise :class:`UsageError` for bytes that no core runs: an impossible width, an operand that does not exist."""
     try:
-        if program.domain.continuous:
-            core().DenseMonitor(code, list(program.inputs))
-        else:
-            core().memory(code)
+        compiled_backend(program.domain).check(code, program.inputs)
     except ValueError as error:
         raise UsageError(str(error).rstrip(".").replace("This", "this", 1)) from None
 
@@ -166,15 +163,9 @@ def state_bytes(program: Program, domain: TimeDomain, backend: str) -> int | Non
     return engine_of(domain).backends[backend].memory(program)
 
 
-def layout(program: Program) -> list[tuple[int | None, int | None]]:
-    """Return what the passes make of each instruction of a program in discrete time.
-
-    That is the root of the chain that it is computed in, and its register, None where there is none.
-    """
-    places: list[tuple[int | None, int | None]] = core().layout(
-        program.code(), calls_of(program, SampleDriver)
-    )
-    return places
+def layout(program: Program) -> Sequence[Place]:
+    """Return where the core computes and keeps each instruction of a program; empty where it merges none."""
+    return compiled_backend(program.domain).layout(program)
 
 
 def _with_parameters(formula: Formula, structural: frozenset[str]) -> Formula:

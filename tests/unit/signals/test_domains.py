@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.engine.engine import engine_of
+from rtamt.engine import engine_of
 from rtamt.plot.clock import Clock
 from rtamt.signals.domains import DOMAINS, time_domain
 

@@ -51,6 +51,10 @@ class CompiledDense(Compiled):
         """See :class:`Compiled`."""
         return BoundsEvaluator(formulas, step, inputs).of_bounds
 
+    def check(self, code: bytes, inputs: Sequence[str]) -> None:
+        """See :class:`Compiled`."""
+        core().DenseMonitor(code, list(inputs))
+
     def memory(self, program: Program) -> None:
         """See :class:`Backend`: windows keep as many changes as there are."""
 

@@ -15,12 +15,12 @@ import numpy as np
 
 from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.online import depth_of
-from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.errors import UsageError
 from rtamt.language.formula import own_variables
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.signals.dense_arrays import changes, minimum
+from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rtamt.engine.apart import Apart
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
-from rtamt.engine.discrete.apart import Apart
 from rtamt.engine.native import DenseMonitorBase, TickPoints
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
-from rtamt.engine.usage_guard import exclusive, in_use
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
@@ -22,8 +21,10 @@ from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.dense import DENSE, Dense
 from rtamt.signals.dense_arrays import TickSignal
 from rtamt.signals.episodes import Episode, plain_times
+from rtamt.signals.samples import time_of
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
+from rtamt.usage_guard import exclusive, in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.backend import RefusedError
-from rtamt.engine.usage_guard import UsageGuard, exclusive
 from rtamt.reference.dense import DenseReferenceMonitor
+from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -9,17 +9,17 @@ import numpy as np
 from rtamt.engine.dense.member_executors import Executor, Part, QuantifierExecutor
 from rtamt.engine.dense.monitor import DenseMonitor, known_ticks, push_ticks
 from rtamt.engine.dense.steps import Inputs, member_of
-from rtamt.engine.online import time_of
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
-from rtamt.engine.usage_guard import exclusive
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import check_unit
 from rtamt.signals import arrays, dense_arrays, members
 from rtamt.signals.data_errors import missing_field, nan_of_members
 from rtamt.signals.inexact import gaps_of
 from rtamt.signals.member_chunks import fields_on_own_clocks
+from rtamt.signals.samples import time_of
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
+from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence

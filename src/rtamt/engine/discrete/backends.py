@@ -9,7 +9,7 @@ from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
 from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
 from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, longest_bound
 from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
@@ -57,6 +57,15 @@ class CompiledDiscrete(Compiled):
         """See :class:`Compiled`."""
         evaluator = BoundsEvaluator(formulas, step)
         return lambda trace: [BoundedSignal(trace.timestamps, *ends) for ends in evaluator.of_bounds(trace)]
+
+    def check(self, code: bytes, inputs: Sequence[str]) -> None:
+        """See :class:`Compiled`."""
+        core().memory(code)
+
+    def layout(self, program: Program) -> list[Place]:
+        """See :class:`Compiled`."""
+        places = core().layout(program.code(), calls_of(program, SampleDriver))
+        return [Place(root, register) for root, register in places]
 
     def session(
         self,

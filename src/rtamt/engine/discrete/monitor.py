@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rtamt.engine.discrete.apart import Apart, inner_of
+from rtamt.engine.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.native import MonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded, time_of
-from rtamt.engine.usage_guard import exclusive, in_use
+from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
@@ -26,8 +25,9 @@ from rtamt.signals.regular import (
     check_regular,
     irregular,
 )
-from rtamt.signals.samples import read_time, read_values
+from rtamt.signals.samples import read_time, read_values, time_of
 from rtamt.signals.signal import Signal
+from rtamt.usage_guard import exclusive, in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.engine.backend import RefusedError
-from rtamt.engine.usage_guard import UsageGuard, exclusive, in_use
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.counting import is_implausible
+from rtamt.usage_guard import UsageGuard, exclusive, in_use
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

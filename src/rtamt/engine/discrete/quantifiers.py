@@ -13,13 +13,13 @@ import numpy as np
 from rtamt.engine.discrete.member_executors import Executor, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
-from rtamt.engine.usage_guard import exclusive
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays
 from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members
 from rtamt.signals.member_chunks import chunk
 from rtamt.signals.samples import read_values
 from rtamt.signals.signal import Signal
+from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence

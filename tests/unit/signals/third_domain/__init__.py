@@ -1,8 +1,8 @@
 """A third time domain: one class, ``Turns``, and this folder, its engine."""
 
+from rtamt.engine import Engine
 from rtamt.engine.backend import named
 from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
-from rtamt.engine.engine import Engine
 from tests.unit.signals.third_domain.engine import Definition, TurnMonitor
 
 ENGINE = Engine(named(Definition(), Definition()), TurnMonitor, DiscreteTimeAxis)

@@ -1,0 +1,100 @@
+"""Check a recording in discrete time in chunks of samples one period apart."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.discrete.monitor import push_samples
+from rtamt.signals import arrays
+from rtamt.signals.discrete import Discrete
+from rtamt.signals.regular import check_increasing, has_period, infer_period
+from rtamt.signals.signal import Signal
+from rtamt.verdicts.chunks import Group, StreamResult
+from rtamt.verdicts.streaming import Stream
+
+if TYPE_CHECKING:
+    from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.settings import Semantics
+    from rtamt.signals.arrays import Timestamps
+    from rtamt.specification import Specification
+
+
+class DiscreteStream(Stream):
+    """Chunks of samples one period apart; without a period it is inferred from the first chunk."""
+
+    def __init__(
+        self, spec: Specification, semantics: Semantics | None, unit: str | None, domain: Discrete
+    ) -> None:
+        super().__init__(spec, semantics, unit)
+        self._tolerance = domain.tolerance
+        self._period = domain.period
+        self._inferred = domain.period is None
+        self._group = Group(self.requirements, spec.input_names)
+        self._monitor: Monitor | None = None
+        # The timestamps of positions where something is violated, and of the first.
+        self._kept: dict[int, Any] = {}
+
+    def take(self, chunk: Any) -> None:
+        """See :class:`Stream`."""
+        timestamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
+        if not n:
+            return
+        if self._monitor is None:
+            self._monitor = self._begin(timestamps)
+        elif self._inferred and timestamps is not None and self._period is not None:
+            self.steady = self.steady and has_period(timestamps.seconds, self._period)
+        self._known(self._monitor, push_samples(self._monitor, timestamps, columns, n))
+        self.samples += n
+
+    def _begin(self, timestamps: Timestamps | None) -> Monitor:
+        if timestamps is not None:
+            check_increasing(timestamps.seconds)
+        if self._period is None:
+            self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
+        domain = Discrete(self._period, self._tolerance)
+        domain.check(self.spec.formula, self.spec.text)
+        spec = self._group.begin(domain, self.spec)
+        return spec.monitor(
+            time=domain,
+            semantics="standard",
+            watch=self._group.formulas[1:],
+            time_unit=self.unit,
+        )
+
+    def _known(self, monitor: Monitor, first: Signal) -> None:
+        """Hand on what became known, the first output and those that are watched."""
+        for i, (formula, output) in enumerate(self._group.outputs.items()):
+            signal = monitor[formula] if i else first
+            assert isinstance(signal, Signal)
+            begin = output.known
+            output.known += len(signal)
+            output.take(np.arange(begin, output.known), signal.values, times=signal.times)
+            # A tracker decides on a position when the next one comes: the stamp before is wanted, too.
+            violated = (t.violated for t in output.trackers if t.violated is not None)
+            for position in {0, *violated}:
+                if position == begin - 1:
+                    self._kept.setdefault(position, output.last)
+                elif begin <= position < output.known:
+                    self._kept.setdefault(position, arrays.plain(signal.times[position - begin]))
+            if len(signal):
+                output.last = arrays.plain(signal.times[-1])
+
+    def _time(self, position: int) -> Any:
+        if position in self._kept:
+            return self._kept[position]
+        # The last one, whose verdict was given at the end: there all outputs stand alike.
+        return next(iter(self._group.outputs.values())).last
+
+    def finish(self) -> StreamResult:
+        """See :class:`Stream`."""
+        self.require_samples()
+        assert self._monitor is not None
+        self._known(self._monitor, self._monitor.finish())
+        found = {
+            name: each.result(self._time, self.samples - 1, self.samples, self._period)
+            for name, each in self.requirements.items()
+        }
+        return self.result(found, self._period)
