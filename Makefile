@@ -100,9 +100,10 @@ peers: $(VENV)/.made ## install the tools that we are compared with, each into a
 conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: conformance/RESULTS.md
 	$(RUN) conformance/table.py
 
-soak: $(VENV)/.core $(VENV)/.group-test ## watch 10^8 samples and hours of dense stamps, 10^6 cases of bounds and early verdicts, ten times as many examples of every law
+soak: $(VENV)/.core $(VENV)/.group-test ## watch 10^8 samples and hours of dense stamps, 10^6 cases of bounds and early verdicts, 10^4 formulas of the solver, ten times as many examples of every law
 	$(RUN) benchmarks/soak.py
 	$(RUN) -m tests.laws.early.soak 1000000
+	$(RUN) -m tests.laws.analysis_soak 10000
 	$(RUN) -m pytest tests/laws --hypothesis-profile=soak --timeout=0
 
 FUZZ_SECONDS ?= 60

@@ -9,14 +9,31 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
+from hypothesis import strategies as st
 
 import rtamt
+from rtamt.analysis.arithmetic import ENCODED
 from rtamt.analysis.encoder import Encoder
 from rtamt.analysis.solver import Solver
 from rtamt.language.formula import Var, variables
+from rtamt.language.operators import Pointwise
+from tests.strategies import formulas
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
+    from rtamt.language.operators import Operator
+
+
+def encoded(op: Operator) -> bool:
+    """Return whether the analysis covers an operator over signals."""
+    return not isinstance(op.kernel, Pointwise) or op.kernel.opcode in ENCODED
+
+
+#: Formulas over one or two variables that the analysis covers, most of them.
+COVERED = st.one_of(
+    formulas(4, ("x",), unbounded_future=True, select=encoded),
+    formulas(3, ("x", "y"), unbounded_future=True, select=encoded),
+).filter(variables)
 
 #: The values of every sample.
 GRID = (-1.0, 0.5, 2.0)
@@ -60,18 +77,26 @@ def by_force(formula: Formula) -> list[tuple[bool, bool]]:
 
 
 def by_solver(formula: Formula) -> list[tuple[bool | None, bool | None]]:
-    """Return the same, by the solver."""
+    """Return the same, by the solver; the engine evaluates each trace that it finds."""
     names = variables(formula) or ("x",)
     samples = SAMPLES[len(names)]
     solver = Solver()
     encoder = Encoder(solver, samples, Fraction(1))
+    spec = rtamt.parse("x").with_formula(formula)
     for name in names:
         for value in encoder.column(Var(name)):
             solver.require(solver.some(solver.equal(value.real, Fraction(number)) for number in GRID))
     holds = encoder.holds(formula)[0]
     solver.require(encoder.defined(formula))
-    found = []
-    for n in range(1, samples + 1):
-        length = encoder.length(n, n)
-        found.append((solver.ask([holds, *length]), solver.ask([solver.no(holds), *length])))
-    return found
+
+    def asked(n: int, wanted: bool) -> bool | None:
+        found = solver.ask([holds if wanted else solver.no(holds), *encoder.length(n, n)])
+        if found:
+            trace = {
+                name: [float(solver.value(value.real)) for value in encoder.columns[name][:n]]
+                for name in names
+            }
+            assert spec.evaluate(trace).satisfied is wanted, (str(formula), trace)
+        return found
+
+    return [(asked(n, True), asked(n, False)) for n in range(1, samples + 1)]

@@ -2,7 +2,6 @@
 
 import pytest
 from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 import rtamt
 from rtamt.analysis.arithmetic import ENCODED
@@ -11,23 +10,13 @@ from rtamt.analysis.study import Part, Study
 from rtamt.errors import StlError
 from rtamt.language.formula import variables
 from rtamt.language.operators import STL, Pointwise
-from tests.laws.analysis_grid import by_force, by_solver
+from tests.laws.analysis_grid import COVERED, by_force, by_solver, encoded
 from tests.strategies import formulas
-
-
-def _encoded(op):
-    return not isinstance(op.kernel, Pointwise) or op.kernel.opcode in ENCODED
 
 
 def _real(op):
     """Whole numbers without a range may take the solver any time."""
-    return _encoded(op) and op.name not in ("floor", "ceil", "round", "mod", "wrap")
-
-
-COVERED = st.one_of(
-    formulas(4, ("x",), unbounded_future=True, select=_encoded),
-    formulas(3, ("x", "y"), unbounded_future=True, select=_encoded),
-).filter(variables)
+    return encoded(op) and op.name not in ("floor", "ceil", "round", "mod", "wrap")
 
 
 @settings(max_examples=150)

@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 
     from rtamt.analysis.solver import Real, Solver, Truth
 
+#: How many instants a coarse trace changes at: from its start, from its middle, and before its end.
+_START, _MIDDLE, _END = 8, 2, 4
+
 #: A predicate by its distance from its threshold: +inf where that is at least the margin, -inf where it is at most
 #: minus the margin. Not part of the language.
 _MARGIN = Operator(
@@ -68,8 +71,9 @@ class Limits(NamedTuple):
 class Encoder:
     """The values of formulas over the traces of 1 to ``samples`` samples, as terms of a solver.
 
-    ``period``: of sampling. ``limits``: of variables. ``whole``: only the traces of ``samples`` samples. ``inside``:
-    whether the trace has each sample. ``columns``: the values of each variable that a formula reads.
+    ``period``: of sampling. ``limits``: of variables. ``whole``: only the traces of ``samples`` samples. ``coarse``:
+    only those whose variables change at a few instants, a smaller problem. ``inside``: whether the trace has each
+    sample. ``columns``: the values of each variable that a formula reads.
     """
 
     def __init__(
@@ -80,9 +84,11 @@ class Encoder:
         limits: Mapping[str, Limits] = MappingProxyType({}),
         *,
         whole: bool = False,
+        coarse: bool = False,
     ) -> None:
         self.solver = solver
         self.samples = samples
+        self._changes = _changes(samples) if coarse else range(samples)
         self.period = period
         self._limits = limits
         self.values = Values(solver)
@@ -202,10 +208,7 @@ class Encoder:
                 encoding: Callable[..., Value] | None = ENCODED.get(opcode)
                 if encoding is None:
                     raise NotLinear(f"'{node.op.spellings[0]}' is not linear")
-                return [
-                    self._inside(here, encoding, each)
-                    for here, *each in zip(self.inside, *below, strict=True)
-                ]
+                return self._pointwise(encoding, below)
             case Window(reduce):
                 return (at.past if past else at.future)(below[0], reduce, a, b)
             case Shift(fill):
@@ -227,6 +230,17 @@ class Encoder:
                 return at.until(below[0], below[1], a, b)
             case _:
                 raise NotLinear(f"the operator '{node.op.name}' is a custom one")
+
+    def _pointwise(self, encoding: Callable[..., Value], below: Sequence[Sequence[Value]]) -> list[Value]:
+        """Return what an operator computes of the values at each instant; of the same values it is computed once."""
+        found: list[Value] = []
+        before: tuple[object, ...] = ()
+        for here, *values in zip(self.inside, *below, strict=True):
+            operands = (here, *values)
+            same = before and all(a is b for a, b in zip(before, operands, strict=True))
+            found.append(found[-1] if same else self._inside(here, encoding, values))
+            before = operands
+        return found
 
     def _inside(self, here: Truth, encoding: Callable[..., Value], operands: Sequence[Value]) -> Value:
         """Return a value that must be defined only inside the trace."""
@@ -267,20 +281,31 @@ class Encoder:
                     make = partial(self._one_of, tuple(dict(variable.type.members).values()))
                 case _:
                     make = self._any
-            values = self.columns[name] = [make() for _ in range(self.samples)]
+            values = self.columns[name] = self._column(make)
             self._limit(values, self._limits.get(name, Limits()))
         return self.columns[name]
+
+    def _column(self, make: Callable[[], Number]) -> list[Number]:
+        """Return new values for all instants, which are one value from each change to the next."""
+        found: list[Number] = []
+        for t in range(self.samples):
+            found.append(make() if t in self._changes else found[-1])
+        return found
 
     def _limit(self, values: Sequence[Number], limits: Limits) -> None:
         """Keep a variable in its range and its rate."""
         reals = [value.real for value in values]
         if limits.range is not None:
-            for real in reals:
-                self.solver.require(self._between(real, limits.range))
+            for t in self._changes:
+                self.solver.require(self._between(reals[t], limits.range))
         if limits.rate is not None:
             rate = limits.rate
             for here, before, real in zip(self.inside[1:], reals, reals[1:], strict=False):
-                difference = self.solver.total((real, self.solver.times(Fraction(-1), before)))
+                difference = (
+                    Fraction(0)
+                    if real is before
+                    else self.solver.total((real, self.solver.times(Fraction(-1), before)))
+                )
                 within = self._between(difference, rate, self.period)
                 self.solver.require(self.solver.some((self.solver.no(here), within)))
 
@@ -306,6 +331,13 @@ class Encoder:
             cases.append((Fraction(code), self.solver.every((rest, chosen))))
             rest = self.solver.every((rest, self.solver.no(chosen)))
         return self.values.of_cases([*cases, (Fraction(last), rest)])
+
+
+def _changes(samples: int) -> frozenset[int]:
+    """Return the instants at which the variables of a coarse trace change: at its start, its middle and its end."""
+    middle = samples // 2
+    near = (range(_START), range(middle, middle + _MIDDLE), range(samples - _END, samples))
+    return frozenset(t for each in near for t in each if 0 <= t < samples)
 
 
 def _require_all_samples(formula: Formula, text: str | None) -> None:

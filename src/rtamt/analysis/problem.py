@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.analysis.solver import Truth
+    from rtamt.analysis.solver import Asking, Real, Truth
 
 #: Traces up to this length are shown in full: the end of a trace satisfies or violates much by itself.
 _SHORT = 8
-#: In longer traces the search for a margin takes at most so many times as long as the answer, and so many seconds more.
-_PATIENCE, _AT_LEAST = 1.0, 0.05
+#: In longer traces the search for a margin takes at most so many times as long as the answer, and so many seconds more:
+#: the second number if the engine does not confirm the answer, as without a margin it may not.
+_PATIENCE, _AT_LEAST, _UNCONFIRMED = 1.0, 0.05, 1.0
 
 #: Margins are powers of ten, so many, the first one of the magnitude of the greatest constant of the formulas.
 _MARGINS = 10
@@ -40,7 +41,11 @@ class Answer:
 
 
 class Problem:
-    """The traces of 1 to ``samples`` samples (``whole``: of exactly so many) within the limits of variables."""
+    """The traces of 1 to ``samples`` samples (``whole``: of exactly so many) within the limits of variables.
+
+    ``coarse``: only those whose variables change at a few instants. These answer most questions in a fraction of the
+    time; where there is none, nothing is known of the other traces.
+    """
 
     def __init__(
         self,
@@ -50,46 +55,48 @@ class Problem:
         limit: float,
         *,
         whole: bool = False,
+        coarse: bool = False,
     ) -> None:
         self.period = period
         self._solver = Solver(limit)
-        self._encoder = Encoder(self._solver, samples, period, limits, whole=whole)
+        self._encoder = Encoder(self._solver, samples, period, limits, whole=whole, coarse=coarse)
         self._whole = whole
         self._exact: dict[tuple[Formula, bool], Truth] = {}
         self._distant: dict[tuple[Formula, bool], Truth] = {}
 
-    def find(self, wishes: Sequence[Wish]) -> Answer:
-        """Look for a trace that fulfils all wishes, with a margin if there is one."""
+    def find(self, wishes: Sequence[Wish], limit: float) -> Answer:
+        """Look for a trace that fulfils all wishes, with a margin if there is one, for so many seconds."""
+        end = monotonic() + limit
         if not self._whole:
-            return self._find(wishes)
+            return self._find(wishes, end)
         # Wishes without common variables do not affect each other if the length is given.
         columns: dict[str, NDArray[np.float64]] = {}
         for group in related(wishes):
-            answer = self._find(group)
+            answer = self._find(group, end)
             if answer.witness is None:
                 return answer
             columns |= answer.witness.columns
         return Answer(True, Witness(columns, self.period, tuple(wishes), len(self._encoder.inside)))
 
-    def _find(self, wishes: Sequence[Wish]) -> Answer:
-        exact = [self._truth(wish) for wish in wishes]
+    def _find(self, wishes: Sequence[Wish], end: float) -> Answer:
         begin = monotonic()
-        if not (found := self._solver.ask(exact)):
+        asking = self._solver.asking([self._truth(wish) for wish in wishes])
+        if not (found := asking(limit=end - monotonic())):
             return Answer(found)
-        long = len(self._encoder.inside) > _SHORT
-        patience = _PATIENCE * (monotonic() - begin) + _AT_LEAST if long else inf
-        exact += self._long(exact)
+        taken = monotonic() - begin
         witness = self._witness(wishes)
-        clear = self._clear(wishes, exact, patience)
+        if len(self._encoder.inside) > _SHORT:
+            least = _AT_LEAST if witness.confirmed else _UNCONFIRMED
+            patience = _PATIENCE * taken + least
+        else:
+            patience = inf
+            # A short trace that is not cut off early, if there is one.
+            last = self._encoder.inside[-1]
+            if asking(last, end - monotonic()):
+                asking.add([last])
+                witness = self._witness(wishes)
+        clear = self._clear(wishes, asking, min(patience, end - monotonic()))
         return Answer(True, witness if clear is None or not clear.confirmed else clear)
-
-    def _long(self, exact: Sequence[Truth]) -> list[Truth]:
-        """Return the condition that a short trace is not cut off early, after an answer that there is one."""
-        last = self._encoder.inside[-1]
-        if self._whole or len(self._encoder.inside) > _SHORT or self._solver.ask([*exact, last]):
-            return [last] if len(self._encoder.inside) <= _SHORT else []
-        self._solver.ask(exact)
-        return []
 
     def conflict(self, wishes: Sequence[Wish]) -> list[int] | None:
         """Return the indices of some wishes that cannot be fulfilled together; None where none are known."""
@@ -99,18 +106,19 @@ class Problem:
         """Raise :class:`NotCoveredError` if a part of the formula is not covered."""
         self._truth(wish)
 
-    def _clear(self, wishes: Sequence[Wish], exact: Sequence[Truth], patience: float) -> Witness | None:
+    def _clear(self, wishes: Sequence[Wish], asking: Asking, patience: float) -> Witness | None:
         """Return a trace with the greatest margin of a few, None if none is found in so many seconds."""
-        end = monotonic() + patience
-        distant = [*exact, *map(self._distance, wishes)]
+        asking.add([self._distance(wish) for wish in wishes])
         largest = _magnitude([wish.formula for wish in wishes])
+        end = monotonic() + patience
         found: Witness | None = None
         # Where there is a margin there is every smaller one.
         low, high = 0, _MARGINS
         while low < high and (left := end - monotonic()) > 0:
-            middle = low if low == 0 else (low + high) // 2
+            # First the greatest margin, then the smallest one.
+            middle = low if low == 0 else (low + high) // 2 if found else high - 1
             margin = Fraction(10) ** (largest - middle)
-            if self._solver.ask([*distant, self._solver.at_most(margin, self._encoder.margin)], left):
+            if asking(self._solver.at_most(margin, self._encoder.margin), left):
                 found, high = self._witness(wishes), middle
             else:
                 low = middle + 1
@@ -138,10 +146,19 @@ class Problem:
         solver = self._solver
         n = sum(map(solver.is_true, self._encoder.inside))
         columns = {
-            name: np.array([float(solver.value(value.real)) for value in self._encoder.columns[name][:n]])
+            name: np.array(_numbers(solver, [value.real for value in self._encoder.columns[name][:n]]))
             for name in variables(*(wish.formula for wish in wishes))
         }
         return Witness(columns, self.period, tuple(wishes), n)
+
+
+def _numbers(solver: Solver, terms: Sequence[Real]) -> list[float]:
+    """Return numbers in the last answer; a coarse trace has the same term many times in a row."""
+    found: list[float] = []
+    for index, term in enumerate(terms):
+        same = index > 0 and term is terms[index - 1]
+        found.append(found[-1] if same else float(solver.value(term)))
+    return found
 
 
 def related(wishes: Sequence[Wish]) -> list[list[Wish]]:

@@ -204,15 +204,16 @@ class Solver:
 
     def ask(self, conditions: Sequence[Truth], limit: float | None = None) -> bool | None:
         """Return whether the conditions can hold together; None if there is no answer within a limit in seconds."""
-        solver = self._new(limit)
-        for each in conditions:
-            if each is not True:
-                self._core.Z3_solver_assert(self._context, solver, self._asserted(each))
-        return self._answered(solver, ())
+        return self.asking(conditions)(limit=limit)
+
+    def asking(self, conditions: Sequence[Truth]) -> Asking:
+        """Return how to ask about conditions, and about more of them that are added."""
+        return Asking(self, conditions)
 
     def conflict(self, conditions: Sequence[Truth]) -> list[int] | None:
         """Return the indices of some conditions that cannot hold together, None if all can or there is no answer."""
-        solver, names = self._new(), [self.truth() for _ in conditions]
+        solver, names = self.new(), [self.truth() for _ in conditions]
+        self.limited(solver)
         for name, each in zip(names, conditions, strict=True):
             implied = (
                 self._core.Z3_mk_implies(
@@ -222,27 +223,44 @@ class Solver:
                 else name.ast
             )
             self._core.Z3_solver_assert(self._context, solver, implied)
-        if self._answered(solver, names) is not False:
+        if self.answered(solver, names) is not False:
             return None
         found = self._core.Z3_solver_get_unsat_core(self._context, solver)
         size = self._core.Z3_ast_vector_size(self._context, found)
         keys = {self._core.Z3_ast_vector_get(self._context, found, i).value for i in range(size)}
         return [index for index, name in enumerate(names) if name.key in keys]
 
-    def _new(self, limit: float | None = None) -> Any:
+    def new(self) -> Any:
         """Return a solver with what is required: it knows no other formulas, which would have to be satisfied too."""
         solver = self._core.Z3_mk_simple_solver(self._context)
         self._core.Z3_solver_inc_ref(self._context, solver)
+        for each in self._required:
+            self._core.Z3_solver_assert(self._context, solver, each)
+        return solver
+
+    def add(self, solver: Any, condition: Truth) -> None:
+        """Assert a condition."""
+        if condition is not True:
+            self._core.Z3_solver_assert(self._context, solver, self._asserted(condition))
+
+    def once(self, solver: Any, condition: Truth) -> bool | None:
+        """Return the answer of a solver with one more condition, which it then forgets."""
+        self._core.Z3_solver_push(self._context, solver)
+        self.add(solver, condition)
+        found = self.answered(solver)
+        self._core.Z3_solver_pop(self._context, solver, 1)
+        return found
+
+    def limited(self, solver: Any, limit: float | None = None) -> None:
+        """Set how many seconds the next answer may take."""
         seconds = self._limit if limit is None else min(limit, self._limit)
         self._core.Z3_params_set_uint(
             self._context, self._given, self._symbol("timeout"), max(1, int(seconds * 1000))
         )
         self._core.Z3_solver_set_params(self._context, solver, self._given)
-        for each in self._required:
-            self._core.Z3_solver_assert(self._context, solver, each)
-        return solver
 
-    def _answered(self, solver: Any, assumed: Sequence[Term]) -> bool | None:
+    def answered(self, solver: Any, assumed: Sequence[Term] = ()) -> bool | None:
+        """Return the answer of a solver, None if there is none within its limit."""
         answer = self._core.Z3_solver_check_assumptions(
             self._context, solver, len(assumed), self._array(assumed)
         )
@@ -267,3 +285,22 @@ class Solver:
         result = (self._ast * 1)()
         self._core.Z3_model_eval(self._context, self._model, a.ast, True, result)
         return result[0]
+
+
+class Asking:
+    """Questions about conditions that grow in number: the solver keeps what it has found out."""
+
+    def __init__(self, solver: Solver, conditions: Sequence[Truth]) -> None:
+        self._solver = solver
+        self._made = solver.new()
+        self.add(conditions)
+
+    def add(self, conditions: Iterable[Truth]) -> None:
+        """Add conditions to all questions from now on."""
+        for each in conditions:
+            self._solver.add(self._made, each)
+
+    def __call__(self, condition: Truth = True, limit: float | None = None) -> bool | None:
+        """Return whether all can hold together, with one more condition; None if there is no answer in time."""
+        self._solver.limited(self._made, limit)
+        return self._solver.once(self._made, condition)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.analysis.encoder import Limits, NotCoveredError
@@ -91,22 +92,47 @@ class Study:
         _require_same_signals(specs)
         for spec in specs:
             Discrete(self.period).check(spec.formula, spec.text)
-        self._problems: dict[tuple[int, bool], Problem] = {}
+        self._problems: dict[tuple[int, bool, bool], Problem] = {}
 
-    def problem(self, samples: int, *, whole: bool = False) -> Problem:
-        """Return the problem of traces of 1 to so many samples, or of exactly so many."""
-        key = (samples, whole)
+    def problem(self, samples: int, *, whole: bool = False, coarse: bool = False) -> Problem:
+        """Return the problem of traces of 1 to so many samples, or of exactly so many, or of the coarse ones."""
+        key = (samples, whole, coarse)
         if key not in self._problems:
-            self._problems[key] = Problem(samples, self.period, self.limits, self.limit, whole=whole)
+            self._problems[key] = Problem(
+                samples, self.period, self.limits, self.limit, whole=whole, coarse=coarse
+            )
         return self._problems[key]
 
     def find(self, wishes: Sequence[Wish]) -> Answer:
-        """Look for a trace of any length that fulfils all wishes; short ones first."""
-        if self.samples > _SHORT:
-            answer = self.problem(_SHORT).find(wishes)
-            if answer.exists:
-                return answer
-        return self.problem(self.samples).find(wishes)
+        """Look for a trace of any length that fulfils all wishes; short and coarse ones first."""
+        if self.samples <= _SHORT:
+            return self._first(wishes, self.problem(self.samples))
+        return self._first(
+            wishes,
+            self.problem(_SHORT),
+            self.problem(self.samples, whole=True, coarse=True),
+            self.problem(self.samples),
+        )
+
+    def find_whole(self, wishes: Sequence[Wish]) -> Answer:
+        """Look for a trace of the full length that fulfils all wishes; coarse ones first."""
+        coarse = self.problem(self.samples, whole=True, coarse=True)
+        return self._first(wishes, coarse, self.problem(self.samples, whole=True))
+
+    def _first(self, wishes: Sequence[Wish], *problems: Problem) -> Answer:
+        """Return the first trace that the engine confirms, without one the answer to the last problem.
+
+        Each problem may take half of the time that is left, the last one all of it.
+        """
+        end, doubtful = monotonic() + self.limit, None
+        for problem in problems:
+            left = end - monotonic()
+            answer = problem.find(wishes, left if problem is problems[-1] else left / 2)
+            if answer.witness is not None:
+                if answer.witness.confirmed:
+                    return answer
+                doubtful = doubtful or answer
+        return answer if answer.exists is not None or doubtful is None else doubtful
 
     def require_covered(self, formula: Formula, spec: Specification) -> None:
         """Raise :class:`NotCoveredError` if a part of a formula is not covered."""
@@ -119,11 +145,11 @@ class Study:
         one, names = len(parts) == 1, tuple(part.name for part in parts)
         question = "satisfiable" if one else "consistent"
         wishes = [part.wish() for part in parts]
-        problem = self.problem(self.samples, whole=True)
-        answer = problem.find(wishes)
+        answer = self.find_whole(wishes)
         satisfies = "satisfies it" if one else "satisfies all of them"
         if answer.exists is False:
             if not one:
+                problem = self.problem(self.samples, whole=True)
                 names = tuple(parts[k].name for k in _smallest(problem, wishes))
             sentence = f"no trace of {self._length} {'satisfies it' if len(names) == 1 else 'satisfies these together'}"
             shorter = self.find(wishes)

@@ -167,6 +167,34 @@ def test_messages_for_specifications_that_cannot_be_compared():
         equivalent(first, rtamt.parse("bool x  always(x)", period="100ms"))
 
 
+LONG = """
+    output float pitch
+    output float yaw
+    sample 10ms
+    def within(command) = always(not (once[1s:1s](true) and historically[0:1s](abs(command) > 50)))
+    def smooth(command) = always(s_prev(true) -> abs(rate[10ms](command)) <= 50)
+    require LIMIT: within(pitch)
+    require RATE: smooth(pitch)
+    require YAW: smooth(yaw)"""
+
+
+def test_windows_of_a_hundred_samples_are_answered_by_traces_that_change_rarely():
+    found = analyze(rtamt.parse(LONG))
+    assert not found.unanswered
+    assert not found.findings
+    redundant = {each.names[0]: each.witness for each in found.conclusions if each.question == "redundant"}
+    assert redundant["LIMIT"].samples == 200
+    assert len(set(redundant["LIMIT"].columns["pitch"].tolist())) <= 14
+    assert redundant["LIMIT"].confirmed
+
+
+def test_a_signal_that_must_change_at_every_sample_is_found_too():
+    text = "float x rate [1, 3]  sample 1s  always(x <= 25) -> eventually[0:20](x >= 24)"
+    answer = satisfiable(rtamt.parse(text), samples=21)
+    assert answer.witness.confirmed
+    assert all(1 <= step <= 3 for step in np.diff(answer.witness.columns["x"]))
+
+
 def test_no_answer_within_the_limit_is_said():
     text = " and ".join(f"always(floor(x * {k}.5) + floor(y / {k}) != {k})" for k in range(3, 9))
     answer = valid(
