@@ -176,7 +176,7 @@ def _groups(
     for number, spec in enumerate(specs):
         with _place(number):
             asked[number] = Asking(spec, spec._query(**dict(reading)))
-        if len(spec.requirements) > 1 and asked[number].query.domain.continuous:
+        if len(spec.requirements) > 1 and asked[number].query.domain.own_time_bases:
             apart.add(number)  # each may start at a different time
     groups, others = grouped({number: each for number, each in asked.items() if number not in apart})
     return groups, sorted(apart | others.keys())

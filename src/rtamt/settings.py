@@ -90,7 +90,7 @@ class IntervalSettings(DiscreteSettings, DenseSettings, total=False):
 
 def require_samples(domain: TimeDomain, *, worst_case: bool) -> None:
     """Raise :class:`UsageError` if constant time a sample is asked for where there are no samples."""
-    if worst_case and domain.continuous:
+    if worst_case and not domain.sampled:
         raise UsageError(
             "worst_case=True needs discrete time: in dense time a window may hold any number of changes; "
             "leave it out, or use time='discrete'"

@@ -161,7 +161,7 @@ class Specification(OnlineSpecification):
         query = self._query(time, period, tolerance, None, semantics, time_unit)
         rule = query.domain.sampling(self.sampling)
         for what, unfit in (
-            ("dense time", query.domain.continuous),
+            (f"{query.domain.name} time", query.domain.own_time_bases),
             ("groups", bool(self.groups)),
             (f"'{rule}'", rule is not None and rule.hold),
         ):
@@ -179,7 +179,7 @@ class Specification(OnlineSpecification):
     def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
         """Return the specification over the members of groups that data has, and data with their presence."""
         rule = self.sampling
-        own_clocks = query.domain.continuous or (rule is not None and rule.hold)
+        own_clocks = query.domain.own_time_bases or (rule is not None and rule.hold)
         found = members.bound(
             self.binding.applied(data),
             self.groups,
@@ -202,7 +202,7 @@ class Specification(OnlineSpecification):
         """Return the result on a normalised recording; the formula must have been checked."""
         if self.groups:
             self.require_no_groups("this check")
-        if len(self.requirements) > 1 and recording.domain.continuous:
+        if len(self.requirements) > 1 and recording.domain.own_time_bases:
             outputs = [one._outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
                 if recording.bounds:
@@ -232,7 +232,7 @@ class Specification(OnlineSpecification):
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
-            own_clocks = query.domain.continuous
+            own_clocks = query.domain.own_time_bases
             filled, missing = fill_gaps(data, self.input_names, own_clocks=own_clocks)
             if not missing:
                 raise

@@ -231,7 +231,7 @@ class OnlineSpecification(QuantifiedText):
         make = domain.part(f"members_{verdict}" if early else "members")
         unfit = [f"{name}=" for name in settings if name != "at"]
         unfit += [f"verdict='{verdict}' in {domain.name} time"] if early and make is None else []
-        unfit += ["time_unit="] if time_unit is not None and not domain.continuous else []
+        unfit += ["time_unit="] if time_unit is not None and domain.sampled else []
         unfit += [f"time='{domain.name}'"] if make is None and not early else []
         for what in unfit:
             named = ", ".join(f"'{group}': [...]" for group in sorted(self.groups))

@@ -340,9 +340,10 @@ def trace_text(witness: Witness | None) -> str:
 
 
 def _require_covered(spec: Specification) -> None:
-    if spec.domain.continuous:
+    if not spec.domain.sampled:
         raise NotCoveredError(
-            "dense time is not covered by the analysis, which counts samples: read the specification in discrete time"
+            f"{spec.domain.name} time is not covered by the analysis, which counts samples: read the specification in "
+            f"discrete time"
         )
     if spec.groups:
         name = next(iter(spec.groups))

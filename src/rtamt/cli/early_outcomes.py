@@ -40,7 +40,7 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
     resampled = is_resampled(requirement.spec, trace, reading)
     period = reading.resample or requirement.spec.period
     as_it_comes = not resampled or not (
-        period is None or requirement.spec.domain.continuous or TIME in requirement.spec.input_names
+        period is None or not requirement.spec.domain.sampled or TIME in requirement.spec.input_names
     )
     if resampled and requirement.rows:
         found = [early_outcomes(row, trace, reading) for row in requirement.rows]

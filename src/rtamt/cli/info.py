@@ -215,7 +215,7 @@ def _requirements(facts: Facts) -> list[dict[str, Any]]:
 
 def _about_step(spec: Specification) -> str:
     """Return what the period or tick is, and where it comes from."""
-    if spec.domain.continuous:
+    if not spec.domain.sampled:
         return ", the tick in which time is counted"
     if spec.sampling is not None:
         return f" ({spec.sampling})"
@@ -277,7 +277,7 @@ def _lines(facts: Facts) -> Iterator[str]:
     name = loose_variable(facts)
     wide = f"sound, but may be wider than necessary: '{name}' raises and lowers the robustness"
     yield f"intervals  {'tight' if name is None else wide}"
-    late = None if spec.domain.continuous else cut_operator(facts)
+    late = None if spec.domain.held_at_end else cut_operator(facts)
     changed = f"may change at the end of the trace, which cuts the windows of '{late}'"
     yield f"early      verdicts {'hold at the end of the trace' if late is None else changed}"
     if facts.program is None and facts.offline_only is None:
@@ -323,6 +323,6 @@ def _as_json(facts: Facts) -> str:
             "memory": facts.memory,
             "offline_only": facts.offline_only,
             "tight": loose_variable(facts) is None,
-            "early_verdicts_hold": spec.domain.continuous or cut_operator(facts) is None,
+            "early_verdicts_hold": spec.domain.held_at_end or cut_operator(facts) is None,
         }
     )

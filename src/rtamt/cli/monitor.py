@@ -139,7 +139,7 @@ def run(args: argparse.Namespace) -> int:
     spec = read_specification(args, args.time)
     if spec.groups:
         _check_quantified(spec, args)
-    dense = spec.domain.continuous
+    own_times = spec.domain.own_time_bases
     live = _live(spec) if args.live else None
     output = Output(verdicts=spec.semantics == "boolean", live=live)
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
@@ -147,7 +147,7 @@ def run(args: argparse.Namespace) -> int:
     early = _early(spec, args, live)
     if early is not None:
         watched = early
-    elif dense:
+    elif own_times:
         monitor: Any = spec.monitor(watch=names)
         watched = EventFeed(monitor, output, names)
     else:
@@ -160,7 +160,7 @@ def run(args: argparse.Namespace) -> int:
     samples = Samples(
         watched.monitor.input_names,
         args.time_column,
-        dense=dense or held,
+        dense=own_times or held,
         unit=args.time_unit,
         binding=spec.binding,
         types=spec.types,

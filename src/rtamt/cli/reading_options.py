@@ -227,13 +227,13 @@ def _sampling_of(spec: Specification) -> tuple[bool, bool]:
 
 def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each signal has its own time base, so that signals may begin at different times."""
-    return spec.domain.continuous or is_bag(trace) or is_resampled(spec, trace, reading)
+    return spec.domain.own_time_bases or is_bag(trace) or is_resampled(spec, trace, reading)
 
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each requirement is sampled anew, from when all variables that it reads have started."""
     held, _ = _sampling_of(spec)
-    return reading.resample is not None or held or (not spec.domain.continuous and is_bag(trace))
+    return reading.resample is not None or held or (spec.domain.sampled and is_bag(trace))
 
 
 def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
@@ -252,7 +252,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     Which other requirements were read with it makes no difference. Discrete time samples a bag as a node
     samples topics, the latest message every period; without a period only where the messages are samples.
     """
-    bag = not spec.domain.continuous and is_bag(trace)
+    bag = spec.domain.sampled and is_bag(trace)
     rule = None if reading.resample is not None else spec.domain.sampling(spec.sampling)
     held = rule is not None and rule.hold
     period = spec.period if (bag or held) and reading.resample is None else reading.resample

@@ -310,7 +310,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         place = ""
         whole = recorded = recorded or read_for([spec], trace, reading)
         place = f"{shown(trace)}: "
-        if spec.domain.continuous and any(whole.channel(name).times is None for name in whole):
+        if spec.domain.own_time_bases and any(whole.channel(name).times is None for name in whole):
             raise TraceError(NO_STAMPS)
         whole = on_clock(spec.binding.applied(whole), spec, trace, reading)
         alone = len(spec.requirements) == 1

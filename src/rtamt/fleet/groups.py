@@ -241,7 +241,7 @@ def grouped(asked: Mapping[int, Asking]) -> tuple[list[Group], dict[int, str]]:
         rule = rule if rule is not None and rule.hold else None
         ending = () if spec.resolved is None else spec.resolved[0].input_names
         # Its variables determine the samples, or the extent, of such a recording.
-        own = frozenset(spec.input_names) if rule is not None or domain.continuous else None
+        own = frozenset(spec.input_names) if rule is not None or domain.own_time_bases else None
         fits = alike.setdefault((domain, asking.query.unit, rule, ending, own), [])
         places: dict[str, Any] = {
             name: (place, spec.types.get(name)) for name, place in spec.binding.places().items()

@@ -250,7 +250,7 @@ def _require_readable(prepared: Prepared, inputs: Sequence[tuple[str, ...]]) -> 
         for plan in (prepared.robustness, prepared.leaves, prepared.joining)
     )
     for place, names in enumerate(inputs):
-        read = set(prepared.inputs if prepared.domain.continuous else ())
+        read = set(prepared.inputs if prepared.domain.own_time_bases else ())
         if prepared.outputs:
             read |= first[prepared.outputs[place]]
         if prepared.joined:
@@ -283,7 +283,7 @@ def _prepared_of(
     first = plan(given["robustness"], domain, inputs)
     joint = given["leaves"] == "robustness"
     second = first if joint else plan(given["leaves"], domain, inputs)
-    if (joint or (first is not None and second is not None)) and joint == domain.continuous:
+    if (joint or (first is not None and second is not None)) and joint == domain.held_at_end:
         raise damaged("its programs are not those of its time domain")
     windows = {_number(number): _window(*rest) for number, *rest in given["windows"]}
     joining = plan(given["joining"], _JOINING, [f"#{number}" for number in windows])

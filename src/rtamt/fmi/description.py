@@ -184,8 +184,8 @@ def _logs(root: Element) -> None:
 
 
 def _experiment(root: Element, unit: Unit) -> None:
-    # In dense time a step has no natural length.
-    step = {"stepSize": repr(float(unit.program.period))} if not unit.program.domain.continuous else {}
+    # Only a sampling period is a natural length of a step.
+    step = {"stepSize": repr(float(unit.program.period))} if unit.program.domain.sampled else {}
     _add(root, "DefaultExperiment", startTime="0", **step)
 
 

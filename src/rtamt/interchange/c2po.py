@@ -290,7 +290,7 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
     FTSPEC
         R: x > 3 -> F[0,5](y > 3);
     """
-    if spec.domain.continuous:
+    if not spec.domain.sampled:
         raise UsageError("C2PO is about samples: read the specification in discrete time")
     step = Fraction(1) if spec.period is None else Fraction(spec.period)
     sections: dict[str, list[str]] = {"FTSPEC": [], "PTSPEC": []}

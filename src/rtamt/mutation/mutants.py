@@ -64,26 +64,23 @@ def mutants_of(spec: Specification, step: Fraction | None = None) -> list[Mutant
     M8 threshold x >= 3 → x >= 3.3
     M9 threshold x >= 3 → x >= 2.7
     """
-    continuous = spec.domain.continuous
-    grid = None if continuous else step or spec.period
+    grid = step or spec.period if spec.domain.sampled else None
     found: list[Mutant] = []
     for name, one in spec.requirements.items():
-        found += _of_one(name, one, grid, len(found), continuous=continuous)
+        found += _of_one(name, one, grid, len(found))
     return found
 
 
-def _of_one(
-    name: str, spec: Specification, step: Fraction | None, before: int, *, continuous: bool
-) -> list[Mutant]:
+def _of_one(name: str, spec: Specification, step: Fraction | None, before: int) -> list[Mutant]:
     formula = spec.formula
     if is_number(formula):
         raise UsageError(f"'{name}' is a number, which has no verdict; compare it, such as {name} > 0")
-    if step is None and not continuous and _has_bounds(formula):
+    if step is None and spec.domain.sampled and _has_bounds(formula):
         raise UsageError(
             "mutants have other bounds, in whole sampling periods, and the period is not known; "
             "give it, such as period='100ms'"
         )
-    keys = Keys(step or spec.resolution or Fraction(1, 10**9), continuous=continuous)
+    keys = Keys(step or spec.resolution or Fraction(1, 10**9), continuous=spec.domain.continuous)
     seen = {keys.of(formula)}
     found: list[Mutant] = []
     for change in changes_of(formula, step):
@@ -91,7 +88,7 @@ def _of_one(
         if not is_number(mutated):
             new = spec.with_formula(mutated)
             try:
-                (spec.domain if continuous else spec._domain_for(period=step)).check(mutated)
+                (spec._domain_for(period=step) if spec.domain.sampled else spec.domain).check(mutated)
             except StlError:  # a bound that is empty or no multiple, which is no requirement at all
                 continue
             key = keys.of(mutated)

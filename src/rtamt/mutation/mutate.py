@@ -161,7 +161,7 @@ def _step(
     reading: Mapping[str, Any],
 ) -> Fraction | None:
     """Return what bounds are multiples of: the sampling period, or a multiple of those that the recordings decide."""
-    if spec.domain.continuous or spec.period is not None:
+    if not spec.domain.sampled or spec.period is not None:
         return spec.period
     periods = {
         spec.requirements[requirement].evaluate(data, **reading).trace.domain.period

@@ -134,7 +134,7 @@ class RosMonitor:
 
     def _period(self, period: Duration | None) -> Fraction | None:
         """Return seconds; None in dense time."""
-        if self._domain.continuous:
+        if not self._domain.sampled:
             if period is not None:
                 raise UsageError(
                     "dense time has no sampling period: leave out the period, or choose discrete time"

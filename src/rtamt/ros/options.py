@@ -47,20 +47,20 @@ class Options:
         """Load the specification and create its monitor; raise :class:`StlError` on failure."""
         if not self.spec:
             raise UsageError("no specification was given: name a file, or set the parameter spec")
-        dense = time_domain(self.time).continuous
-        if dense and self.period:
+        in_periods = time_domain(self.time).sampled
+        if not in_periods and self.period:
             raise UsageError("dense time has no sampling period: leave out --period, or --time dense")
         period = self._duration(self.period) if self.period else None
         values = assignments(self.set.split(",")) if self.set else {}
         spec = load(self.spec, time=self.time, period=period).with_parameters(**values)
-        if not dense and spec.period is None:
+        if in_periods and spec.period is None:
             raise UsageError(
                 "discrete time samples the topics once a period: give it, such as --period 100ms (the parameter "
                 "period), or use --time dense, which reads every message at its own time"
             )
         rule = spec.domain.sampling(spec.sampling)
         stale = self._duration(self.stale) if self.stale else None if rule is None else rule.limit
-        sampled = None if dense else spec.period
+        sampled = spec.period if in_periods else None
         monitor = RosMonitor(
             bind(spec, self.verdict or None, self.at or None),
             period=sampled,
@@ -68,7 +68,7 @@ class Options:
             stale=stale,
             skip_nan=rule is not None and rule.skip_nan,
         )
-        written = None if dense else spec.document.sampling
+        written = spec.document.sampling if in_periods else None
         if written is not None and written.period != spec.period:
             monitor.note(f"the period {self.period} replaces that of '{written}' in the specification")
         if written is not None and written.limit is not None and self.stale:

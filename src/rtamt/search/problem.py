@@ -161,7 +161,7 @@ class Problem:
         That is so where the end may cut windows that decide, and for operators with code of their own.
         """
         spec = self.spec
-        if not spec.domain.continuous:
+        if not spec.domain.held_at_end:
             if self._total is None:
                 return None
             period = spec.domain.period

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units.durations import Duration
+    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.domain_interface import Bounds, Mask
@@ -48,6 +49,9 @@ class Dense(TimeDomain):
     name: ClassVar[str] = "dense"
     summary: ClassVar[str] = "signals change at any instant"
     continuous: ClassVar[bool] = True
+    sampled: ClassVar[bool] = False
+    own_time_bases: ClassVar[bool] = True
+    held_at_end: ClassVar[bool] = True
     unit = TICKS
     setting: ClassVar[str] = "resolution"
     parts: ClassVar[Mapping[str, str]] = {
@@ -161,6 +165,10 @@ class DenseTrace(DomainTrace):
     def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DenseTrace:
         """See :class:`DomainTrace`."""
         return replace(self, bounds=bounds, missing=missing)
+
+    def values(self, name: str) -> FloatArray:
+        """See :class:`DomainTrace`."""
+        return self.columns[name][1]
 
     def with_presence(self, channels: Mapping[str, str]) -> DenseTrace:
         """See :class:`DomainTrace`: a variable is missing from a sample that is, until its next one."""

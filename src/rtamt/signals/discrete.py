@@ -55,6 +55,9 @@ class Discrete(TimeDomain):
     name: ClassVar[str] = "discrete"
     summary: ClassVar[str] = "every variable has one sample per period"
     continuous: ClassVar[bool] = False
+    sampled: ClassVar[bool] = True
+    own_time_bases: ClassVar[bool] = False
+    held_at_end: ClassVar[bool] = False
     unit = PERIODS
     setting: ClassVar[str] = "period"
     parts: ClassVar[Mapping[str, str]] = {
@@ -197,6 +200,10 @@ class DiscreteTrace(DomainTrace):
     def bounded(self, bounds: Mapping[str, Bounds], missing: Mapping[str, Mask]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""
         return replace(self, bounds=bounds, missing=missing)
+
+    def values(self, name: str) -> FloatArray:
+        """See :class:`DomainTrace`."""
+        return self.columns[name]
 
     def with_presence(self, channels: Mapping[str, str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""

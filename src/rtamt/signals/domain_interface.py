@@ -46,6 +46,12 @@ class TimeDomain(ABC):
     summary: ClassVar[str]
     #: Whether signals have values between their samples.
     continuous: ClassVar[bool]
+    #: Whether a recording has one sample of every variable per period.
+    sampled: ClassVar[bool]
+    #: Whether each variable has its own timestamps, so that variables and requirements may start at different times.
+    own_time_bases: ClassVar[bool]
+    #: Whether signals hold their last values after the end of a recording, which then cuts no window.
+    held_at_end: ClassVar[bool]
     #: How bounds are counted, and what messages call their step.
     unit: ClassVar[BoundUnit]
     #: The setting that is the length of a step.
@@ -104,8 +110,8 @@ class TimeDomain(ABC):
         return grounds(formulas, self.step, continuous=self.continuous)
 
     def sampling(self, rule: Sampling | None) -> Sampling | None:
-        """Return the sampling rule if it applies: signals with values between their samples are not sampled."""
-        return None if self.continuous else rule
+        """Return the sampling rule if it applies: where recordings have a period."""
+        return rule if self.sampled else None
 
     @abstractmethod
     def check_inputs(self, names: Collection[str]) -> None:
@@ -241,6 +247,10 @@ class DomainTrace(ABC):
     @abstractmethod
     def position(self, at: Any) -> int:
         """Return the position of a time in the caller's format; raise :class:`UsageError` outside the trace."""
+
+    @abstractmethod
+    def values(self, name: str) -> FloatArray:
+        """Return the values of the samples of a variable."""
 
     # ---- on an axis ------------------------------------------------------------------------------
 

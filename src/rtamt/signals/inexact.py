@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.domain_interface import DomainTrace
 
     Mask = NDArray[np.bool_]
@@ -70,7 +69,7 @@ class Uncertainty:
             return recording
         bounds = {}
         for name in recording.columns:
-            values = _values(recording, name)
+            values = recording.values(name)
             low, high = self.ranges.get(name, (-inf, inf))
             error = self.errors.get(name, 0.0)
             gaps = missing.get(name, np.zeros(len(values), bool))
@@ -137,12 +136,6 @@ def _items(given: Any, what: str, example: str, names: Sequence[str]) -> list[tu
                 f"{what}= has '{name}', and the formula reads {reads}{did_you_mean(str(name), names)}"
             )
     return list(given.items())
-
-
-def _values(recording: DomainTrace, name: str) -> FloatArray:
-    column: Any = recording.columns[name]
-    values: FloatArray = column[1] if recording.domain.continuous else column
-    return values
 
 
 def _filled(values: Any, name: str, missing: dict[str, Mask]) -> Any:

@@ -61,7 +61,7 @@ def holds_at_end(spec: Specification) -> bool:
     [True, False]
     """
     (truth,) = spec.domain.online.ground(boolean(spec.formula))
-    return spec.domain.continuous or ends_differently(truth, {}) is None
+    return spec.domain.held_at_end or ends_differently(truth, {}) is None
 
 
 def in_parts(trace: Trace, size: int = 4096) -> Iterator[Trace]:
@@ -206,7 +206,7 @@ class Watch(ABC):
         outputs = outputs_under(spec.formula, spec.semantics, spec.roles)
         self.names = spec.input_names
         #: Whether bounds hold at the end too; otherwise only the verdict gives the sign.
-        self._bounded = spec.domain.continuous or ends_differently(outputs.robustness, {}) is None
+        self._bounded = spec.domain.held_at_end or ends_differently(outputs.robustness, {}) is None
         self._parts = [_Part(part, unit) for part in conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)
         self._formulas = (

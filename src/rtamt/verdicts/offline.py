@@ -169,7 +169,7 @@ def _settled_signals(
     in_steps = trace.in_steps()
     start, end = trace.extent
     ends: dict[int, list[Tracker]] = {end: []}
-    if trace.domain.continuous:
+    if trace.domain.held_at_end:
         for tracker in trackers:
             ends.setdefault(end_of(tracker.leaf, start, end, trace.step), []).append(tracker)
     try:

@@ -66,7 +66,7 @@ def _prepared(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomai
     formulas = [leaf.formula for leaf in found]
     backend = compiled_backend(domain)
     first = second = None
-    if not domain.continuous:
+    if not domain.held_at_end:
         together = tuple(dict.fromkeys((*robustness, *formulas)))
         first = second = backend.stored(together, step, inputs) if together else None
         places, needed = (list(map(together.index, each)) for each in (robustness, formulas))
@@ -80,7 +80,7 @@ def _prepared(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomai
             leaf.reduce,
             int(leaf.begin / step),
             None if leaf.end is None else int(leaf.end / step),
-            reach(desugar(leaf.formula), step) + 1 if domain.continuous and leaf.end is None else 0,
+            reach(desugar(leaf.formula), step) + 1 if domain.held_at_end and leaf.end is None else 0,
         )
         for (leaf, number), place in zip(found.items(), needed, strict=True)
     }

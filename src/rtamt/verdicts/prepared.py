@@ -179,7 +179,7 @@ class Prepared:
         """Return the reduced leaves, each from as few samples as it needs."""
         if self.leaves is None or not self.windows:
             return {}
-        if not trace.domain.continuous:
+        if not trace.domain.held_at_end:
             needed = [window.output for window in self.windows.values()]
             signals = self._evaluator(self.leaves.part(needed))(trace)
             return {
@@ -277,7 +277,7 @@ class Prepared:
         outputs = [self.outputs[i] for i in numbers] if self.outputs else []
         windows = {i: self.windows[i] for each in joined for i in each.windows}
         needed = [window.output for window in windows.values()]
-        inputs = self.inputs if self.domain.continuous else ()
+        inputs = self.inputs if self.domain.own_time_bases else ()
         robustness, leaves, joining = self.robustness, self.leaves, self.joining
         if robustness is not None and robustness is leaves:
             places = list(dict.fromkeys([*outputs, *needed]))

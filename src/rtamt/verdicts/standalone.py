@@ -107,7 +107,7 @@ def bounds_program(
     >>> program.metadata.outputs, len(program.metadata.early)
     (('lower', 'upper', 'verdict', 'decided_since'), 268)
     """
-    if domain.continuous:
+    if not domain.sampled:
         raise UsageError(
             "bounds at the start of the trace are compiled for discrete time: use it, or verdict='delayed'"
         )

@@ -61,7 +61,7 @@ def check_stream(
         )
     stream = _stream_of(domain)(spec, semantics, time_unit, domain)
     for chunk in chunks:
-        stream.take(spec.binding.applied(chunk, partial=domain.continuous))
+        stream.take(spec.binding.applied(chunk, partial=domain.own_time_bases))
     return stream.finish()
 
 

@@ -46,7 +46,7 @@ def write_fret(spec: Specification, component: str | None = None) -> Conversion:
     >>> json.loads(write_fret(spec, "pump").text)["requirements"][0]["fulltext"]
     'When c > 0 the pump shall within 2 ticks satisfy level > 3'
     """
-    if spec.domain.continuous:
+    if not spec.domain.sampled:
         raise UsageError("FRETish is about samples: read the specification in discrete time")
     component = component or spec.document.name or "system"
     if not re.fullmatch(r"[A-Za-z][\w.%]*", component):

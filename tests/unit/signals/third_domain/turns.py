@@ -20,6 +20,9 @@ class Turns(TimeDomain):
     name = "turns"
     summary = "samples are counted"
     continuous = False
+    sampled = True
+    own_time_bases = False
+    held_at_end = False
     unit = PERIODS
     setting = "period"
     parts: ClassVar = {"engine": "tests.unit.signals.third_domain:ENGINE"}
