@@ -246,6 +246,13 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Very many recordings": (
         "", ("Suite", "VerdictTable", "rtamt.scale", "rtamt.scale.check", "rtamt.scale.spark", "rtamt.scale.ray")
     ),
+    "Live streams on engines": (
+        "",
+        (
+            "rtamt.scale.shard.Shard", "rtamt.scale.messages.MessageReader", "rtamt.scale.kafka.Worker",
+            "rtamt.scale.kafka.Settings", "rtamt.scale.checkpoints.Checkpoints",
+        ),
+    ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
     "Plot": ("", ("Result.plot", "Result.plot_tree")),
     "Read recordings": ("", ("read", "scan", "Trace", "Channel")),

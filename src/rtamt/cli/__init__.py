@@ -1,8 +1,8 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``, ``analyze``, ``diff``,
-``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``, ``analyze``,
+``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ===============  =============================================================
@@ -60,6 +60,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("plot", "plot signals, robustness and the cause of the verdict"),
             ("report", "write an interactive page: signals, robustness, explanations"),
             ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
+            ("worker", "monitor the samples of a Kafka topic, for many vehicles"),
             ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),
             ("falsify", "search for inputs that make a plant violate its requirement"),
             ("mutate", "change a requirement a little, and list the changes that no recording notices"),

@@ -1,7 +1,8 @@
-"""Suites over many recordings: in a process pool, and on the engines that users have.
+"""Suites over many recordings and fleets over streams: in a process pool, and on the engines that users have.
 
 A *job* checks one recording after another and never fails: what is wrong with a recording becomes the error of its
-rows. Engines distribute recordings; a manifest remembers what is done.
+rows. Engines distribute recordings; a manifest remembers what is done. A *shard* is a fleet for a part of a stream: it
+rejects single samples; a checkpoint remembers its state and its place in the stream.
 
 ====================  =====================================================================
 module                purpose
@@ -13,6 +14,12 @@ local                 the engine on this machine: a process pool
 spark                 the engine on Apache Spark
 ray                   the engine on Ray Data
 check                 all recordings of a job, new ones by an engine and the others from the manifest
+shard                 a fleet that takes any samples, and rejects those that are wrong one by one
+messages              messages of a broker to samples: JSON, Avro, protobuf
+avro                  messages in Avro, whose schemas are bounded
+protobuf              messages in protobuf, by descriptors
+checkpoints           state and offset of a shard, in one object of a folder or an object store
+kafka                 the worker: a consumer group, one partition a shard
 ====================  =====================================================================
 
 Needs nothing beyond the core for local files and the local engine; each other engine is an extra.

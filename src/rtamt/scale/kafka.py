@@ -1,0 +1,390 @@
+"""A worker on Apache Kafka: samples from one topic, robustness to another; needs ``rtamt[kafka]``.
+
+Workers of one consumer group share the partitions of a topic; each partition is a shard with a fleet of its own. The
+checkpoint of a shard is its state together with the offset of the next message, in one object. It is written after
+the broker has confirmed all results of the messages before it. So nothing is lost, however a worker ends. A worker
+that resumes may send results again that were sent after the checkpoint: they are equal, and have the same key and time,
+by which a reader drops them or an upsert overwrites them.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import Counter
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import TraceError, UsageError
+from rtamt.extras import library
+from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.scale.checkpoints import Checkpoint, Checkpoints
+from rtamt.scale.shard import Sample, Shard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from rtamt.scale.messages import MessageReader
+    from rtamt.scale.shard import Rejected, Result
+    from rtamt.specification import Specification
+
+#: Settings of the client that a worker depends on.
+_OWN = {
+    "bootstrap.servers": "--brokers",
+    "group.id": "--group",
+    "enable.auto.commit": "a worker commits with its checkpoints",
+    "enable.auto.offset.store": "a worker commits with its checkpoints",
+    "auto.offset.reset": "--from",
+    "enable.partition.eof": "--until-end",
+    "enable.idempotence": "results must not be sent twice",
+    "delivery.report.only.error": "a worker looks at errors alone",
+}
+#: The most messages that are taken together, and seconds until fewer are.
+_BATCH, _WAIT = 5000, 0.1
+#: Seconds for what a broker answers at once.
+_ANSWER = 10.0
+#: The longest text of an error in a dead letter.
+_LONGEST_ERROR = 1000
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Where a worker reads and writes.
+
+    ``checkpoints``: a folder or an address, None for none; ``interval``: seconds between checkpoints. ``beginning``:
+    whether a partition without a checkpoint is read from its start. ``until_end``: whether to end when all messages are
+    read. ``client``: settings of librdkafka, those of one client with ``consumer.`` or ``producer.`` before them.
+    """
+
+    brokers: str
+    topic: str
+    group: str
+    output: str
+    dead_letters: str
+    checkpoints: str | None = None
+    interval: float = 10.0
+    beginning: bool = True
+    until_end: bool = False
+    client: Mapping[str, str] = field(default_factory=dict)
+
+
+class _Partition:
+    """A partition that is assigned to this worker; ``offset``: of the next message, None until one has come."""
+
+    def __init__(self, shard: Shard, offset: int | None) -> None:
+        self.shard = shard
+        self.offset = offset
+        self.saved = offset
+
+
+class Worker:
+    """Monitors the samples of a topic; ``say``: takes sentences for the operator.
+
+    ``counts``: what has happened since the start: ``samples``, ``results``, ``violations``, ``late``, ``rejected``.
+    """
+
+    def __init__(
+        self,
+        spec: Specification,
+        reader: MessageReader,
+        settings: Settings,
+        *,
+        say: Callable[[str], None] = print,
+        **options: Any,
+    ) -> None:
+        self._kafka = library("confluent_kafka", "a worker on Kafka", "kafka")
+        for name in settings.client:
+            own = name.removeprefix("consumer.").removeprefix("producer.")
+            if own in _OWN:
+                raise UsageError(f"the setting '{own}' of the client cannot be chosen: {_OWN[own]}")
+        self._spec, self._reader, self._settings, self._say = spec, reader, settings, say
+        self._options = options
+        Shard(spec, **options)  # what a fleet cannot monitor is an error now
+        place = settings.checkpoints
+        self._checkpoints = None if place is None else Checkpoints(place, settings.group, settings.topic)
+        self._partitions: dict[int, _Partition] = {}
+        self._ended: set[int] = set()
+        self._assigned_in_consume = self._stopping = False
+        self._failure: str | None = None
+        self._said: set[str] = set()
+        self.counts: Counter[str] = Counter()
+        try:
+            self._consumer = self._kafka.Consumer(self._client("consumer."))
+            self._producer = self._kafka.Producer(self._client("producer."))
+        except (self._kafka.KafkaException, ValueError, TypeError) as error:
+            raise UsageError(f"the settings of the client are wrong: {_text(error)}") from None
+
+    def _client(self, prefix: str) -> dict[str, Any]:
+        """Return the settings of the consumer or the producer."""
+        other = {"consumer.": "producer.", "producer.": "consumer."}[prefix]
+        chosen = {
+            name.removeprefix(prefix): value
+            for name, value in self._settings.client.items()
+            if not name.startswith(other)
+        }
+        own: dict[str, Any] = {"bootstrap.servers": self._settings.brokers, "error_cb": self._trouble}
+        if prefix == "consumer.":
+            own |= {
+                "group.id": self._settings.group,
+                "enable.auto.commit": False,
+                "enable.auto.offset.store": False,
+                "auto.offset.reset": "error",  # an offset that is gone means lost samples
+                "enable.partition.eof": True,
+            }
+        else:
+            own |= {
+                "enable.idempotence": True,
+                "delivery.report.only.error": True,
+                "on_delivery": self._undelivered,
+            }
+        return {**({"linger.ms": "20"} if prefix == "producer." else {}), **chosen, **own}
+
+    def stop(self) -> None:
+        """Let :meth:`run` end after the messages that it has; may be called from a signal handler."""
+        self._stopping = True
+
+    def run(self) -> None:
+        """Monitor until :meth:`stop`; raise :class:`UsageError` for what needs an operator."""
+        self._check_topic()
+        try:
+            self._consumer.subscribe(
+                [self._settings.topic], on_assign=self._assign, on_revoke=self._revoke, on_lost=self._lose
+            )
+            due = time.monotonic() + self._settings.interval
+            while not self._stopping and not self._is_done():
+                self._take(self._consume())
+                self._producer.poll(0)
+                self._fail()
+                if time.monotonic() >= due:
+                    self._save(self._partitions)
+                    due = time.monotonic() + self._settings.interval
+            self._save(self._partitions)
+        except self._kafka.KafkaException as error:
+            raise UsageError(f"Kafka: {_text(error)}") from None
+        finally:
+            self._partitions.clear()  # saved, or wrong
+            self._consumer.close()
+
+    @property
+    def keys(self) -> int:
+        """The number of keys in the partitions of this worker."""
+        return sum(len(each.shard) for each in self._partitions.values())
+
+    def lag(self) -> dict[int, int]:
+        """Return for each partition how many messages of the broker have not been read, as far as known."""
+        found = {}
+        for number, partition in self._partitions.items():
+            place = self._kafka.TopicPartition(self._settings.topic, number)
+            low, high = self._consumer.get_watermark_offsets(place, cached=True)
+            if high >= 0:
+                found[number] = max(0, high - (max(low, 0) if partition.offset is None else partition.offset))
+        return found
+
+    def _is_done(self) -> bool:
+        return self._settings.until_end and bool(self._partitions) and self._ended >= self._partitions.keys()
+
+    def _check_topic(self) -> None:
+        name = self._settings.topic
+        try:
+            topic = self._consumer.list_topics(name, timeout=_ANSWER).topics[name]
+        except self._kafka.KafkaException as error:
+            raise UsageError(f"no broker answers at '{self._settings.brokers}': {_text(error)}") from None
+        if topic.error is not None:
+            raise UsageError(f"cannot read the topic '{name}': {topic.error.str()}")
+
+    # ---- messages -------------------------------------------------------------------------------------
+
+    def _consume(self) -> dict[int, list[Any]]:
+        """Return messages by partition, in their order."""
+        self._assigned_in_consume = False
+        messages = self._consumer.consume(_BATCH, _WAIT)
+        if self._assigned_in_consume and messages:
+            # Some may be of the assignment before: all partitions are read again from where their shards are.
+            self._consumer.assign([self._position(number) for number in self._partitions])
+            self._ended.clear()
+            return {}
+        found: dict[int, list[Any]] = {}
+        for message in messages:
+            if message.error() is not None:
+                self._notice(message)
+            elif message.partition() in self._partitions:
+                self._ended.discard(message.partition())
+                found.setdefault(message.partition(), []).append(message)
+        return found
+
+    def _notice(self, message: Any) -> None:
+        error, codes = message.error(), self._kafka.KafkaError
+        if error.code() == codes._PARTITION_EOF:
+            self._ended.add(message.partition())
+            return
+        if error.code() == codes._AUTO_OFFSET_RESET:
+            number = message.partition()
+            raise UsageError(
+                f"partition {number} of '{self._settings.topic}' no longer has the message at which its checkpoint is: "
+                f"the samples in between are lost; delete the checkpoint to begin with the oldest message"
+            )
+        lasting = (
+            codes.UNKNOWN_TOPIC_OR_PART,
+            codes.TOPIC_AUTHORIZATION_FAILED,
+            codes.GROUP_AUTHORIZATION_FAILED,
+        )
+        if error.fatal() or error.code() in lasting:
+            raise UsageError(f"cannot read the topic '{self._settings.topic}': {error.str()}")
+        self._trouble(error)
+
+    def _take(self, messages: Mapping[int, Sequence[Any]]) -> None:
+        for number, some in messages.items():
+            partition = self._partitions[number]
+            samples: list[Sample] = []
+            origins: list[Any] = []
+            for message in some:
+                sample = self._read(message)
+                if sample is not None:
+                    samples.append(sample)
+                    origins.append(message)
+            taken = partition.shard.take(samples)
+            self._send(taken.results)
+            for rejected in taken.rejected:
+                self._divert(origins[rejected.position], rejected)
+            partition.offset = some[-1].offset() + 1
+            self.counts["samples"] += len(samples) - len(taken.rejected)
+
+    def _read(self, message: Any) -> Sample | None:
+        """Return the sample in a message; None for what has become a dead letter."""
+        try:
+            return self._reader.read(message.value(), message.key())
+        except TraceError as error:
+            self._bury(message, str(error), "rejected")
+            return None
+
+    def _send(self, results: Iterable[Result]) -> None:
+        for result in results:
+            self._produce(self._settings.output, row_of(result), result.key.encode())
+            self.counts["results"] += 1
+            self.counts["violations"] += result.satisfied is False
+
+    def _divert(self, message: Any, rejected: Rejected) -> None:
+        self._bury(message, rejected.error, "late" if rejected.late else "rejected")
+
+    def _bury(self, message: Any, error: str, reason: str) -> None:
+        """Send a message to the dead letters, as it came, with the error and its origin."""
+        self.counts[reason] += 1
+        headers = {
+            "rtamt.error": error[:_LONGEST_ERROR],
+            "rtamt.reason": reason,
+            "rtamt.topic": self._settings.topic,
+            "rtamt.partition": str(message.partition()),
+            "rtamt.offset": str(message.offset()),
+        }
+        coded = [(name, text.encode(errors="replace")) for name, text in headers.items()]
+        self._produce(self._settings.dead_letters, message.value(), message.key(), coded)
+
+    def _produce(self, topic: str, value: bytes | None, key: bytes | None, headers: Any = None) -> None:
+        more = {} if headers is None else {"headers": headers}
+        while not self._is_queued(topic, value, key, more):
+            self._producer.poll(
+                _WAIT
+            )  # the broker is slower: each message is taken, or an error after its time-out
+            self._fail()
+
+    def _is_queued(self, *message: Any) -> bool:
+        *given, more = message
+        try:
+            self._producer.produce(*given, **more)
+        except BufferError:
+            return False
+        return True
+
+    def _undelivered(self, error: Any, message: Any) -> None:
+        if error is not None and self._failure is None:
+            self._failure = f"the broker has not taken a message for '{message.topic()}': {error.str()}"
+
+    def _fail(self) -> None:
+        if self._failure is not None:
+            raise UsageError(self._failure)
+
+    def _trouble(self, error: Any) -> None:
+        """Report what the client overcomes by itself, once each."""
+        text = str(error.str())
+        if error.fatal():
+            self._failure = text
+        elif text not in self._said and len(self._said) < 100:
+            self._said.add(text)
+            self._say(f"Kafka: {text}")
+
+    # ---- partitions -----------------------------------------------------------------------------------
+
+    def _position(self, number: int) -> Any:
+        offset = self._partitions[number].offset
+        at = self._kafka.OFFSET_BEGINNING if offset is None else offset
+        return self._kafka.TopicPartition(self._settings.topic, number, at)
+
+    def _assign(self, consumer: Any, places: Sequence[Any]) -> None:
+        self._assigned_in_consume = True
+        self._ended.clear()
+        for place in places:
+            number = place.partition
+            known = None if self._checkpoints is None else self._checkpoints.load(number)
+            if known is not None:
+                shard = Shard(self._spec, state=known.state, **self._options)
+                self._partitions[number] = _Partition(shard, known.offset)
+                continue
+            self._partitions[number] = _Partition(Shard(self._spec, **self._options), None)
+            if not self._settings.beginning:
+                _, end = consumer.get_watermark_offsets(place, timeout=_ANSWER)
+                self._partitions[number].offset = end
+                self._save([number])
+        consumer.assign([self._position(place.partition) for place in places])
+
+    def _revoke(self, _consumer: Any, places: Sequence[Any]) -> None:
+        self._save([place.partition for place in places])
+        self._lose(_consumer, places)
+
+    def _lose(self, _consumer: Any, places: Sequence[Any]) -> None:
+        """Forget partitions that another worker may have by now; its checkpoint is not touched."""
+        self._assigned_in_consume = True
+        for place in places:
+            self._partitions.pop(place.partition, None)
+            self._ended.discard(place.partition)
+
+    def _save(self, numbers: Iterable[int]) -> None:
+        """Write the checkpoints of partitions that have gone on, after the broker has all that came of them."""
+        changed = {
+            number: partition
+            for number in numbers
+            if (partition := self._partitions.get(number)) is not None and partition.offset != partition.saved
+        }
+        if not changed:
+            return
+        while self._producer.flush(_WAIT):
+            self._fail()
+        self._fail()
+        for number, partition in changed.items():
+            assert partition.offset is not None
+            if self._checkpoints is not None:
+                state = partition.shard.snapshot()
+                self._checkpoints.save(Checkpoint(self._settings.topic, number, partition.offset, state))
+            partition.saved = partition.offset
+        # For tools that show the lag of a group; a worker itself goes by its checkpoints.
+        self._consumer.commit(offsets=[self._position(number) for number in changed], asynchronous=True)
+
+
+def row_of(result: Result) -> bytes:
+    """Return a result as JSON, with the same bytes each time.
+
+    >>> from rtamt.scale.shard import Result
+    >>> row_of(Result("car-1", 2.0, float("-inf")))
+    b'{"key": "car-1", "time": 2.0, "robustness": "-inf", "satisfied": false}'
+    """
+    value = result.robustness + 0.0
+    number = repr(value) if isfinite(value) else f'"{value}"'
+    verdict = {True: "true", False: "false", None: "null"}[result.satisfied]
+    key = json.dumps(result.key)
+    return (
+        f'{{"key": {key}, "time": {result.time!r}, "robustness": {number}, "satisfied": {verdict}}}'.encode()
+    )
+
+
+def _text(error: Any) -> str:
+    first = error.args[0] if error.args else error
+    return str(first.str() if hasattr(first, "str") else first).rstrip(".")

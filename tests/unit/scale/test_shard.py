@@ -1,0 +1,113 @@
+"""A shard: what each sample leads to does not depend on batches, and wrong samples affect their key alone."""
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.scale.shard import Result, Sample, Shard
+
+SPEC = rtamt.parse("always[0:2](sqrt(x) <= 3)")
+
+
+def samples():
+    """Return samples of eight keys: some late, some without a value, some with NaN, some after a gap."""
+    random = np.random.default_rng(1)
+    found = []
+    for i in range(600):
+        time = float(i // 8)
+        value = float(random.uniform(0, 16))
+        key = f"car-{random.integers(8)}"
+        if i % 41 == 0:
+            time -= 3
+        if i % 37 == 0:
+            value = float("nan")
+        if i % 43 == 0:
+            value = -1.0
+        found.append(Sample(key, time, (value,)))
+    return found
+
+
+def taken_in(batches):
+    shard, results, rejected, at = Shard(SPEC), [], [], 0
+    for batch in batches:
+        taken = shard.take(batch)
+        results += taken.results
+        rejected += [(at + each.position, each.error, each.late) for each in taken.rejected]
+        at += len(batch)
+        shard = Shard(SPEC, state=shard.snapshot())
+    return results, rejected
+
+
+def test_results_and_rejections_do_not_depend_on_batches():
+    given = samples()
+    single = taken_in([each] for each in given)
+    assert len(single[1]) > 40
+    assert {each[2] for each in single[1]} == {True, False}
+    assert taken_in([given]) == single
+    assert taken_in([given[:7], given[7:300], [], given[300:]]) == single
+
+
+def test_what_is_left_equals_offline_robustness():
+    given = samples()
+    results, rejected = taken_in([given])
+    wrong = {index for index, _, _ in rejected}
+    expected = set()
+    for key in {sample.key for sample in given}:
+        own = [each for i, each in enumerate(given) if each.key == key and i not in wrong]
+        traces: list[list[Sample]] = []
+        for each in own:
+            if traces and each.time - traces[-1][-1].time == 1:
+                traces[-1].append(each)
+            else:
+                traces.append([each])
+        for trace in traces:
+            if len(trace) < 3:
+                continue
+            times = [each.time for each in trace]
+            robustness = SPEC.evaluate({"time": times, "x": [each.values[0] for each in trace]}).signal
+            expected |= {
+                Result(key, t, r) for t, r in zip(times, robustness.values, strict=True) if t <= times[-1] - 2
+            }
+    assert set(results) == expected
+    assert len(results) == len(expected) > 50
+
+
+def test_messages_name_the_key():
+    shard = Shard(rtamt.parse("sqrt(x) >= 3"), capacity=2)
+    wrong = [
+        Sample("a", 0.0, (1.0,)),
+        Sample("a", 0.0, (1.0,)),
+        Sample("a", 1.0, (-1.0,)),
+        Sample("a", 1.0, (float("nan"),)),
+        Sample("b", float("inf"), (1.0,)),
+        Sample("b", 7.0, (1.0,)),
+        Sample("c", 0.0, (1.0,)),
+    ]
+    rejected = shard.take(wrong).rejected
+    assert [(each.position, each.late) for each in rejected] == [
+        (1, True),
+        (2, False),
+        (3, False),
+        (4, False),
+        (6, False),
+    ]
+    assert rejected[0].error == (
+        "key 'a': time does not increase at sample 1: 0 s comes after 0 s; "
+        "sort the samples and drop repeated timestamps"
+    )
+    assert rejected[1].error.startswith("key 'a': 'sqrt(x)' has no value at sample 1, time 1 s")
+    assert rejected[4].error.startswith("key 'c' is new, and the fleet has its 2 keys already")
+
+
+def test_a_robustness_of_zero_does_not_decide():
+    found = Shard(rtamt.parse("x >= 3")).take(
+        [Sample("a", float(i), (float(x),)) for i, x in enumerate((4, 3, 2))]
+    )
+    assert [result.satisfied for result in found.results] == [True, None, False]
+    found = Shard(rtamt.parse("x >= 3", semantics="boolean")).take([Sample("a", 0.0, (3.0,))])
+    assert [result.satisfied for result in found.results] == [True]
+
+
+def test_what_no_fleet_monitors_is_an_error_at_once():
+    with pytest.raises(rtamt.UsageError, match=r"^a fleet monitors the delayed robustness in discrete time"):
+        Shard(rtamt.parse("x >= 3", time="dense"))
