@@ -39,7 +39,8 @@ class GraphReader {
         }
     }
 
-    void end() const { require(reader_.left() == 0); }
+    [[nodiscard]] bool left() const noexcept { return reader_.left() != 0; }
+    void end() const { require(!left()); }
 
   private:
     Reader reader_;
@@ -106,6 +107,13 @@ EarlyGraph EarlyGraph::parse(const std::string& bytes, std::uint32_t inputs) {
     parsed.graph.check();
     for (std::uint32_t i = 0; i < items; ++i)
         parsed.truth.push_back(read_item(reader, nodes));
+    for (std::uint32_t i = 0; i < inputs && reader.left(); ++i) {
+        const double lower = reader.real();
+        const double upper = reader.real();
+        GraphReader::require(lower <= upper);
+        parsed.ranges.push_back({lower, upper});
+    }
+    GraphReader::require(parsed.ranges.empty() || parsed.ranges.size() == inputs);
     reader.end();
     parsed.robustness.assign(parsed.truth.begin(), parsed.truth.begin() + first);
     return parsed;
@@ -127,7 +135,7 @@ void EarlyGraph::take_constants(const Program& program) {
 
 EarlyRunner::EarlyRunner(Program program, double period, EarlyGraph graph)
     : program_(std::move(program)), period_(period), graph_(std::move(graph)),
-      engine_(graph_.graph, {}, false), robustness_(graph_.robustness, engine_),
+      engine_(graph_.graph, graph_.ranges, false), robustness_(graph_.robustness, engine_),
       truth_(graph_.truth, engine_), wanted_(engine_.size()), bounds_(robustness_.value()) {
     std::uint32_t before = program_.inputs;
     for (const early::Node& node : graph_.graph.nodes) {
@@ -232,7 +240,7 @@ void EarlyRunner::finish() {
 }
 
 void EarlyRunner::reset() {
-    early::Engine engine(graph_.graph, {}, false);
+    early::Engine engine(graph_.graph, graph_.ranges, false);
     robustness_ = early::Origin(graph_.robustness, engine);
     truth_ = early::Origin(graph_.truth, engine);
     engine_ = std::move(engine);

@@ -10,6 +10,8 @@
 //     nodes           u32 kind, u32 a, u32 b, i64 low, i64 high, i64 horizon, u32 number of steps;
 //                     of each step u32 opcode, u32 a, u32 b, f64 x
 //     items           u32 kind, u32 negated, u32 a, u32 b, u32 c, i64 tick
+//     ranges          none; or of each input f64 least, f64 greatest value: a sample outside is
+//                     refused
 //
 // Step k has the meaning of instruction `inputs` + k, and a constant has its value.
 #pragma once
@@ -30,6 +32,7 @@ struct EarlyGraph {
     early::Graph graph;
     std::vector<early::Item> robustness;
     std::vector<early::Item> truth;
+    std::vector<Bounds> ranges; // by input, or none
 
     // Throws std::invalid_argument with one sentence.
     [[nodiscard]] static EarlyGraph parse(const std::string& bytes, std::uint32_t inputs);
@@ -49,6 +52,7 @@ class EarlyRunner final : public SampledRunner {
     void hold(std::span<const double> row, std::size_t count,
               std::span<rtamt_value> known) override;
     [[nodiscard]] std::int64_t samples() const noexcept override { return samples_; }
+    [[nodiscard]] std::span<const Bounds> ranges() const noexcept override { return graph_.ranges; }
 
     [[nodiscard]] const Program& program() const noexcept override { return program_; }
     [[nodiscard]] bool finished() const noexcept override { return finished_; }

@@ -141,7 +141,8 @@ void Monitor::hold(std::span<const double> row, std::size_t count, std::span<rta
     unbroken([&] { runner.hold(row, count, known); });
 }
 
-// Refuses a sample that has the wrong number of values, or NaN among them.
+// Refuses a sample that has the wrong number of values, or one among them that is NaN or outside
+// its declared range.
 void Monitor::check_row(std::span<const double> row, std::size_t outputs) const {
     const std::int64_t sample = samples();
     if (row.size() != metadata_.inputs.size()) {
@@ -157,6 +158,14 @@ void Monitor::check_row(std::span<const double> row, std::size_t outputs) const 
         if (std::isnan(row[i])) {
             refuse("'" + metadata_.inputs[i] + "' is NaN at " + time_of(sample) +
                    ": fill the gap or leave the sample out.");
+        }
+    }
+    const std::span<const Bounds> ranges = discrete().ranges();
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        if (row[i] < ranges[i].lower || row[i] > ranges[i].upper) {
+            refuse("'" + metadata_.inputs[i] + "' is " + shown(row[i]) + " at " + time_of(sample) +
+                   ", outside its declared range [" + shown(ranges[i].lower) + ", " +
+                   shown(ranges[i].upper) + "]: correct the value, or declare a wider range.");
         }
     }
 }

@@ -6,6 +6,7 @@
 #include "../program/metadata.hpp"
 #include "../program/program.hpp"
 #include "../program/snapshot.hpp"
+#include "../values/interval.hpp"
 #include "rtamt.h"
 
 #include <cstddef>
@@ -66,6 +67,9 @@ class SampledRunner : public Runner {
     virtual void hold(std::span<const double> row, std::size_t count,
                       std::span<rtamt_value> known) = 0;
     [[nodiscard]] virtual std::int64_t samples() const noexcept = 0;
+
+    // The values that each input may have; none where all may have any.
+    [[nodiscard]] virtual std::span<const Bounds> ranges() const noexcept { return {}; }
 };
 
 class DiscreteRunner final : public SampledRunner {

@@ -81,7 +81,8 @@ class Specification(OnlineSpecification):
         error). Then, and with ``uncertainty``, the result has bounds: ``result.interval`` at the first instant,
         ``result.intervals`` at each. Where both are equal, the robustness is that number. ``uncertainty``: from
         a variable to the largest error of its samples, in either direction. ``ranges``: from a
-        variable to its lowest and highest possible value, which bound missing samples.
+        variable to its lowest and highest possible value, by default its declared range. They bound missing and
+        uncertain samples; if there are any, a sample outside is an error.
 
         Raises :class:`TraceError` if the data is invalid, :class:`BoundError` if an interval is
         not a multiple of the period, :class:`EvaluationError` if an operation is undefined.
@@ -223,6 +224,8 @@ class Specification(OnlineSpecification):
         recording, missing = self._normalised(query, data)
         if self.resolved is not None:
             recording = recording.ended_by(self.resolved[0].input_names)
+        if missing or uncertainty is not None:  # exact recordings are not checked
+            declared = declared.within(self.ranges)
         return declared.applied(recording, missing)
 
     def _normalised(self, query: Query, data: Any) -> tuple[DomainTrace, dict[str, Any]]:

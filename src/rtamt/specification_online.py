@@ -147,10 +147,11 @@ class OnlineSpecification(QuantifiedText):
         of the robustness from the samples so far; ``"causation"``, by how much the sample alone violates or
         satisfies the formula. The last three also accept unbounded future; in dense time they report runs of
         instants. ``at``: the instants that ``"interval"`` reports: the ``"start"`` of the trace (the default
-        for unbounded future), or ``"every"`` one. ``ranges``: from a variable to its lowest and highest value
-        (``"eager"``, ``"interval"``). ``lateness``: how late a sample may arrive (``"interval"``); without it,
-        the samples of each variable must arrive in order in dense time. ``on_correction``: whether to ``"reject"`` or
-        ``"replay"`` a sample that contradicts an earlier one (``"interval"``). ``episodes``: whether the monitor
+        for unbounded future), or ``"every"`` one. ``ranges``: from a variable to its lowest and highest value, by
+        default its declared range (``"eager"``, ``"interval"``); a sample outside is an error. ``lateness``: how late a
+        sample may arrive (``"interval"``); without it, the samples of each variable must arrive in order in dense
+        time. ``on_correction``: whether to ``"reject"`` or ``"replay"`` a sample that contradicts an earlier one
+        (``"interval"``). ``episodes``: whether the monitor
         records runs of violation, which ``monitor.episodes()`` returns (``"delayed"``). ``worst_case``: for real-time
         use, whether no update may take longer than others, whatever the bounds (``"delayed"``, discrete time); the
         results are the same, and sums over windows are rejected. ``explain``: whether it
@@ -193,6 +194,8 @@ class OnlineSpecification(QuantifiedText):
             verdict=verdict,
             **settings,
         )
+        if "ranges" in mode.settings:
+            settings["ranges"] = {**self.ranges, **(ranges or {})}
         domain = self._domain_for(time, period, tolerance, resolution).online
         require_samples(domain, worst_case=worst_case)
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
@@ -312,7 +315,8 @@ class OnlineSpecification(QuantifiedText):
 
         With ``verdict="interval"`` its outputs are bounds at the start of the trace, valid for every continuation:
         ``lower``, ``upper``, ``verdict``, and ``decided_since``, the seconds from the first sample to the one that
-        decided the verdict. The future may then be unbounded; time is discrete.
+        decided the verdict. The future may then be unbounded; time is discrete. Declared ranges bound later samples,
+        and the program refuses a sample outside.
 
         >>> import rtamt
         >>> program = rtamt.parse("always[0:200ms](x >= 3)").compile(period="100ms")
@@ -329,7 +333,9 @@ class OnlineSpecification(QuantifiedText):
             if verdict != "interval":
                 raise UsageError(f"verdict='{verdict}' cannot be compiled; choose from {DELAYED}, interval")
             applied = self._apply_semantics(self.formula, chosen)
-            return bounds_program(self.formula, domain, applied=applied, text=self.text, name=self.name)
+            return bounds_program(
+                self.formula, domain, applied=applied, text=self.text, name=self.name, ranges=self.ranges
+            )
         several = self.requirements if len(self.requirements) > 1 else {}
         parts = {name: one._outputs(chosen) for name, one in several.items()}
         program = carried_program(

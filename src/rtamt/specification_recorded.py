@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -60,6 +61,24 @@ class RecordedSpecification(SpecificationText):
         """
         declared = {d.name: d.unit for d in self.document.declarations if d.unit}
         return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
+
+    @cached_property
+    def ranges(self) -> Mapping[str, tuple[float, float]]:
+        """The ranges that the text declares of the variables that the formula reads.
+
+        They bound samples that are missing or not yet known; a sample outside is then an error.
+
+        >>> import rtamt
+        >>> dict(rtamt.parse("input float v in [0, 60]; always(v <= 30)").ranges)
+        {'v': (0.0, 60.0)}
+        """
+        declared = {d.name: d.range for d in self.document.declarations if d.range is not None}
+        return MappingProxyType({name: declared[name] for name in self.input_names if name in declared})
+
+    @property
+    def _unlimited(self) -> dict[str, tuple[float, float]]:
+        """What ``ranges=`` takes where declared ranges must not count."""
+        return dict.fromkeys(self.ranges, (-inf, inf))
 
     @cached_property
     def recorded(self) -> Mapping[str, str]:

@@ -91,5 +91,5 @@ def loose_variable(facts: Facts) -> str | None:
 
 def cut_operator(facts: Facts) -> str | None:
     """Return an operator whose windows may lose at the end of a discrete trace what was decided before."""
-    found = ends_differently(_grounded(facts.spec, boolean(facts.spec.formula)), {})
+    found = ends_differently(_grounded(facts.spec, boolean(facts.spec.formula)), facts.spec.ranges)
     return None if found is None else found.op.name

@@ -39,7 +39,7 @@ class Declaration:
 
     ``unit``: as written, such as m/s. ``columns``: the recorded names of the variable, the preferred one first.
     ``optional``: whether recordings may lack it; requirements that read it are then not checked. ``range``: its least
-    and its greatest value, for analyses without a recording. ``rate``: its least and its greatest change, per second.
+    and its greatest value, also of samples that are not known. ``rate``: its least and its greatest change, per second.
     """
 
     name: str

@@ -51,7 +51,9 @@ def band(result: Result) -> Band:
     replay = trace.domain.part("replay")
     if replay is None:
         raise UsageError(f"bounds are not drawn in {trace.domain.name} time; plot without them")
-    monitor = StartMonitor(result.specification, time=trace.domain, semantics=result.semantics)
+    spec = result.specification
+    # Evaluations do not check declared ranges, so that a sample may lie outside.
+    monitor = StartMonitor(spec, time=trace.domain, semantics=result.semantics, ranges=spec._unlimited)
     times, lower, upper = [], [], []
     decided = None
     for time in replay(trace, monitor):

@@ -170,7 +170,7 @@ class Problem:
             if not whole and not holds_at_end(spec):
                 return None
         try:
-            return StartMonitor(spec)
+            return StartMonitor(spec, ranges=spec._unlimited)  # evaluations do not check declared ranges
         except UsageError:
             return None
 
@@ -182,7 +182,7 @@ class Problem:
         data: dict[str, list[Any]] = {TIME: times + [times[-1] + float(k * period) for k in rest]}
         for name, column in columns.items():
             data[name] = column + [None] * len(rest)
-        return self.spec.evaluate(data).interval
+        return self.spec.evaluate(data, ranges=self.spec._unlimited).interval
 
     @property
     def _total(self) -> int | None:

@@ -56,6 +56,10 @@ class Uncertainty:
             limits[name] = range_of(name, value)
         return cls(errors, limits)
 
+    def within(self, ranges: Mapping[str, tuple[float, float]]) -> Uncertainty:
+        """Return the same with ranges for the variables that have none."""
+        return Uncertainty(self.errors, {**ranges, **self.ranges}) if ranges else self
+
     def applied(self, recording: DomainTrace, missing: Mapping[str, Mask]) -> DomainTrace:
         """Return the recording with bounds of its samples; unchanged if all are known exactly.
 

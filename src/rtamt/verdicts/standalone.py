@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -87,6 +88,7 @@ def carried_program(
 BOUNDS = ("lower", "upper", "verdict", "decided_since")
 
 _NODE, _STEP, _ITEM = struct.Struct("<IIIqqqI"), struct.Struct("<IIId"), struct.Struct("<IIIIIq")
+_RANGE = struct.Struct("<dd")
 
 
 def bounds_program(
@@ -96,10 +98,12 @@ def bounds_program(
     applied: Formula | None = None,
     text: str | None = None,
     name: str | None = None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
 ) -> Program:
     """Compile a requirement for carriers that report outputs :data:`BOUNDS`, in discrete time.
 
-    Arguments as for :func:`carried_program`. The future may be unbounded.
+    Arguments as for :func:`carried_program`; ``ranges``: of variables, which bound samples that did not come yet. The
+    future may be unbounded.
 
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> from rtamt.signals.discrete import Discrete
@@ -127,6 +131,9 @@ def bounds_program(
         )
         parts += [_STEP.pack(*step) for step in node.steps]
     parts += [_ITEM.pack(*item) for item in graph.items]
+    limits = ranges or {}
+    if not limits.keys().isdisjoint(inputs):
+        parts += [_RANGE.pack(*limits.get(name, (-inf, inf))) for name in inputs]
     # Step k of the graph means what instruction k after the inputs does.
     steps = [step for node in graph.nodes for step in node.steps]
     instructions = [Instruction("input", n=i) for i in range(len(inputs))]

@@ -384,3 +384,15 @@ def test_the_samples_that_decide_a_verdict_name_members_and_booleans(run):
     stdin = jsonl({"mode": 4, "p": 1}, {"mode": 0, "p": True})
     answer = run("monitor", text, "--verdict", "eager", "--explain", stdin=stdin).out.splitlines()[0]
     assert [cause["value"] for cause in json.loads(answer)["causes"]] == [True, "MANUAL"]
+
+
+@pytest.mark.parametrize("verdict", [["--verdict", "eager"], ["--verdict", "interval"], []])
+def test_a_sample_outside_its_declared_range_is_reported_before_the_horizon(run, verdict):
+    formula = "input float x in [0, 10]  always" + ("[0:1]" if verdict else "") + "(x <= 12)"
+    answer = run("monitor", formula, *verdict, stdin="time,x\n0,3\n1,11\n")
+    assert (answer.code, answer.err) == (
+        2,
+        "rtamt: stdin, line 3: 'x' is 11.0 at sample 1, time 1 s, outside its declared range [0, 10]: correct the "
+        "value, or declare a wider range\n",
+    )
+    assert len(answer.out.splitlines()) == 1

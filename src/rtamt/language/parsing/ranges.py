@@ -6,7 +6,8 @@
     rate  = "rate" , "[" , value , "," , value , "]"
 
 Analyses that know no recording suppose that the variable stays in its range, and that its change from sample to sample,
-divided by the sampling period in seconds, stays in its rate. Evaluations check neither.
+divided by the sampling period in seconds, stays in its rate. Verdicts before the horizon suppose the range of
+samples that did not come yet, and reject a sample outside. Evaluations of exact recordings check neither.
 """
 
 from __future__ import annotations
