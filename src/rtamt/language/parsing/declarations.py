@@ -95,7 +95,7 @@ class DeclarationParser(ImportParser):
         pattern = self.next()
         if pattern.name.count("*") != 1 or not pattern.name.isprintable():
             raise self.error(
-                f"the pattern of a group has one star, which stands for what tells its members apart, such as "
+                f"the pattern of a group has one star, which stands for the name of a member, such as "
                 f'"{name.text}_*"; got {pattern}',
                 pattern.span,
             )
