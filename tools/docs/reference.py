@@ -250,7 +250,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         "",
         (
             "rtamt.scale.shard.Shard", "rtamt.scale.messages.MessageReader", "rtamt.scale.kafka.Worker",
-            "rtamt.scale.kafka.Settings", "rtamt.scale.checkpoints.Checkpoints",
+            "rtamt.scale.kafka_settings.Settings", "rtamt.scale.checkpoints.Checkpoints",
         ),
     ),
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),

@@ -20,8 +20,10 @@ import rospy
 
 from rtamt import load
 from rtamt.errors import StlError
+from rtamt.metrics import exported
 from rtamt.ros.binding import MessageType
 from rtamt.ros.diagnostics import Level
+from rtamt.ros.metrics import note
 from rtamt.ros.options import options, parser
 from rtamt.ros.publisher import DIAGNOSTICS, Publisher
 
@@ -39,12 +41,14 @@ LOGS = {
 class Node:
     """Carries messages to a monitor, and what comes out to topics."""
 
-    def __init__(self, monitor):
+    def __init__(self, monitor, metrics=None):
         self.monitor = monitor
+        self.metrics = metrics
         self.lock = threading.Lock()
         self.simulated = rospy.get_param("/use_sim_time", False)
         self.outbox = Publisher(monitor.binding, MessageType.load, stamp)
-        self.heard = monitor.wanted = set()  # topics with subscribers; the others get no messages
+        self.heard = set()  # topics with subscribers; the others get no messages, but metrics need all
+        monitor.wanted = self.heard if metrics is None else None
         self.publishers = {topic: self.publisher(topic, cls) for topic, cls in self.outbox.topics.items()}
         self.diagnostics = self.on_diagnostics()
         self.due = 0.0
@@ -115,6 +119,7 @@ class Node:
 
     def publish(self, records):
         """Publish robustness and verdicts to those who listen."""
+        note(self.metrics, records, rospy.Time.now().to_nsec())
         for record in records:
             self.publishers[self.outbox.topic(record)].publish(self.outbox.message(record))
 
@@ -199,15 +204,17 @@ def main():
         name = (load(arguments.spec).name if arguments.spec else None) or "stl_monitor"
         rospy.init_node(name, anonymous=True)
         parameters = rospy.get_param("~", {})
-        node = Node(options(arguments, parameters).monitor())
+        monitor = options(arguments, parameters).monitor()
+        with exported(arguments) as metrics:
+            node = Node(monitor, metrics)
+            Registration().start()
+            gc.freeze()  # what is here stays: looking through it again and again would make messages wait
+            node.run()
     except StlError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2
     except rospy.ROSInterruptException:
         return 0
-    Registration().start()
-    gc.freeze()  # what is here stays: looking through it again and again would make messages wait
-    node.run()
     return 0
 
 

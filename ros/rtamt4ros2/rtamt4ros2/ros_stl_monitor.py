@@ -20,8 +20,10 @@ from rclpy.utilities import remove_ros_args
 
 from rtamt import load
 from rtamt.errors import StlError
+from rtamt.metrics import exported
 from rtamt.ros.binding import MessageType
 from rtamt.ros.dds.participant import Quality
+from rtamt.ros.metrics import note
 from rtamt.ros.monitor import PAUSE
 from rtamt.ros.options import DEFAULTS, options, parser
 from rtamt.ros.publisher import DIAGNOSTICS, Publisher, diagnostic
@@ -33,7 +35,8 @@ DIAGNOSTICS_EVERY = 1.0  # seconds of wall time
 class Monitor(Node):
     """Carries messages to a monitor, and what comes out to topics."""
 
-    def __init__(self, arguments):
+    def __init__(self, arguments, metrics):
+        self.metrics = metrics
         name = (load(arguments.spec).name if arguments.spec else None) or "stl_monitor"
         super().__init__(name)
         # The command line makes a number of 1, a launch file may make a text of it: both are taken.
@@ -86,6 +89,7 @@ class Monitor(Node):
 
     def publish(self, records):
         """Publish robustness and verdicts."""
+        note(self.metrics, records, self.now())
         for record in records:
             self.senders[self.outbox.topic(record)].publish(self.outbox.message(record))
 
@@ -120,8 +124,9 @@ def main():
     """Run the node until it is shut down; return the exit code."""
     rclpy.init(args=sys.argv)
     try:
-        node = Monitor(parser(PROGRAM).parse_args(remove_ros_args(sys.argv)[1:]))
-        node.run()
+        arguments = parser(PROGRAM).parse_args(remove_ros_args(sys.argv)[1:])
+        with exported(arguments) as metrics:
+            Monitor(arguments, metrics).run()
     except StlError as error:
         print(f"{PROGRAM}: {error}", file=sys.stderr)
         return 2

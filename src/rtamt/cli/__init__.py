@@ -1,38 +1,39 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``,
-``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``, ``analyze``,
+``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
-===============  =============================================================
-module           purpose
-===============  =============================================================
-parser           ``Command``, the argument parser, exit codes
-command          options of several commands, and how values are printed
-arguments        specifications and recordings on the command line
-reading_options  options for reading recordings
-parameters       the option ``--set``
-language         the option ``--language``
-conclusions      the answers of analyses: text, JSON and plots
-outcome          the outcome of a requirement on a recording, as reports show it
-runner           every requirement on every recording, on all cores
-many             very many recordings: ``rtamt check --engine``
-early_outcomes   the same, reading a recording no further than the verdicts need
-chunks           a recording that is read in chunks
-bag              check a bag, and write a copy with the results
-stdin_reader     JSON or CSV lines to samples
-stream_members   the members of groups in JSON or CSV lines
-json_lines       a line of JSON to numbers and timestamps
-early_feeds      verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
-held_feed        streams whose variables arrive at any time, sampled by ``sample ... hold``
-live_view        the live view of ``rtamt monitor``
-terminal         output, colours, tables, progress
-numpy_on_use     numpy is imported when a command first uses it
-facts            the properties that ``rtamt info`` prints
-compiled         ``rtamt info`` for compiled programs
-reports          JUnit, SARIF and HTML reports
-===============  =============================================================
+================  =============================================================
+module            purpose
+================  =============================================================
+parser            ``Command``, the argument parser, exit codes
+command           options of several commands, and how values are printed
+arguments         specifications and recordings on the command line
+reading_options   options for reading recordings
+parameters        the option ``--set``
+language          the option ``--language``
+conclusions       the answers of analyses: text, JSON and plots
+outcome           the outcome of a requirement on a recording, as reports show it
+runner            every requirement on every recording, on all cores
+many              very many recordings: ``rtamt check --engine``
+early_outcomes    the same, reading a recording no further than the verdicts need
+chunks            a recording that is read in chunks
+bag               check a bag, and write a copy with the results
+stdin_reader      JSON or CSV lines to samples
+stream_members    the members of groups in JSON or CSV lines
+json_lines        a line of JSON to numbers and timestamps
+early_feeds       verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
+held_feed         streams whose variables arrive at any time, sampled by ``sample ... hold``
+robustness_lines  the lines of ``rtamt monitor`` for the robustness of each instant
+live_view         the live view of ``rtamt monitor``
+terminal          output, colours, tables, progress
+numpy_on_use      numpy is imported when a command first uses it
+facts             the properties that ``rtamt info`` prints
+compiled          ``rtamt info`` for compiled programs
+reports           JUnit, SARIF and HTML reports
+================  =============================================================
 """
 
 from __future__ import annotations
@@ -59,7 +60,6 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("explain", "report which instants of which signals decide the verdict"),
             ("plot", "plot signals, robustness and the cause of the verdict"),
             ("report", "write an interactive page: signals, robustness, explanations"),
-            ("play", "edit requirements and signals in a local web page, evaluated while typing"),
             ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
             ("worker", "monitor the samples of a Kafka topic, for many vehicles"),
             ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),

@@ -41,6 +41,7 @@ PACK = "pack:"
 _SPECIFICATION_SUFFIXES = (".stl",)
 #: Titles under which the help lists options.
 SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
+METRICS = "metrics (pip install 'rtamt[metrics]')"
 _LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 

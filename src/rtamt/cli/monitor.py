@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections import deque
 from contextlib import nullcontext
@@ -12,25 +11,26 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from rtamt.cli.command import (
+    METRICS,
     CommandError,
     add_specification_options,
     add_stamp_options,
     add_time_option,
     add_worst_case_option,
-    json_number,
+    options,
     read_specification,
-    stamp_text,
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.held_feed import HeldFeed
 from rtamt.cli.json_lines import STDIN
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
+from rtamt.cli.robustness_lines import Output
 from rtamt.cli.stdin_reader import Samples, lines_of
 from rtamt.cli.stream_members import StreamMembers
-from rtamt.cli.terminal import printed, say
+from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, TraceError
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.metrics import add_metrics_options, exported
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.sampling import HeldSampler
@@ -42,10 +42,11 @@ from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from rtamt.engine.dense.monitor import DenseMonitor
     from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.metrics import Metrics
     from rtamt.specification import Specification
 
 #: By how much, as a fraction, a gap may miss a period that it is: timestamps since 1970 are no more precise.
@@ -126,6 +127,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with --verdict eager, print the samples that decided each verdict",
     )
     add_worst_case_option(parser)
+    add_metrics_options(options(parser, METRICS))
     parser.add_argument(
         "--live", action="store_true", help="draw verdict, robustness and values on the terminal"
     )
@@ -134,6 +136,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read samples until the end of input, print what becomes known."""
+    with exported(args) as metrics:
+        return _run(args, metrics)
+
+
+def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
     if args.tolerance is not None and not args.tolerance >= 0:
         raise CommandError(f"the tolerance is {args.tolerance:g}; give a fraction of the period, such as 0.1")
     spec = read_specification(args, args.time)
@@ -141,11 +148,17 @@ def run(args: argparse.Namespace) -> int:
         _check_quantified(spec, args)
     own_times = spec.domain.own_time_bases
     live = _live(spec) if args.live else None
-    output = Output(verdicts=spec.semantics == "boolean", live=live)
+    output = Output(
+        verdicts=spec.semantics == "boolean", live=live, metrics=metrics, name=spec.name or "requirement"
+    )
     names = tuple(spec.requirements) if len(spec.requirements) > 1 else ()
     watched: Feed
     early = _early(spec, args, live)
     if early is not None:
+        if metrics is not None:
+            raise CommandError(
+                f"metrics are those of the robustness: leave out --metrics and --otlp, or use --verdict {DELAYED}"
+            )
         watched = early
     elif own_times:
         monitor: Any = spec.monitor(watch=names)
@@ -172,10 +185,12 @@ def run(args: argparse.Namespace) -> int:
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object per line; Ctrl-D ends")
     with nullcontext() if live is None else live:
-        return _follow(watched, samples, live, keep_going=args.keep_going)
+        return _follow(watched, samples, live, metrics, keep_going=args.keep_going)
 
 
-def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: bool) -> int:
+def _follow(
+    watched: Feed, samples: Samples, live: Live | None, metrics: Metrics | None, *, keep_going: bool
+) -> int:
     """Feed the monitor from stdin until the end of input; return the exit code."""
     code = OK
     for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
@@ -190,6 +205,8 @@ def _follow(watched: Feed, samples: Samples, live: Live | None, *, keep_going: b
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)
                 live.sample(sample[1], whole=samples.members is not None)
+        if metrics is not None and (problem or sample is not None):
+            metrics.count("rtamt_rejected_total" if problem else "rtamt_samples_total")
         if problem:
             complain(problem)
             code = ERROR
@@ -258,32 +275,6 @@ def _live(spec: Specification) -> Live:
     if not sys.stderr.isatty():
         raise CommandError("--live draws on a terminal, and stderr is none: leave it out")
     return Live(printed(spec.formula), units=spec.units, types=spec.types)
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """Prints new results, one JSON object per line; with ``verdicts`` also whether the formula holds.
-
-    What is drawn live replaces it on a terminal, and goes beside it into a pipe or a file.
-    """
-
-    verdicts: bool
-    live: Live | None = None
-
-    def point(self, time: Any, robustness: float, parts: Mapping[str, float]) -> None:
-        """Print the robustness at one instant; ``parts``: of each of several requirements."""
-        if self.live is not None:
-            self.live.point(time, robustness)
-            if sys.stdout.isatty():
-                return
-        # The time by hand: it may have more digits than a double.
-        stamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
-        rest: dict[str, Any] = {"robustness": json_number(robustness)}
-        if self.verdicts:
-            rest["satisfied"] = robustness > 0
-        if parts:
-            rest["requirements"] = {name: json_number(value) for name, value in parts.items()}
-        say(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
 
 
 class SampleFeed:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.arguments import requirements_and_traces
 from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
 from rtamt.cli.parser import OK, VIOLATED
-from rtamt.cli.reading_options import add_reading_options, on_time_base, read_for, reading_of, recording
+from rtamt.cli.reading_options import add_reading_options, on_clock, read_for, reading_of, recording
 from rtamt.cli.terminal import Progress, say, table, width_of
 from rtamt.files import replacing
 from rtamt.readers.sql import shown
@@ -90,7 +90,7 @@ def _read(args: argparse.Namespace, spec: Specification, trace: str, reading: Re
     """Read a recording as ``rtamt check`` does; of a quantified specification all signals, which may be of members."""
     if spec.groups:
         return recording(args, trace)
-    return on_time_base(spec.binding.applied(read_for([spec], trace, reading)), spec, trace, reading)
+    return on_clock(spec.binding.applied(read_for([spec], trace, reading)), spec, trace, reading)
 
 
 def _print(found: Mutation, *, every: bool) -> None:

@@ -63,6 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Monitor until the node is terminated."""
+    from rtamt.metrics import exported
     from rtamt.ros.dds.node import Node
     from rtamt.ros.dds.participant import Participant, Quality
     from rtamt.ros.dds.types import Types
@@ -73,8 +74,13 @@ def run(args: argparse.Namespace) -> int:
     types = Types(args.distro, args.messages)
     monitor.binding.check(types.load)
     participant = Participant(args.node or monitor.binding.name, types, quality)
-    node = Node(monitor, participant, types, simulated=args.sim_time)
-    for output in monitor.binding.outputs:
-        say(f"{output.name} on {output.topic}: {output.specification.formula}", file=sys.stderr, flush=True)
-    node.run()
+    with exported(args) as metrics:
+        node = Node(monitor, participant, types, simulated=args.sim_time, metrics=metrics)
+        for output in monitor.binding.outputs:
+            say(
+                f"{output.name} on {output.topic}: {output.specification.formula}",
+                file=sys.stderr,
+                flush=True,
+            )
+        node.run()
     return OK

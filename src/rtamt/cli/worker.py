@@ -7,6 +7,7 @@ import signal
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
+    METRICS,
     READING,
     CommandError,
     add_specification_options,
@@ -15,10 +16,14 @@ from rtamt.cli.command import (
     read_specification,
 )
 from rtamt.cli.parser import OK, complain
+from rtamt.metrics import add_metrics_options
 from rtamt.signals.domains import DEFAULT
 
 if TYPE_CHECKING:
     import argparse
+    from collections import Counter
+
+    from rtamt.metrics import Metrics
 
 _DESCRIPTION = """\
 Monitor the samples of a Kafka topic, and write the robustness to another one. Workers of one group share the
@@ -120,11 +125,25 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="the largest number of keys of a partition (default: 1000000)",
     )
+    add_metrics_options(options(parser, METRICS))
 
 
 def run(args: argparse.Namespace) -> int:
     """Work until a signal, or the end of the messages."""
-    from rtamt.scale.kafka import Settings, Worker
+    from rtamt.metrics import exported
+
+    with exported(args) as metrics:
+        counts = _worked(args, metrics)
+    complain(
+        f"{counts['samples']} samples, {counts['results']} results, {counts['violations']} of them violations, "
+        f"{counts['late']} late, {counts['rejected']} rejected"
+    )
+    return OK
+
+
+def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
+    from rtamt.scale.kafka import Worker
+    from rtamt.scale.kafka_settings import Settings
     from rtamt.scale.messages import MessageReader, decoder
 
     if not args.interval > 0:
@@ -150,7 +169,7 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError("the topics of samples, results and dead letters must be three different ones")
     given: dict[str, Any] = {} if args.capacity is None else {"capacity": args.capacity}
     given |= {} if args.tolerance is None else {"tolerance": args.tolerance}
-    worker = Worker(spec, reader, settings, say=complain, **given)
+    worker = Worker(spec, reader, settings, say=complain, metrics=metrics, **given)
     before = [
         (each, signal.signal(each, lambda *_: worker.stop())) for each in (signal.SIGTERM, signal.SIGINT)
     ]
@@ -159,12 +178,7 @@ def run(args: argparse.Namespace) -> int:
     finally:
         for each, handler in before:
             signal.signal(each, handler)
-    counts = worker.counts
-    complain(
-        f"{counts['samples']} samples, {counts['results']} results, {counts['violations']} of them violations, "
-        f"{counts['late']} late, {counts['rejected']} rejected"
-    )
-    return OK
+    return worker.counts
 
 
 def _schemas(given: list[str]) -> dict[int | None, str]:

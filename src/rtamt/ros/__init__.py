@@ -14,6 +14,7 @@ output_group         outputs whose robustness is reported
 early_group          outputs that are monitored before their horizon
 groups               the groups of each time domain
 diagnostics          conditions as ROS diagnostics
+metrics              metrics of a node, from its records
 publisher            output as messages
 message_definitions  the definitions of ``rtamt_msgs``
 bags                 columns of a bag; a copy of a bag with added results

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.metrics import add_metrics_options
 from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments
@@ -146,6 +147,7 @@ def add_options(made: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE,...",
         help="values of parameters that the specification declares, such as limit=3,gap=2",
     )
+    add_metrics_options(made)
 
 
 def options(arguments: argparse.Namespace, parameters: Mapping[str, Any]) -> Options:

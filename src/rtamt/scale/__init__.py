@@ -19,6 +19,7 @@ messages              messages of a broker to samples: JSON, Avro, protobuf
 avro                  messages in Avro, whose schemas are bounded
 protobuf              messages in protobuf, by descriptors
 checkpoints           state and offset of a shard, in one object of a folder or an object store
+kafka_settings        where a worker reads and writes, and the settings of its clients
 kafka                 the worker: a consumer group, one partition a shard
 ====================  =====================================================================
 

@@ -17,55 +17,24 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
-from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.scale.checkpoints import Checkpoint, Checkpoints
 from rtamt.scale.shard import Sample, Shard
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from rtamt.metrics import Metrics
+    from rtamt.scale.kafka_settings import Settings
     from rtamt.scale.messages import MessageReader
-    from rtamt.scale.shard import Rejected, Result
+    from rtamt.scale.shard import Rejected, Result, Taken
     from rtamt.specification import Specification
 
-#: Settings of the client that a worker depends on.
-_OWN = {
-    "bootstrap.servers": "--brokers",
-    "group.id": "--group",
-    "enable.auto.commit": "a worker commits with its checkpoints",
-    "enable.auto.offset.store": "a worker commits with its checkpoints",
-    "auto.offset.reset": "--from",
-    "enable.partition.eof": "--until-end",
-    "enable.idempotence": "results must not be sent twice",
-    "delivery.report.only.error": "a worker looks at errors alone",
-}
 #: The most messages that are taken together, and seconds until fewer are.
 _BATCH, _WAIT = 5000, 0.1
 #: Seconds for what a broker answers at once.
 _ANSWER = 10.0
 #: The longest text of an error in a dead letter.
 _LONGEST_ERROR = 1000
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Where a worker reads and writes.
-
-    ``checkpoints``: a folder or an address, None for none; ``interval``: seconds between checkpoints. ``beginning``:
-    whether a partition without a checkpoint is read from its start. ``until_end``: whether to end when all messages are
-    read. ``client``: settings of librdkafka, those of one client with ``consumer.`` or ``producer.`` before them.
-    """
-
-    brokers: str
-    topic: str
-    group: str
-    output: str
-    dead_letters: str
-    checkpoints: str | None = None
-    interval: float = 10.0
-    beginning: bool = True
-    until_end: bool = False
-    client: Mapping[str, str] = field(default_factory=dict)
 
 
 class _Partition:
@@ -78,7 +47,7 @@ class _Partition:
 
 
 class Worker:
-    """Monitors the samples of a topic; ``say``: takes sentences for the operator.
+    """Monitors the samples of a topic; ``say``: takes sentences for the operator; ``metrics``: what exporters read.
 
     ``counts``: what has happened since the start: ``samples``, ``results``, ``violations``, ``late``, ``rejected``.
     """
@@ -90,15 +59,13 @@ class Worker:
         settings: Settings,
         *,
         say: Callable[[str], None] = print,
+        metrics: Metrics | None = None,
         **options: Any,
     ) -> None:
         self._kafka = library("confluent_kafka", "a worker on Kafka", "kafka")
-        for name in settings.client:
-            own = name.removeprefix("consumer.").removeprefix("producer.")
-            if own in _OWN:
-                raise UsageError(f"the setting '{own}' of the client cannot be chosen: {_OWN[own]}")
         self._spec, self._reader, self._settings, self._say = spec, reader, settings, say
-        self._options = options
+        self._options, self._metrics = options, metrics
+        self._name = spec.name or "requirement"
         Shard(spec, **options)  # what a fleet cannot monitor is an error now
         place = settings.checkpoints
         self._checkpoints = None if place is None else Checkpoints(place, settings.group, settings.topic)
@@ -108,36 +75,18 @@ class Worker:
         self._failure: str | None = None
         self._said: set[str] = set()
         self.counts: Counter[str] = Counter()
+        self._consumer, self._producer = self._clients()
+
+    def _clients(self) -> tuple[Any, Any]:
+        """Return the consumer and the producer."""
+        own = {"error_cb": self._trouble}
         try:
-            self._consumer = self._kafka.Consumer(self._client("consumer."))
-            self._producer = self._kafka.Producer(self._client("producer."))
+            return (
+                self._kafka.Consumer(self._settings.consumer() | own),
+                self._kafka.Producer(self._settings.producer() | own | {"on_delivery": self._undelivered}),
+            )
         except (self._kafka.KafkaException, ValueError, TypeError) as error:
             raise UsageError(f"the settings of the client are wrong: {_text(error)}") from None
-
-    def _client(self, prefix: str) -> dict[str, Any]:
-        """Return the settings of the consumer or the producer."""
-        other = {"consumer.": "producer.", "producer.": "consumer."}[prefix]
-        chosen = {
-            name.removeprefix(prefix): value
-            for name, value in self._settings.client.items()
-            if not name.startswith(other)
-        }
-        own: dict[str, Any] = {"bootstrap.servers": self._settings.brokers, "error_cb": self._trouble}
-        if prefix == "consumer.":
-            own |= {
-                "group.id": self._settings.group,
-                "enable.auto.commit": False,
-                "enable.auto.offset.store": False,
-                "auto.offset.reset": "error",  # an offset that is gone means lost samples
-                "enable.partition.eof": True,
-            }
-        else:
-            own |= {
-                "enable.idempotence": True,
-                "delivery.report.only.error": True,
-                "on_delivery": self._undelivered,
-            }
-        return {**({"linger.ms": "20"} if prefix == "producer." else {}), **chosen, **own}
 
     def stop(self) -> None:
         """Let :meth:`run` end after the messages that it has; may be called from a signal handler."""
@@ -155,6 +104,7 @@ class Worker:
                 self._take(self._consume())
                 self._producer.poll(0)
                 self._fail()
+                self._measure()
                 if time.monotonic() >= due:
                     self._save(self._partitions)
                     due = time.monotonic() + self._settings.interval
@@ -179,6 +129,12 @@ class Worker:
             if high >= 0:
                 found[number] = max(0, high - (max(low, 0) if partition.offset is None else partition.offset))
         return found
+
+    def _measure(self) -> None:
+        if self._metrics is not None:
+            self._metrics.set("rtamt_keys", self.keys)
+            lag = {str(number): float(messages) for number, messages in self.lag().items()}
+            self._metrics.replace("rtamt_lag_messages", "partition", lag)
 
     def _is_done(self) -> bool:
         return self._settings.until_end and bool(self._partitions) and self._ended >= self._partitions.keys()
@@ -244,10 +200,25 @@ class Worker:
                     origins.append(message)
             taken = partition.shard.take(samples)
             self._send(taken.results)
+            self._note(samples, taken)
             for rejected in taken.rejected:
                 self._divert(origins[rejected.position], rejected)
             partition.offset = some[-1].offset() + 1
             self.counts["samples"] += len(samples) - len(taken.rejected)
+
+    def _note(self, samples: Sequence[Sample], taken: Taken) -> None:
+        """Pass what a batch has led to on to exporters."""
+        metrics = self._metrics
+        if metrics is None:
+            return
+        metrics.count("rtamt_samples_total", len(samples) - len(taken.rejected))
+        for verdict, count in Counter(result.satisfied for result in taken.results).items():
+            metrics.verdict(self._name, verdict, count)
+        if taken.results:
+            lowest = min(result.robustness for result in taken.results)
+            metrics.set("rtamt_robustness", lowest, requirement=self._name)
+        if samples:
+            metrics.set("rtamt_lag_seconds", time.time() - max(sample.time for sample in samples))
 
     def _read(self, message: Any) -> Sample | None:
         """Return the sample in a message; None for what has become a dead letter."""
@@ -269,6 +240,8 @@ class Worker:
     def _bury(self, message: Any, error: str, reason: str) -> None:
         """Send a message to the dead letters, as it came, with the error and its origin."""
         self.counts[reason] += 1
+        if self._metrics is not None:
+            self._metrics.count(f"rtamt_{reason}_total")
         headers = {
             "rtamt.error": error[:_LONGEST_ERROR],
             "rtamt.reason": reason,

@@ -16,7 +16,9 @@ from confluent_kafka import Consumer, Producer, TopicPartition
 
 import rtamt
 from rtamt.cli import main
-from rtamt.scale.kafka import Settings, Worker
+from rtamt.metrics import METRICS, Metrics
+from rtamt.scale.kafka import Worker
+from rtamt.scale.kafka_settings import Settings
 from rtamt.scale.messages import MessageReader, decode_json
 from tests.brokers import broker
 
@@ -73,10 +75,12 @@ def rows(brokers, topic):
     return [json.loads(message.value()) for message in received(brokers, f"{topic}.robustness")]
 
 
-def worker(brokers, topic, place, **changes):
+def worker(brokers, topic, place, metrics=None, **changes):
     options = {"until_end": True, "checkpoints": str(place), "client": CLIENT, "interval": 0.2} | changes
     names = (topic, f"group-{topic}", f"{topic}.robustness", f"{topic}.dead-letters")
-    return Worker(SPEC, MessageReader(SPEC, decode_json), Settings(brokers, *names, **options))
+    return Worker(
+        SPEC, MessageReader(SPEC, decode_json), Settings(brokers, *names, **options), metrics=metrics
+    )
 
 
 def offline(series):
@@ -94,13 +98,20 @@ def test_results_are_those_of_each_key_offline(brokers, tmp_path):
     random = np.random.default_rng(1)
     series = {f"car-{i}": random.uniform(0, 60, 5).round(3).tolist() for i in range(100)}
     send(brokers, "cars", [sample(key, t, series[key][t]) for t in range(5) for key in series])
-    first = worker(brokers, "cars", tmp_path)
+    metrics = Metrics()
+    first = worker(brokers, "cars", tmp_path, metrics=metrics)
     first.run()
     assert first.counts["samples"] == 500
     found = rows(brokers, "cars")
     assert sorted((row["key"], row["time"], row["robustness"]) for row in found) == offline(series)
     assert all(row["satisfied"] == (row["robustness"] > 0) for row in found)
     assert first.counts["violations"] == sum(not row["satisfied"] for row in found) > 0
+    values = {name: sum(metrics.values(name).values()) for name in METRICS}
+    assert values["rtamt_samples_total"] == 500
+    assert values["rtamt_verdicts_total"] == 300
+    assert values["rtamt_violations_total"] == first.counts["violations"]
+    assert values["rtamt_lag_messages"] == 0
+    assert (values["rtamt_keys"], len(metrics.values("rtamt_lag_messages"))) == (100, 4)
     again = worker(brokers, "cars", tmp_path)
     again.run()
     assert not again.counts

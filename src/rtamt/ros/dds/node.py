@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import escaped
 from rtamt.ros.dds.participant import LEAST
+from rtamt.ros.metrics import note
 from rtamt.ros.publisher import DIAGNOSTICS, Publisher, diagnostic
 
 if TYPE_CHECKING:
+    from rtamt.metrics import Metrics
     from rtamt.ros.binding import MessageType
     from rtamt.ros.dds.participant import Participant
     from rtamt.ros.dds.types import Types
@@ -25,12 +27,19 @@ _CLOCK = "/clock"
 class Node:
     """Passes messages to a monitor and publishes its output, until it is stopped.
 
-    ``simulated``: time is taken from ``/clock``.
+    ``simulated``: time is taken from ``/clock``. ``metrics``: what exporters read.
     """
 
     def __init__(
-        self, monitor: RosMonitor, participant: Participant, types: Types, *, simulated: bool = False
+        self,
+        monitor: RosMonitor,
+        participant: Participant,
+        types: Types,
+        *,
+        simulated: bool = False,
+        metrics: Metrics | None = None,
     ) -> None:
+        self._metrics = metrics
         self._monitor = monitor
         self._participant = participant
         self._now = 0 if simulated else None
@@ -85,6 +94,7 @@ class Node:
         self._publish(self._monitor.message(topic, message, self._time()))
 
     def _publish(self, records: Any) -> None:
+        note(self._metrics, records, self._time())
         for record in records:
             self._participant.publish(self._outbox.topic(record), self._outbox.message(record))
 
