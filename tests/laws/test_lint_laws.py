@@ -57,7 +57,11 @@ def test_fixes_keep_the_robustness_and_leave_nothing_to_fix(formula, columns):
     assert mended(found.document, parse_document, STL).text == found.text
     assert not any(each.fix for each in findings(found.document))
     assume(rtamt.parse(text).input_names == rtamt.parse(found.text).input_names != ())
-    np.testing.assert_array_equal(robustness(found.document, columns), robustness(document, columns))
+    try:
+        before = robustness(document, columns)
+    except EvaluationError:  # it has no value there
+        assume(False)
+    np.testing.assert_array_equal(robustness(found.document, columns), before)
 
 
 @given(formulas(), st.data())

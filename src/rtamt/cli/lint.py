@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
+import sys
 from argparse import Namespace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
@@ -28,15 +32,18 @@ from rtamt.lint.fix import mended
 from rtamt.lint.report import findings
 from rtamt.lint.rules import ALL, SHORTER, UNUSED
 from rtamt.rewrite.check import check_online
-from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterator
 
     from rtamt.language.document import Document
     from rtamt.language.formula import Span
     from rtamt.lint.found import LintWarning
     from rtamt.specification import Specification
+
+#: Files for which starting one more process pays, and those that a process takes at once.
+_WORTH_A_PROCESS, _AT_ONCE = 300, 25
 
 _DESCRIPTION = """\
 Check specification files without evaluating them. Report each error: what is wrong, where (line, column and a
@@ -85,11 +92,37 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Read every file; report each that is wrong."""
     files = [args.spec, *args.more]
-    codes = [_lint(file, args) for file in files]
+    codes = list(_codes(files, args))
     if not args.quiet and not args.json and not any(codes):
         say(f"{len(files)} {'file has' if len(files) == 1 else 'files have'} no errors or warnings")
     worst = max(codes)
     return OK if worst == VIOLATED and not args.strict else worst
+
+
+def _codes(files: list[str], args: argparse.Namespace) -> Iterator[int]:
+    """Check files, and print what is wrong with them in their order: many files in a process for each core."""
+    count = min(os.cpu_count() or 1, len(files) // _WORTH_A_PROCESS)
+    if count <= 1 or args.fix:  # a file that is mended may be imported by others
+        yield from (_lint(file, args) for file in files)
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    plain = Namespace(**{name: value for name, value in vars(args).items() if not callable(value)})
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
+        for code, out, errors in pool.map(partial(_apart, args=plain), files, chunksize=_AT_ONCE):
+            sys.stdout.write(out)
+            sys.stdout.flush()
+            sys.stderr.write(errors)
+            yield code
+
+
+def _apart(file: str, args: Namespace) -> tuple[int, str, str]:
+    """Check a file in another process: return its code, and what is to be printed."""
+    out, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
+        code = _lint(file, args)
+    return code, out.getvalue(), errors.getvalue()
 
 
 def _lint(file: str, args: argparse.Namespace) -> int:
@@ -164,9 +197,9 @@ def _findings(file: str, args: argparse.Namespace) -> list[LintWarning]:
         if found is None:
             raise
         spec, library = found, True
-    if not library:
+    if args.online and not library:
         try:
-            _check_formula(spec, online=args.online)
+            check_online(spec.formula, spec.text)
         except StlError as error:
             raise CommandError(f"{file}: {error}") from error
     if args.fix and any(each.fix for each in spec.warnings) and _mend(file, spec, args, library=library):
@@ -213,10 +246,3 @@ def _parsed(text: str, file: str, args: argparse.Namespace) -> Document:
     return parse_document(
         text, language=read_language(args.language), unit=args.unit, library=Library(folder)
     )
-
-
-def _check_formula(spec: Specification, *, online: bool) -> None:
-    if spec.period is not None:
-        Discrete(spec.period).check(spec.formula, spec.text)
-    if online:
-        check_online(spec.formula, spec.text)

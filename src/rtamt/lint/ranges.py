@@ -8,6 +8,7 @@ whole; what their windows hold does not depend on how long they are.
 
 from __future__ import annotations
 
+from itertools import product
 from math import inf, isnan
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from rtamt.language.operators import (
     STL,
     Ahead,
     Bounds,
+    Pointwise,
     Rank,
     Shift,
     Since,
@@ -43,6 +45,8 @@ if TYPE_CHECKING:
 ANYTHING: Range = (-inf, inf)
 #: Samples of the trace on which operators over time are evaluated.
 _SAMPLES = 4
+#: In place of an infinite end of a range: functions have values there.
+_FAR = 1e300
 
 
 class _Enclosed:
@@ -120,13 +124,25 @@ def _extended(op: Operator, operands: list[Range]) -> Range:
 
     from rtamt.language.definitions.enclosures import Enclosure, extended
 
-    given = [Enclosure(np.array([low]), np.array([high])) for low, high in operands]
     assert op.definition is not None
+    if isinstance(op.kernel, Pointwise) and op.kernel.partial and _leaves_domain(op, operands):
+        return ANYTHING  # where it has no value, nothing holds
+    given = [Enclosure(np.array([low]), np.array([high])) for low, high in operands]
     assert op.extension is not None
     with np.errstate(all="ignore"):
         found = extended(op.definition, op.extension, given)
     low, high = float(found.lower[0]), float(found.upper[0])
     return ANYTHING if isnan(low) or isnan(high) else (low, high)
+
+
+def _leaves_domain(op: Operator, operands: list[Range]) -> bool:
+    """Return whether a function has no value at a corner of the ranges of its operands."""
+    import numpy as np
+
+    corners = np.array(list(product(*operands))).clip(-_FAR, _FAR).T
+    assert op.definition is not None
+    with np.errstate(all="ignore"):
+        return bool(np.isnan(op.definition(*corners)).any())
 
 
 def _over_time(op: Operator, operands: list[Range], interval: Interval | None) -> Range:

@@ -130,11 +130,16 @@ def same_window_twice(text: Text) -> Iterator[Found]:
         if not (is_prefix_here(text, node) and is_prefix_here(text, inner)):
             continue
         interval = _sum(node.interval, inner.interval)
-        written = node.op.spellings[0] + interval_text(interval)
+        bounds = [each for each in (node.interval, inner.interval) if each is not None]
+        named = any(each.constants for each in bounds)
+        # The values of names may change, and with them the sum.
+        advice = (
+            "add up their bounds in one"
+            if named
+            else f"write {node.op.spellings[0]}{interval_text(interval)}"
+        )
         joined = None
-        if not any(
-            each is not None and (each.is_open or each.constants) for each in (node.interval, inner.interval)
-        ):
+        if not named and not any(each.is_open for each in bounds):
             assert node.span is not None
             end = without_prefix(text, node).span.end
             tokens = text.tokens
@@ -148,7 +153,7 @@ def same_window_twice(text: Text) -> Iterator[Found]:
             joined = Fix(edits, node, Apply(node.op, inner.args, interval, node.span))
         yield Found(
             node.span,
-            f"'{node.op.spellings[0]}' of '{node.op.spellings[0]}' is one window; write {written}",
+            f"'{node.op.spellings[0]}' of '{node.op.spellings[0]}' is one window; {advice}",
             joined,
         )
 
@@ -189,13 +194,31 @@ def last_sample_only(text: Text) -> Iterator[Found]:
 def same_bounds(text: Text) -> Iterator[Found]:
     """``always[0:5] eventually[0:5] p``."""
     for node, inner in _alternating(text):
-        if node.interval is not None and node.interval == inner.interval and node.interval.end is not None:
+        bounds = node.interval
+        if bounds is None or bounds != inner.interval or bounds.end is None:
+            continue
+        # A parameter and a number of the same value are different bounds.
+        if _parameters(text, bounds) == _parameters(text, inner.interval):
             both = f"{node.op.spellings[0]} and {inner.op.spellings[0]}"
             yield Found(
                 node.span,
-                f"{both} have the same bounds {interval_text(node.interval)}, and together reach twice as far; "
+                f"{both} have the same bounds {_bounds_written(text, bounds)}, and together reach twice as far; "
                 f"if one window is meant, remove one of them",
             )
+
+
+def _parameters(text: Text, interval: Interval | None) -> tuple[str, ...]:
+    """Return the parameters in the bounds of a window."""
+    names = () if interval is None else interval.constants
+    declared = {each.name for each in text.document.declarations if each.kind == "parameter"} if names else ()
+    return tuple(name for name in names if name in declared)
+
+
+def _bounds_written(text: Text, interval: Interval) -> str:
+    """Return the bounds of a window with the names in them."""
+    if interval.constants and interval.span is not None:
+        return " ".join(text.document.text[interval.span.start : interval.span.end].split())
+    return interval_text(interval)
 
 
 def _unbounded(interval: Interval | None) -> bool:
@@ -274,7 +297,9 @@ def one_instant(text: Text) -> Iterator[Found]:
     """``always[0:0] p``."""
     for node in text.of(WINDOWS):
         interval = node.interval
-        if interval is not None and interval.end == 0 and is_prefix_here(text, node):
+        if interval is None or _parameters(text, interval):  # the value of a parameter is a default
+            continue
+        if interval.end == 0 and is_prefix_here(text, node):
             named = bool(interval.constants)
             fix = None if named else Fix((without_prefix(text, node),), node, node.args[0])
             yield Found(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Const, Var, postorder
+from rtamt.language.formula import Const, Parameter, Var, postorder
 from rtamt.language.operators import STL, Fixity, Sort
 from rtamt.language.parsing.grammar import is_number, is_predicate
 from rtamt.language.units.dimensions import DIMENSION, SCALE, UNCHECKED
@@ -55,8 +55,10 @@ def constant_comparison(text: Text) -> Iterator[Found]:
     for node in text.of(_PREDICATES):
         if any(isinstance(each, Var) for each in node.args):
             continue
-        if not any(isinstance(each, Var) for each in postorder(node)):
-            yield Found(node.span, "this compares constants: it always holds or never does")
+        # The value of a parameter is a default.
+        if not any(isinstance(each, Var | Parameter) for each in postorder(node)):
+            written = text.written(node.span)
+            yield Found(node.span, f"{written} reads no variable: it always holds or never does")
 
 
 def division_by_zero(text: Text) -> Iterator[Found]:

@@ -6,6 +6,8 @@ import json
 import sys
 from pathlib import Path
 
+import pytest
+
 import rtamt
 
 
@@ -76,7 +78,7 @@ def test_warnings_have_codes_that_can_be_silenced(run, write):
         "  line 1, column 1:\n"
         "    x and y >= 3; 3 >= 2\n"
         "    ^\n"
-        "rtamt: gap.stl: warning RT103: this compares constants: it always holds or never does\n"
+        "rtamt: gap.stl: warning RT103: '3 >= 2' reads no variable: it always holds or never does\n"
         "  line 1, column 15:\n"
         "    x and y >= 3; 3 >= 2\n"
         "                  ^^^^^^\n",
@@ -172,3 +174,17 @@ def test_a_file_that_others_import_needs_no_formula(run, write):
 def test_the_files_of_the_package_have_no_findings(run):
     files = sorted(map(str, Path(rtamt.__file__).parent.glob("library/**/*.stl")))
     assert run("lint", "--strict", *files) == (0, f"{len(files)} files have no errors or warnings\n", "")
+
+
+@pytest.mark.parametrize("options", [[], ["--json"]])
+def test_many_files_are_checked_in_processes_and_reported_in_their_order(run, write, monkeypatch, options):
+    names = ["good.stl", "warned.stl", "wrong.stl", "warned.stl", "good.stl"]
+    write("good.stl", "x >= 3")
+    write("warned.stl", "x and y >= 3")
+    write("wrong.stl", "x >=")
+    expected = run("lint", *names, *options)
+    assert expected.code == 2
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr("rtamt.cli.lint._WORTH_A_PROCESS", 2)
+    monkeypatch.setattr("rtamt.cli.lint._AT_ONCE", 2)
+    assert run("lint", *names, *options) == expected

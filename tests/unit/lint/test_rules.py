@@ -34,6 +34,7 @@ def test_codes_are_unique():
         ("input bool p  input float x  p and x > 1", []),
         ("x >= -inf", []),
         ("const float limit = 3; float x; x > 1 or limit > 2", [("RT103", "limit > 2")]),
+        ("parameter float limit = 3; float x; x > 1 or limit > 2", []),
         ("const float none = 0; x / none > 1", [("RT104", "x / none")]),
         ("x / 2 > 0", []),
         ("sample 1s hold for 500ms; x > 3", [("RT106", "sample 1s hold for 500ms")]),
@@ -80,6 +81,10 @@ def test_codes_are_unique():
         ("always (x > 3) -> y > 2", []),
         ("eventually x > 3 -> y > 2", []),
         ("eventually[2:2](x > 3)", []),
+        # The value of a parameter is a default.
+        ("parameter float T = 0  float x  always[0:T](x > 3)", []),
+        ("const float T = 0  float x  always[0:T](x > 3)", [("RT509", "always[0:T](x > 3)")]),
+        ("parameter float T = 3  float x  always[0:T] eventually[0:3](x > 3)", []),
         # Ranges.
         ("float x in [0, 10]; float y; abs(x - 5) > 5.5 or y > 3", [("RT402", "abs(x - 5) > 5.5")]),
         ("float x in [0, 10]; eventually(x >= 0)", [("RT401", "eventually(x >= 0)")]),
@@ -91,12 +96,36 @@ def test_codes_are_unique():
         ("float x in [0, 10]; sum[0:5](x) >= 0", [("RT401", "sum[0:5](x) >= 0")]),
         ("float x in [0, 10]; sum[0:5](x) <= 10", []),
         ("float x in [0, 10]; x - x > 1", []),
+        # A function that has no value on a part of a range decides nothing.
+        ("float x in [-1, 5]; sqrt(x) >= 0", []),
+        ("float x in [0, 5]; sqrt(x) >= 0", [("RT401", "sqrt(x) >= 0")]),
+        ("float x in [-1, 5]; ln(x) > 3", []),
+        ("float x in [1, inf]; sqrt(x) >= 0", [("RT401", "sqrt(x) >= 0")]),
         ("float x in [0, 10]; float y; bool b; (x > 20 or y > 3) and b", [("RT402", "x > 20")]),
         ("float x in [0, 10]; float y; true or x > 20 or y > 1", [("RT507", "true"), ("RT402", "x > 20")]),
     ],
 )
 def test_what_is_found(text, expected):
     assert found(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "eventually[0:T] eventually[0:2](x > 3)",
+            "'eventually' of 'eventually' is one window; add up their bounds in one",
+        ),
+        (
+            "always[0:T] eventually[0:T](x > 3)",
+            "always and eventually have the same bounds [0:T], and together reach twice as far; if one window "
+            "is meant, remove one of them",
+        ),
+    ],
+)
+def test_messages_about_bounds_have_the_names_of_parameters(text, message):
+    (warning,) = rtamt.parse(f"parameter float T = 3  float x  {text}").warnings
+    assert (warning.message, warning.fix) == (message, None)
 
 
 def test_ros_outputs_are_used():
