@@ -27,7 +27,7 @@ run: $(VENV)/.core ## check the four recordings of the paper's Fig. 4: specifica
 test: test-python test-cpp test-install ## everything that can be tested
 
 test-python: $(VENV)/.core $(VENV)/.group-test $(VENV)/.apt ## Python: laws, units, messages, doctests
-	$(RUN) -m pytest
+	$(RUN) -m pytest -n "$$(nproc)" --dist loadfile
 
 test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefined-behaviour and thread sanitizers
 	$(WITH_VENV) cmake --preset asan

@@ -6,6 +6,7 @@ import base64
 import contextlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -46,6 +47,7 @@ def draw() -> None:
     patterns.draw(IMAGES)
     signal_patterns.draw(IMAGES)
     analysis()
+    failed_test()
     gallery()
     reports()
 
@@ -56,6 +58,19 @@ def analysis() -> None:
     old, new = (rtamt.parse(text) for text in re.findall(r"```stl title=.*?\n(.*?)```", page, re.DOTALL))
     found = next(each for each in diff(old, new, samples=60).findings if each.witness is not None)
     save(found.witness.plot(Figure()), "analyze.png")
+
+
+def failed_test() -> None:
+    """Run the tests of docs/how-to/pytest.md, one of which fails and is plotted."""
+    page = (IMAGES.parent / "how-to" / "pytest.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in re.findall(r"```\w+ title=\"(.*?)\"\n(.*?)```", page, re.DOTALL):
+            Path(folder, name).write_text(text, encoding="utf-8")
+        run = [sys.executable, "-m", "pytest", "-q", "--stl-plots=plots"]
+        subprocess.run(run, cwd=folder, check=False, stdout=subprocess.DEVNULL)
+        (plot,) = Path(folder).glob("plots/*.png")
+        shrink(plot)
+        shutil.move(plot, IMAGES / "pytest.png")
 
 
 def gallery() -> None:

@@ -1,5 +1,6 @@
 """The list of public names: type checkers read it, and ``__init__.py`` imports each name on first use."""
 
+from rtamt.assertions import assert_satisfied as assert_satisfied
 from rtamt.batch import evaluate_all as evaluate_all
 from rtamt.batch import evaluate_batch as evaluate_batch
 from rtamt.batch_results import BatchResult as BatchResult
