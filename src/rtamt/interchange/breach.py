@@ -42,6 +42,20 @@ BREACH = Dialect(
     characters={"=>": "->"},
 )  # fmt: skip
 
+#: What nothing can be called: its operators and functions, and the time.
+_RESERVED = frozenset(
+    [
+        "t",
+        "inf",
+        "true",
+        "false",
+        "signal",
+        "param",
+        "test",
+        *(s for word in BREACH.words for s in word.spellings.split()),
+    ]
+)
+
 _COMMENT = re.compile(r"[#%][^\n]*")
 _AT = re.compile(r"(?P<name>[A-Za-z_]\w*)\[t\]")
 _SHIFTED = re.compile(r"[A-Za-z_]\w*\[\s*t\s*[-+][^]]*\]")
@@ -182,8 +196,8 @@ def write_breach(spec: Specification, _component: str | None = None) -> Conversi
             rejected.append(Rejection(requirement.name, str(error)))
             continue
         converted.append(requirement.name)
-        for signal in dict.fromkeys(signals):
-            text = re.sub(rf"\b{signal}\b", f"{signal}[t]", text)
+        if signals:
+            text = re.sub(rf"\b({'|'.join(dict.fromkeys(signals))})\b", r"\1[t]", text)
         label = re.sub(r"\W", "_", requirement.name)
         lines.append(f"{label} := {text}")
         names |= dict.fromkeys(signals)
@@ -203,7 +217,9 @@ def _require_numbers(nodes: Iterable[Formula]) -> None:
             raise InexpressibleError(
                 f"Breach has signals of numbers only, and '{node.name}' is of the type {kind}"
             )
-        if isinstance(node, Var) and not re.fullmatch(r"[A-Za-z]\w*", node.name):
+        if isinstance(node, Var) and not re.fullmatch(r"[A-Za-z]\w*", node.name, re.ASCII):
             raise InexpressibleError(
                 f"'{node.name}' cannot be a signal of Breach: use letters, digits and underscores"
             )
+        if isinstance(node, Var | Parameter) and node.name in _RESERVED:
+            raise InexpressibleError(f"'{node.name}' cannot be a name of Breach, where it is a keyword")

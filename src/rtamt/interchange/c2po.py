@@ -7,6 +7,7 @@ compiler/docs/user/language.md, and the precedence of its parser.
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,12 @@ _SECTIONS = ("STRUCT", "ENUM", "INPUT", "DEFINE", "FTSPEC", "PTSPEC")
 _MARK = re.compile(r"[A-Za-z_]\w*|[{};]")
 _COMMENT = re.compile(r"--[^\n]*")
 _NAME = re.compile(r"[A-Za-z_]\w*")
+#: What a variable cannot be called: the words of the lexer.
+_RESERVED = frozenset(
+    ("STRUCT ENUM INPUT DEFINE FTSPEC PTSPEC TAU foreach forsome forexactly foratleast foratmost pow sqrt abs rate "
+     "prev xor G F H O U R S T M true false bool int float").split()
+)  # fmt: skip
+_EXPONENT = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
 #: What makes a file larger than any that is written by hand.
 _LONGEST = 2_000_000
 
@@ -305,7 +312,8 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
         name = re.sub(r"\W", "_", requirement.name)
         try:
             section = _section(inner)
-            sections[section].append(f"    {name}: {C2PO.write(inner, step)};")
+            _require_names(inner)
+            sections[section].append(f"    {name}: {_without_exponents(C2PO.write(inner, step))};")
         except InexpressibleError as error:
             rejected.append(Rejection(requirement.name, str(error)))
             continue
@@ -335,16 +343,30 @@ def _section(formula: Formula) -> str:
     return "PTSPEC" if Tense.PAST in tenses else "FTSPEC"
 
 
+def _require_names(formula: Formula) -> None:
+    """Raise where a variable has a name that C2PO does not read."""
+    for node in postorder(formula):
+        if not isinstance(node, Var):
+            continue
+        if not node.name.isascii() or not _NAME.fullmatch(node.name):
+            raise InexpressibleError(
+                f"'{node.name}' cannot be a variable of C2PO: use letters, digits and underscores"
+            )
+        if node.name in _RESERVED:
+            raise InexpressibleError(f"'{node.name}' cannot be a variable of C2PO, where it is a keyword")
+
+
+def _without_exponents(text: str) -> str:
+    """Return a formula whose numbers have digits only, as C2PO reads them."""
+    return _EXPONENT.sub(lambda match: f"{Decimal(match[0]):f}", text)
+
+
 def _declared(formulas: list[Formula]) -> list[str]:
     """Return the sections that declare the variables of formulas."""
     kinds: dict[str, list[str]] = {}
     enumerations: dict[str, Enumeration] = {}
     for node in postorder(*formulas):
         if isinstance(node, Var) and node.name not in (name for names in kinds.values() for name in names):
-            if not _NAME.fullmatch(node.name):
-                raise UsageError(
-                    f"'{node.name}' cannot be a variable of C2PO: use letters, digits and underscores"
-                )
             kind = "float"
             if isinstance(node.type, Boolean | Enumeration):
                 kind = node.type.name

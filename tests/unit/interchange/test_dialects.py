@@ -97,11 +97,30 @@ def test_a_specification_as_c2po_and_back() -> None:
         ("always(once[0:1](x > 1) -> eventually[0:1](x > 1))", "no formulas of both future and past"),
         ("always((x > 1) until[1:2] (x > 2))", "C2PO has another meaning for"),
         ("always(ceil(x) > 1)", "C2PO has no 'ceil'"),
+        ('always("motor speed" > 1)', "'motor speed' cannot be a variable of C2PO: use letters, digits"),
+        ("always(G > 1)", "'G' cannot be a variable of C2PO, where it is a keyword"),
     ],
 )
 def test_what_c2po_cannot_express(formula: str, reason: str) -> None:
     (rejected,) = write_c2po(rtamt.parse(f"require R: {formula}", period=1)).rejected
     assert reason in rejected.reason
+
+
+def test_a_requirement_with_a_name_that_c2po_does_not_read_is_left_out_alone() -> None:
+    found = write_c2po(rtamt.parse('require A: always("a b" > 1); require B: always(x > 1)', period=1))
+    assert (found.converted, [each.name for each in found.rejected]) == (("B",), ["A"])
+    assert "a b" not in found.text
+
+
+@pytest.mark.parametrize(
+    ("number", "written"),
+    [("1e-9", "0.000000001"), ("-2.5e-7", "-0.00000025"), ("1e20", "100000000000000000000"), ("0.1", "0.1")],
+)
+def test_numbers_of_c2po_have_no_exponents(number: str, written: str) -> None:
+    found = write_c2po(rtamt.parse(f"require R: always(x1e5 > {number})", period=1))
+    assert f"R: x1e5 > {written};" in found.text
+    again = rtamt.parse(read_c2po(found.text).text)
+    assert again.formula == rtamt.parse(f"float x1e5 always(x1e5 > {number})").formula
 
 
 BREACH = """\
@@ -177,3 +196,11 @@ def test_any_text_is_converted_or_rejected_at_once(name: str, text: str) -> None
     except UsageError:
         return
     assert found.rejected
+
+
+@pytest.mark.parametrize("name", ["alw", "ev", "t", "until_"])
+def test_keywords_of_breach_are_no_signals(name: str) -> None:
+    found = write_breach(rtamt.parse(f"require R: always({name} > 1 and x < 2); require S: not_ > 1"))
+    (rejected,) = found.rejected
+    assert rejected.reason == f"'{name}' cannot be a name of Breach, where it is a keyword"
+    assert "S := not_[t] > 1" in found.text
