@@ -24,6 +24,7 @@ from tests.unit.report.browser import chromium
 from tools import patterns, signal_patterns, walkthrough
 
 from rtamt.analysis import diff
+from rtamt.mining import mine
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -48,6 +49,7 @@ def draw() -> None:
     signal_patterns.draw(IMAGES)
     analysis()
     failed_test()
+    mining()
     gallery()
     reports()
 
@@ -71,6 +73,20 @@ def failed_test() -> None:
         (plot,) = Path(folder).glob("plots/*.png")
         shrink(plot)
         shutil.move(plot, IMAGES / "pytest.png")
+
+
+def mining() -> None:
+    """Draw the front of docs/how-to/mine.md, from the recordings of that page."""
+    page = (IMAGES.parent / "how-to" / "mine.md").read_text(encoding="utf-8")
+    record, template = (
+        re.search(begin + r"\n(.*?)```", page, re.DOTALL)
+        for begin in ("```python", '```stl title="settle.stl"')
+    )
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        exec(compile(record[1], "mine.md", "exec"), {})  # noqa: S102 - our own page
+        recordings = {path.name: rtamt.read(path) for path in sorted(Path(folder).glob("step*.csv"))}
+        found = mine(rtamt.parse(template[1]), recordings, resolutions={"band": 0.01}, points=8)
+    save(found.plot().figure, "mine.png")
 
 
 def gallery() -> None:

@@ -263,6 +263,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Analyze requirements": ("", ("rtamt.analysis",)),
     "Other tools": ("Requirements of other tools, read and written.", ("rtamt.interchange",)),
     "Mutation": ("", ("rtamt.mutation",)),
+    "Mining": ("", ("rtamt.mining",)),
     "ROS": ("", ("rtamt.ros",)),
     "C and C++": (
         "Compiled requirements run without Python: see [the program](program.md).", ("Specification.compile",)

@@ -1,8 +1,8 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``info``, ``new``, ``describe``, ``lint``, ``analyze``,
-``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``, ``describe``,
+``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ================  =============================================================
@@ -12,6 +12,7 @@ parser            ``Command``, the argument parser, exit codes
 command           options of several commands, and how values are printed
 arguments         specifications and recordings on the command line
 reading_options   options for reading recordings
+recordings        recordings that are all read before a command begins
 parameters        the option ``--set``
 language          the option ``--language``
 conclusions       the answers of analyses: text, JSON and plots
@@ -65,6 +66,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),
             ("falsify", "search for inputs that make a plant violate its requirement"),
             ("mutate", "change a requirement a little, and list the changes that no recording notices"),
+            ("mine", "find parameters of a requirement from recordings"),
+            ("classify", "learn a short list of rules that tells good recordings from bad ones"),
             ("info", "show the horizon, pastified form, program and memory of a requirement"),
             ("new", "write a specification file from a pattern"),
             ("describe", "print requirements as English sentences"),

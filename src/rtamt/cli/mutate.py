@@ -8,18 +8,14 @@ from typing import TYPE_CHECKING
 from rtamt.cli.arguments import requirements_and_traces
 from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
 from rtamt.cli.parser import OK, VIOLATED
-from rtamt.cli.reading_options import add_reading_options, on_clock, read_for, reading_of, recording
+from rtamt.cli.reading_options import add_reading_options
+from rtamt.cli.recordings import recordings_of, save_plot
 from rtamt.cli.terminal import Progress, say, table, width_of
-from rtamt.files import replacing
-from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
     import argparse
 
-    from rtamt.cli.reading_options import Reading
     from rtamt.mutation import Mutation
-    from rtamt.signals.trace import Trace
-    from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Change a requirement in one place at a time: another operator, a constant that is a tenth larger or smaller, a bound
@@ -66,15 +62,8 @@ def run(args: argparse.Namespace) -> int:
     if len(given) > 1:
         raise CommandError(f"'rtamt mutate' takes one specification; leave out '{given[1].given}'")
     spec = given[0].spec
-    reading = reading_of(args, spec.input_names, whole=True)
-    recordings: dict[str, Trace] = {}
     with Progress() as progress:
-        for number, trace in enumerate(traces):
-            progress.bar(number, len(traces), trace)
-            name = shown(trace)
-            if name in recordings:
-                raise CommandError(f"'{name}' is given twice; leave it out once")
-            recordings[name] = _read(args, spec, trace, reading)
+        recordings = recordings_of(args, spec, traces, progress)
         progress.show("evaluating")
         found = mutate(spec, recordings)
     if args.json:
@@ -82,15 +71,8 @@ def run(args: argparse.Namespace) -> int:
     else:
         _print(found, every=args.all)
     if args.output is not None:
-        _plot(found, args.output)
+        save_plot(found.plot(), args.output)
     return VIOLATED if found.survivors else OK
-
-
-def _read(args: argparse.Namespace, spec: Specification, trace: str, reading: Reading) -> Trace:
-    """Read a recording as ``rtamt check`` does; of a quantified specification all signals, which may be of members."""
-    if spec.groups:
-        return recording(args, trace)
-    return on_clock(spec.binding.applied(read_for([spec], trace, reading)), spec, trace, reading)
 
 
 def _print(found: Mutation, *, every: bool) -> None:
@@ -114,12 +96,3 @@ def _print(found: Mutation, *, every: bool) -> None:
     kills = found.to_dict()["recordings"]
     lines = [(each["name"], str(each["kills"]), str(each["alone"])) for each in kills]
     say(table([("recording", "kills", "alone"), *lines], right=[1, 2], width=width))
-
-
-def _plot(found: Mutation, path: str) -> None:
-    axes = found.plot()
-    try:
-        with replacing(path) as new:
-            axes.figure.savefig(new, dpi=130)
-    except (OSError, ValueError) as error:
-        raise CommandError(f"cannot write the plot '{path}': {error}") from None

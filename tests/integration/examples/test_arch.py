@@ -38,6 +38,12 @@ def test_full_throttle_just_passes_the_limits_of_at1_and_at2(transmission):
     assert [gear for k, gear in enumerate(gears) if k == 0 or gear != gears[k - 1]] == [1, 2, 3, 4]
 
 
+def test_mined_parameters_are_those_of_the_report(example):
+    mined = example("arch", "mine")
+    with open(mined.__file__.replace("mine.py", "mining.md"), encoding="utf-8") as report:
+        assert report.read() == mined.table()
+
+
 def test_the_brake_slows_the_car_and_never_drives_it_backwards(transmission):
     rolling = transmission.drive(held(100, 0, 0), held(0, 0, 0))
     braked = transmission.drive(held(100, 0, 0), held(0, 325, 325))

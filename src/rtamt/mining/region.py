@@ -1,0 +1,127 @@
+"""Which values of parameters satisfy a template on every recording: what the engine says, within a budget."""
+
+from __future__ import annotations
+
+from math import inf
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import StlError, TraceError, UsageError, shown
+from rtamt.language.formula import Const
+from rtamt.signals.arrays import is_number
+from rtamt.verdicts.robustness_and_truth import align_inputs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rtamt.results import Result
+    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.specification import Specification
+
+
+class Spent(Exception):  # noqa: N818 - no error: it ends a search
+    """The budget is spent."""
+
+
+class Budget:
+    """How many evaluations of a recording, and how many seconds, may be spent; ``progress`` is told how many were."""
+
+    def __init__(
+        self, evaluations: int | None, timeout: float | None, progress: Callable[[int], None] | None
+    ) -> None:
+        if evaluations is not None:
+            require_count("evaluations", evaluations, 1)
+        if timeout is not None and (not is_number(timeout) or not timeout > 0):
+            raise UsageError(f"timeout is {shown(timeout)}; give a number of seconds above 0")
+        self.made = 0
+        self._most = evaluations
+        self._until = None if timeout is None else monotonic() + timeout
+        self._progress = progress
+
+    def take(self) -> None:
+        """Count one evaluation; raise :class:`Spent` if none is left."""
+        if self._most is not None and self.made >= self._most:
+            raise Spent
+        if self._until is not None and monotonic() > self._until:
+            raise Spent
+        self.made += 1
+        if self._progress is not None:
+            self._progress(self.made)
+
+
+class Region:
+    """The values with which a template is satisfied on every recording."""
+
+    def __init__(
+        self, spec: Specification, recordings: Mapping[str, Any], reading: Mapping[str, Any], budget: Budget
+    ) -> None:
+        self.spec = spec
+        self.budget = budget
+        self._recordings = recordings
+        self._reading = reading
+        self._order = list(recordings)
+        self._known: dict[tuple[tuple[str, float], ...], str | None] = {}
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Return whether every recording satisfies the template with these values."""
+        return self.violator(values) is None
+
+    def violator(self, values: Mapping[str, float]) -> str | None:
+        """Return a recording that violates the template with these values; None if there is none."""
+        key = tuple(values.items())
+        if key not in self._known:
+            self._known[key] = self._first_violator(values)
+        return self._known[key]
+
+    def margin(self, values: Mapping[str, float]) -> tuple[float, bool]:
+        """Return the least robustness over the recordings, and whether all of them satisfy the template."""
+        spec = self.spec.with_parameters(**values)
+        results = [self._evaluated(spec, name, values) for name in self._order]
+        return min(result.robustness for result in results), all(result.satisfied for result in results)
+
+    def trace(self, name: str) -> DomainTrace:
+        """Return a recording as the template reads it."""
+        reading = align_inputs(Const(inf), self.spec.input_names)
+        return self._evaluated(self.spec.with_formula(reading), name, {}).trace
+
+    def alone(self, name: str) -> Region:
+        """Return the region of one recording, with the same budget."""
+        return Region(self.spec, {name: self._recordings[name]}, self._reading, self.budget)
+
+    def _first_violator(self, values: Mapping[str, float]) -> str | None:
+        spec = self.spec.with_parameters(**values)
+        for name in self._order:
+            if not self._evaluated(spec, name, values).satisfied:
+                # The recording that decides one value mostly decides the next, too.
+                self._order.remove(name)
+                self._order.insert(0, name)
+                return name
+        return None
+
+    def _evaluated(self, spec: Specification, name: str, values: Mapping[str, float]) -> Result:
+        self.budget.take()
+        try:
+            return spec.evaluate(self._recordings[name], **self._reading)
+        except StlError as error:
+            given = f", with {written(values)}" if values else ""
+            raise TraceError(f"{name}{given}: {error}") from error
+
+
+def written(values: Mapping[str, float]) -> str:
+    """Return values as they are given on the command line.
+
+    >>> written({"limit": 3.0, "within": 0.25})
+    'limit=3, within=0.25'
+    """
+    return ", ".join(f"{name}={number(value)}" for name, value in values.items())
+
+
+def number(value: float) -> str:
+    """Return a number with all its digits, without a fraction of 0."""
+    return repr(int(value)) if float(value).is_integer() and abs(value) < 1e16 else repr(float(value))
+
+
+def require_count(what: str, given: Any, least: int) -> None:
+    """Raise :class:`UsageError` unless a setting is a whole number that is large enough."""
+    if not isinstance(given, int) or isinstance(given, bool) or given < least:
+        raise UsageError(f"{what} is {shown(given)}; give a whole number of {least} or more")
