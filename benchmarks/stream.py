@@ -51,7 +51,7 @@ def over_and_over(path: Path, gigabytes: float, spec: rtamt.Specification) -> It
     rounds = 0
     while True:
         for chunk in rtamt.scan(path, columns=names):
-            data = chunk.on_one_clock(names)
+            data = chunk.on_one_time_base(names)
             yield {**data, "time": data["time"] + rounds * ROWS / 100}
             read += len(data["time"])
             done = read * BYTES_A_ROW / 1e9

@@ -52,6 +52,7 @@ def draw() -> None:
     mining()
     gallery()
     reports()
+    play()
 
 
 def analysis() -> None:
@@ -177,6 +178,30 @@ def photograph(arguments: list[str], name: str, size: tuple[int, int], script: s
             time.sleep(2)
         (IMAGES / name).write_bytes(base64.b64decode(tab.send("Page.captureScreenshot")["data"]))
     shrink(IMAGES / name)
+
+
+def play() -> None:
+    """Draw the page of `rtamt play` with its example, at an instant at which some verdicts are pending."""
+    command = [sys.executable, "-m", "rtamt", "play", "--no-browser"]
+    ready = "document.querySelectorAll('.run-bad').length > 0"
+    scrub = "(e => { e.value = 667; e.dispatchEvent(new Event('input')); })(document.getElementById('at'))"
+    with (
+        tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile,
+        subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server,
+        chromium(Path(profile)) as tab,
+    ):
+        assert server.stdout is not None
+        tab.send(
+            "Emulation.setDeviceMetricsOverride", width=1200, height=1010, deviceScaleFactor=1, mobile=False
+        )
+        tab.open(server.stdout.readline().strip())
+        for script, condition in (("0", ready), (scrub, "document.querySelectorAll('.whisker').length > 0")):
+            tab.run(script)
+            while not tab.run(condition):
+                time.sleep(0.05)
+        (IMAGES / "play.png").write_bytes(base64.b64decode(tab.send("Page.captureScreenshot")["data"]))
+        server.terminate()
+    shrink(IMAGES / "play.png")
 
 
 def shrink(path: Path) -> None:

@@ -210,9 +210,9 @@ std::vector<Result> Monitor::push(const std::optional<Column>& times,
     for (std::size_t i = 0; i < executor_.program().outputs.size(); ++i) {
         results.add(executor_.known(i, count));
     }
-    std::optional<std::span<const double>> stamps;
-    if (times) stamps.emplace(times->data(), count);
-    push(stamps, pointers, count, results.pointers());
+    std::optional<std::span<const double>> timestamps;
+    if (times) timestamps.emplace(times->data(), count);
+    push(timestamps, pointers, count, results.pointers());
     return results.hand_over();
 }
 
@@ -243,8 +243,8 @@ nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time)
     if (!given) return nb::none();
     const std::size_t count = given->count;
     const std::int64_t so_far = executor_.samples();
-    const NewArray stamps = numpy_.make(count);
-    const std::span<double> times(stamps.values(), count);
+    const NewArray timestamps = numpy_.make(count);
+    const std::span<double> times(timestamps.values(), count);
     const auto last = clock_.timestamps().last();
     const double period = clock_.period();
     if (given->times) {
@@ -275,7 +275,7 @@ nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time)
         const std::size_t known = executor_.known(i, count);
         outputs.push_back(made.emplace_back(numpy_.make(known)).values());
         const std::int64_t lag = program.instructions[program.outputs[i]].lag;
-        nb::object known_at = stamps.array;
+        nb::object known_at = timestamps.array;
         if (lag != 0) {
             const NewArray late = numpy_.make(known);
             const std::int64_t first = std::max<std::int64_t>(so_far - lag, 0);

@@ -33,7 +33,7 @@ def specification() -> rtamt.Specification:
 
 
 def beside(plant: Iterator[tuple[float, dict[str, float]]], unit: Path) -> Iterator[tuple[float, float]]:
-    """Step the plant and the unit together; yields (time, robustness) as the unit tells them."""
+    """Step the plant and the unit together; yields (time, robustness) as the unit reports them."""
     folder = fmpy.extract(str(unit), mkdtemp())
     description = fmpy.read_model_description(str(unit))
     reference = {variable.name: variable.valueReference for variable in description.modelVariables}
@@ -43,8 +43,7 @@ def beside(plant: Iterator[tuple[float, dict[str, float]]], unit: Path) -> Itera
             slave.setReal([reference[name] for name in values], list(values.values()))
             slave.doStep(currentCommunicationPoint=time, communicationStepSize=STEP)
             if slave.getBoolean([reference["known"]])[0]:
-                told = [reference["known_since"], reference["robustness"]]
-                since, robustness = slave.getReal(told)
+                since, robustness = slave.getReal([reference["known_since"], reference["robustness"]])
                 yield since, robustness
     finally:
         slave.terminate()
@@ -67,19 +66,19 @@ def _started(description: Any, folder: str) -> FMU2Slave:
 
 
 def main() -> None:
-    """Simulate a failure of the first hydraulic circuit, and say when the monitors tell of the violation."""
+    """Simulate a failure of the first hydraulic circuit, and print when the monitors report the violation."""
     plant = Elevators(duration=10, faults={"H1": 2.0})
     spec = specification()
     with TemporaryDirectory() as folder:
         unit = Path(folder, "monitor.fmu")
         fmi.export(spec, unit)
-        told = list(beside(plant(COMMAND), unit))
+        reported = list(beside(plant(COMMAND), unit))
     monitor = spec.monitor()
     answers = [monitor.update(time, **values) for time, values in plant(COMMAND)]
-    if [robustness for _, robustness in told] != [answer for answer in answers if answer is not None]:
+    if [robustness for _, robustness in reported] != [answer for answer in answers if answer is not None]:
         sys.exit("the unit and the monitor in Python differ")
-    print(f"{len(told)} values, each equal to that of the monitor in Python")
-    since = next((time for time, robustness in told if robustness < 0), None)
+    print(f"{len(reported)} values, each equal to that of the monitor in Python")
+    since = next((time for time, robustness in reported if robustness < 0), None)
     print("no violation" if since is None else f"violated by the step at {since:.2f} s")
 
 

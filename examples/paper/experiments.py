@@ -102,7 +102,7 @@ def figure_2():
 
 
 def pastification():
-    """Return for each formula at how many instants the pastified one tells, a horizon later, the same."""
+    """Return for each formula at how many instants the pastified one has, a horizon later, the same value."""
     found = {}
     req = [6.0, 0, 5, 1, 4, 0, 0, 7, 2, 3, 3, 0, 6, 1, 0, 5, 0, 2, 4, 0, 0, 6, 3, 1, 0, 5, 5, 0, 2, 4]
     gnt = [0.0, 2, 4, 0, 1, 6, 0, 0, 5, 1, 0, 3, 2, 0, 0, 4, 6, 1, 0, 0, 2, 5, 0, 3, 4, 0, 1, 0, 6, 2]
@@ -117,19 +117,19 @@ def agreement(text, horizon, req, gnt):
     data = {"time": list(range(len(req))), "req": [float(value) for value in req], "gnt": gnt}
     expected = [value for _, value in offline.evaluate(data)]
     online = specification("StlDiscreteTimeOnlineSpecification", text, pastify=True)
-    told = [online.update(i, [("req", float(req[i])), ("gnt", gnt[i])]) for i in range(len(req))]
-    pairs = list(zip(expected, told[horizon:], strict=False))
+    online_values = [online.update(i, [("req", float(req[i])), ("gnt", gnt[i])]) for i in range(len(req))]
+    pairs = list(zip(expected, online_values[horizon:], strict=False))
     return f"{sum(a == b for a, b in pairs)} of {len(pairs)}"
 
 
 def listing_8():
     """Return what the monitor of the ROS node publishes, from the horizon (15 periods) on."""
     spec = specification("StlDiscreteTimeOnlineSpecification", LISTING_8, pastify=True)
-    told = []
+    published = []
     for i in range(30):
         sample = [("req", 6.0 if i % 10 == 2 else 0.0), ("gnt", 4.0 if i % 10 == 5 and i < 20 else 0.0)]
-        told.append(spec.update(i, sample))
-    return told[15:]
+        published.append(spec.update(i, sample))
+    return published[15:]
 
 
 def listing_1():

@@ -60,8 +60,8 @@ def interface(measures: dict[str, dict[str, Any]]) -> Figure:
         axes.step(range(len(req)), req, where="post", label="req", color="#d62728")
         axes.step(range(len(gnt)), gnt, where="post", label="gnt", color="#2ca02c", ls="--")
         axes.axhline(3, color="#777777", lw=0.8, ls=":")
-        told = ", ".join(f"{measure} {float(value):g}" for measure, value in measures[name].items())
-        axes.set_title(f"({name}) {told}", fontsize=9)
+        label = ", ".join(f"{measure} {float(value):g}" for measure, value in measures[name].items())
+        axes.set_title(f"({name}) {label}", fontsize=9)
         axes.set_ylim(-0.3, 6.6)
     figure.axes[-1].legend(*figure.axes[0].get_legend_handles_labels(), loc="upper right")
     return figure

@@ -38,7 +38,7 @@ class Case:
     program: str
     arguments: tuple[str, ...]
     folder: str
-    pictures: tuple[str, ...]
+    figures: tuple[str, ...]
 
 
 CASES = (
@@ -172,17 +172,17 @@ def scripts() -> str:
     runs = [("over a double of rospy", SCRIPTS)]
     if shutil.which("rosmaster"):
         runs.append(("on a real master", ON_A_MASTER))
-    told = []
+    results = []
     for where, arguments in runs:
         code, text = _run("-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments)
         last = text.strip().splitlines()[-1]
-        told.append(f"- {where}: `pytest {' '.join(arguments)}` (exit code {code}): {last}")
+        results.append(f"- {where}: `pytest {' '.join(arguments)}` (exit code {code}): {last}")
     return "\n\n".join(
         [
             "## Listings 3 to 8, the monitor in ROS",
             "The paper: a node that monitors requests and grants every second; no value is printed. RTAMT's node needs "
             "ROS 1 beside its own environment, so that it is not run here.",
-            "\n".join(told),
+            "\n".join(results),
         ]
     )
 
@@ -195,10 +195,10 @@ def case(each: Case) -> str:
     code, text = _run(each.program, *arguments)
     shown = " ".join((each.program, *(a.format(folder=f"build/paper/{each.folder}") for a in each.arguments)))
     said = "\n".join(line for line in text.splitlines() if not line.startswith(str(OUT)))
-    pictures = "\n\n".join(f"![{name}]({each.folder}/{name})" for name in each.pictures)
+    images = "\n\n".join(f"![{name}]({each.folder}/{name})" for name in each.figures)
     return (
         f"## {each.title}\n\nThe paper: {each.claim}.\n\n`python {shown}` (exit code {code}):\n\n"
-        f"```text\n{said}\n```\n\n{pictures}"
+        f"```text\n{said}\n```\n\n{images}"
     )
 
 

@@ -23,7 +23,7 @@ WRONG_GAIN = -0.3  # what a fault makes of the gain to the side
 
 
 class Controller:
-    """Keeps the perceived position on the reference; the base is told velocities in its own frame."""
+    """Keeps the perceived position on the reference; commands the base by velocities in its own frame."""
 
     def __init__(self, start: np.ndarray, fault: Fault | None = None) -> None:
         self.reference = start.copy()
@@ -35,7 +35,7 @@ class Controller:
         self._off = 0.0
 
     def follow(self, time: float, view: State, plan: Plan) -> np.ndarray:
-        """Return what the base is told: forward, left (m/s), turn (rad/s)."""
+        """Return the command to the base: forward, left (m/s), turn (rad/s)."""
         if plan.made != self._made:
             self._made, self._left = plan.made, plan.waypoints[1:]
         moved = self._advance()
@@ -45,13 +45,13 @@ class Controller:
         self._before = error
         self._total = limited(self._total + INTEGRAL * error * PERIOD, WINDUP)
         wanted = moved + PROPORTIONAL * error + self._total + DERIVATIVE * change
-        told = turned(wanted, -view.pose[2])
+        command = turned(wanted, -view.pose[2])
         if self._fault and self._fault.active("controller", time) == "wrong gain":
-            told[1] *= WRONG_GAIN
+            command[1] *= WRONG_GAIN
         turn = 0.0
         if np.hypot(*moved) > 0:
             turn = TURN * wrapped(float(np.arctan2(moved[1], moved[0])) - view.pose[2])
-        return np.append(limited(told, MAX_SPEED), np.clip(turn, -MAX_TURN, MAX_TURN))
+        return np.append(limited(command, MAX_SPEED), np.clip(turn, -MAX_TURN, MAX_TURN))
 
     def _advance(self) -> np.ndarray:
         """Move the reference on; return its velocity. It is slower while the robot is behind."""

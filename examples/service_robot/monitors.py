@@ -41,8 +41,8 @@ class Monitors:
 
     def fell(self, name: str) -> float | None:
         """Return when a specification was first seen violated (s); None if it never was."""
-        told = zip(self.times, self.robustness[name], strict=True)
-        return next((time for time, value in told if value is not None and value < 0), None)
+        values = zip(self.times, self.robustness[name], strict=True)
+        return next((time for time, value in values if value is not None and value < 0), None)
 
     def culprit(self) -> str | None:
         """Return the component whose specification was violated first; None if none did."""

@@ -32,7 +32,7 @@ from sim import PERIOD, State, World
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-BEGIN = 1.0  # s of simulated time; 0 means to ROS that nobody has told the time
+BEGIN = 1.0  # s of simulated time; ROS reads 0 as no time
 SIGNALS = {
     "plant": ("agent_distance", "obstacle_distance", "region_distance"),
     "perception": ("pose_error", "agent_error", "obstacle_error", "region_error"),
@@ -54,7 +54,7 @@ class Component:
             for signal in SIGNALS[name]
         }
 
-    def tell(self, at: float, signals: Mapping[str, float]) -> None:
+    def publish_signals(self, at: float, signals: Mapping[str, float]) -> None:
         """Publish the signals that the monitors read."""
         for signal, value in signals.items():
             message = FloatStamped(value=value)
@@ -63,7 +63,7 @@ class Component:
 
 
 class PlantNode(Component):
-    """The world: publishes what is true, and takes what the base is told."""
+    """The world: publishes what is true, and takes the commands to the base."""
 
     def __init__(self) -> None:
         super().__init__("plant")
@@ -75,7 +75,7 @@ class PlantNode(Component):
         rospy.Subscriber("command", TwistStamped, self.take, tcp_nodelay=True)
 
     def take(self, message: TwistStamped) -> None:
-        """Take what the base is told."""
+        """Take a command to the base."""
         with self.answered:
             self.answer = message
             self.answered.notify()
@@ -89,7 +89,7 @@ class PlantNode(Component):
             due = time.monotonic() + pause
             at = self.world.time
             self.clock.publish(Clock(clock=stamp(at)))
-            self.tell(at, self.world.signals())
+            self.publish_signals(at, self.world.signals())
             self.truth.publish(poses(at, self.world.truth))
             with self.answered:
                 while not (self.answer and time_of(self.answer) == at) and not rospy.is_shutdown():
@@ -119,7 +119,7 @@ class PerceptionNode(Component):
         """Perceive a state."""
         at, truth = time_of(message), state(message)
         view = self.perception.observe(at, truth)
-        self.tell(at, self.perception.signals(truth, view))
+        self.publish_signals(at, self.perception.signals(truth, view))
         self.view.publish(poses(at, view))
 
 
@@ -153,7 +153,7 @@ class PlannerNode(Component):
         for at in [at for at in self.views if before(at) in self.references]:
             view = self.views.pop(at)
             plan = self.planner.plan(at, view, self.references.pop(before(at)))
-            self.tell(at, self.planner.signals(view))
+            self.publish_signals(at, self.planner.signals(view))
             message = Path()
             message.header.stamp = stamp(at)
             for x, y in plan.waypoints:
@@ -174,7 +174,7 @@ class ControllerNode(Component):
         self.reference = rospy.Publisher("reference", PointStamped, queue_size=0, latch=True)
         self.views: dict[float, State] = {}
         self.plans: dict[float, Plan] = {}
-        self.tell_reference(before(0.0))
+        self.publish_reference(before(0.0))
         rospy.Subscriber("view", PoseArray, self.take_view, tcp_nodelay=True)
         rospy.Subscriber("path", Path, self.take_path, tcp_nodelay=True)
 
@@ -192,17 +192,17 @@ class ControllerNode(Component):
             self.follow()
 
     def follow(self) -> None:
-        """Publish what the base is told, if all that it depends on is there."""
+        """Publish the command to the base, if all that it depends on is there."""
         for at in [at for at in self.views if at in self.plans]:
-            told = self.controller.follow(at, self.views.pop(at), self.plans.pop(at))
-            self.tell(at, self.controller.signals())
-            self.tell_reference(at)
+            command = self.controller.follow(at, self.views.pop(at), self.plans.pop(at))
+            self.publish_signals(at, self.controller.signals())
+            self.publish_reference(at)
             message = TwistStamped()
             message.header.stamp = stamp(at)
-            message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = told
+            message.twist.linear.x, message.twist.linear.y, message.twist.angular.z = command
             self.command.publish(message)
 
-    def tell_reference(self, at: float) -> None:
+    def publish_reference(self, at: float) -> None:
         """Publish the point where the robot should be."""
         message = PointStamped()
         message.header.stamp = stamp(at)

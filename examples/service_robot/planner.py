@@ -30,7 +30,7 @@ TO_GOAL, TO_OLD_PATH = 0.15, 0.4  # shares of samples
 
 @dataclass(frozen=True)
 class Plan:
-    """Waypoints (n, 2) that lie ahead, and when their path was made (s): that tells paths apart."""
+    """Waypoints (n, 2) that lie ahead, and when their path was made (s), which identifies the path."""
 
     made: float
     waypoints: np.ndarray

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 COLOURS = {"system": "#222222", "perception": "#0072b2", "planner": "#d55e00", "controller": "#009e73"}
 FLOOR = -0.5  # m: robustness below it is drawn at the edge, so that the others can be seen
 STILLS = 4
-EVERY = 10  # moments, from picture to picture of the moving one
+EVERY = 10  # moments, from frame to frame of the animation
 
 
 def draw(healthy: Run, run: Run, folder: Path) -> list[Path]:

@@ -58,15 +58,15 @@ def drive(component: str | None, seed: int, duration: float = DURATION) -> Run:
         time, truth = world.time, world.truth
         view = perception.observe(time, truth)
         plan = planner.plan(time, view, controller.reference)
-        told = controller.follow(time, view, plan)
+        command = controller.follow(time, view, plan)
         signals = world.signals() | perception.signals(truth, view)
         monitors.update(time, signals | planner.signals(view) | controller.signals())
         moments.append(Moment(time, truth, view, plan.waypoints))
-        world.step(told)
+        world.step(command)
     return Run(fault, world.goal, moments, monitors)
 
 
-def tell(run: Run) -> str:
+def summary(run: Run) -> str:
     """Return what happened in a drive."""
     fault, monitors = run.fault, run.monitors
     lines = [f"fault: {fault.component}, {fault.kind}, at {fault.onset:.1f} s" if fault else "fault: none"]
@@ -82,7 +82,7 @@ def tell(run: Run) -> str:
 
 
 def table() -> bool:
-    """Drive every seed without a fault and with each, print the table; tell whether every answer is right."""
+    """Drive every seed without a fault and with each, print the table; return whether every answer is right."""
     print("| fault in | runs | none | perception | planner | controller | system violated | earlier by (s) |")
     print("|---|---|---|---|---|---|---|---|")
     rows = [_row(component) for component in (None, *FAULTS)]
@@ -120,7 +120,7 @@ def main() -> int:
     if arguments.table:
         return 0 if table() else 1
     run = drive(arguments.fault, arguments.seed)
-    print(tell(run))
+    print(summary(run))
     if arguments.plots:
         import plot
 

@@ -16,7 +16,7 @@ PERIOD = 0.1  # s, from sample to sample
 RADIUS = 0.225  # m, of the base; the paper's Table 3: footprint 450 mm
 MAX_SPEED = 0.22  # m/s, of the base; the paper's Table 3
 MAX_TURN = 1.0  # rad/s
-LAG = 0.2  # s, in which a drive does two thirds of what it is told
+LAG = 0.2  # s, in which a drive does two thirds of what it is commanded
 STUCK_SPEED = 0.05  # m/s to the side, of a stuck drive
 
 PERSON = 0.25  # m, the radius of an agent
@@ -59,7 +59,7 @@ class State:
 
 
 class World:
-    """The room in motion: ``step`` takes the velocity the base is told, and goes on by one period."""
+    """The room in motion: ``step`` takes the velocity that the base is commanded, and goes on by one period."""
 
     def __init__(self, seed: int, fault: Fault | None = None) -> None:
         rng = np.random.default_rng([seed, 0])
@@ -77,18 +77,18 @@ class World:
 
     @property
     def truth(self) -> State:
-        """What is so."""
+        """The true state."""
         return State(self._pose.copy(), self._agents.copy())
 
-    def step(self, told: np.ndarray) -> None:
-        """Go on by a period; ``told``: forward, left (m/s) and turn (rad/s), in the robot's own frame."""
+    def step(self, command: np.ndarray) -> None:
+        """Go on by a period; ``command``: forward, left (m/s) and turn (rad/s), in the robot's own frame."""
         self._walk()
-        self._drive(np.asarray(told, dtype=float))
+        self._drive(np.asarray(command, dtype=float))
         self.time = round(self.time + PERIOD, 6)
 
-    def _drive(self, told: np.ndarray) -> None:
-        told = np.append(limited(told[:2], MAX_SPEED), np.clip(told[2], -MAX_TURN, MAX_TURN))
-        self._velocity += (told - self._velocity) * (PERIOD / LAG)
+    def _drive(self, command: np.ndarray) -> None:
+        command = np.append(limited(command[:2], MAX_SPEED), np.clip(command[2], -MAX_TURN, MAX_TURN))
+        self._velocity += (command - self._velocity) * (PERIOD / LAG)
         if self.fault and self.fault.active("controller", self.time) == "stuck drive":
             self._velocity[1] = self.fault.side * STUCK_SPEED
         position = self._pose[:2] + turned(self._velocity[:2], self._pose[2]) * PERIOD

@@ -118,7 +118,7 @@ def _scopes_in(text: str) -> list[str]:
 
 
 def _scoped(name: str, parameters: tuple[str, ...], sentence: str, scopes: list[str]) -> str:
-    """Return what a pattern requires within its scope, which its last parameters and its name tell."""
+    """Return what a pattern requires within its scope, which follows from its last parameters and its name."""
     ends = {each for each in ("q", "r") if each in parameters}
     fitting = [scope for scope in scopes if set(_PARAMETER.findall(scope)) == ends]
     if not ends or not fitting:

@@ -180,12 +180,12 @@ class Specification(OnlineSpecification):
     def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
         """Return the specification over the members of groups that data has, and data with their presence."""
         rule = self.sampling
-        own_clocks = query.domain.own_time_bases or (rule is not None and rule.hold)
+        own_time_bases = query.domain.own_time_bases or (rule is not None and rule.hold)
         found = members.bound(
             self.binding.applied(data),
             self.groups,
             self.input_names,
-            own_clocks=own_clocks,
+            own_time_bases=own_time_bases,
             source=data.source if isinstance(data, Trace) else "the data",
         )
         return self.over(found.members), found.data
@@ -235,8 +235,8 @@ class Specification(OnlineSpecification):
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
-            own_clocks = query.domain.own_time_bases
-            filled, missing = fill_gaps(data, self.input_names, own_clocks=own_clocks)
+            own_time_bases = query.domain.own_time_bases
+            filled, missing = fill_gaps(data, self.input_names, own_time_bases=own_time_bases)
             if not missing:
                 raise
             return query.record(filled, self.input_names, self.types), missing

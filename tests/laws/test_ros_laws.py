@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
-from rtamt.cli.reading_options import Reading, on_clock, read_for
+from rtamt.cli.reading_options import Reading, on_time_base, read_for
 from rtamt.ros import Robustness, RosMonitor, bind
 from rtamt.ros.message_definitions import SATISFIED
 from rtamt.verdicts.at_start import StartMonitor
@@ -240,7 +240,7 @@ def test_a_node_before_the_end_agrees_with_the_monitor_and_with_check_on_the_bag
     records = [record for record in records if record.stamp <= last]
     bag = recorded(folders(), sent)
     reading = Reading(resample=f"{period}ns")
-    samples = on_clock(read_for([spec], str(bag), reading), spec, str(bag), reading)
+    samples = on_time_base(read_for([spec], str(bag), reading), spec, str(bag), reading)
     start = StartMonitor(spec, period=Fraction(period, 10**9))
     rows = zip(*(samples[name].values.tolist() for name in spec.input_names), strict=True)
     for i, (record, row) in enumerate(zip(records, rows, strict=True)):

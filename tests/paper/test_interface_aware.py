@@ -70,7 +70,7 @@ def ways(semantics: rtamt.Semantics, time: str, mode: str) -> list[Any]:
 def test_fig_4_through_the_papers_api(name: str, semantics: str) -> None:
     chosen = rtamt.Semantics[semantics.upper()]
     trace = rtamt.read(f"{FOLDER}/{name}.csv", columns=("req", "gnt"))
-    data = {k: column.tolist() for k, column in trace.on_one_clock(("req", "gnt")).items()}
+    data = {k: column.tolist() for k, column in trace.on_one_time_base(("req", "gnt")).items()}
     expected = FIG4[name][semantics]
     pairs = [[k, list(map(list, zip(data["time"], data[k], strict=True)))] for k in ("req", "gnt")]
     for spec in ways(chosen, "Discrete", "Offline"):

@@ -12,6 +12,7 @@ sequences    temporal operators over traces of unknown length
 encoder      formulas as terms, by the operator table
 problem      what is asked of traces of at most N samples
 witness      a trace that was found, evaluated by the engine
+declared     what specifications declare about their data
 study        questions about requirements, and answers as sentences
 questions    one question each, as functions
 analysis     all questions about a specification

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from rtamt.analysis.encoder import NotCoveredError
 from rtamt.analysis.study import LIMIT, SAMPLES, Conclusion, Part, Study, implications, unbounded
+from rtamt.language.formula import variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
+from rtamt.language.value_types import WHOLE
 from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
@@ -69,7 +71,11 @@ def analyze(
     parts, notes = _covered(spec, study)
     found: list[Conclusion] = []
     for part in parts:
-        found += [study.satisfiable(part), study.valid(part), *study.vacuous(part)]
+        first = study.satisfiable(part)
+        found.append(first)
+        if first.finding and study.without_value(part):
+            continue
+        found += [study.valid(part), *study.vacuous(part)]
     satisfiable = [part for part in parts if not any(_is(each, "satisfiable", part) for each in found)]
     if len(satisfiable) > 1:
         together = study.satisfiable(*satisfiable)
@@ -99,7 +105,10 @@ def _covered(spec: Specification, study: Study) -> tuple[list[Part], list[str]]:
         parts.append(Part(name, one))
         if unbounded(one.formula):
             endless.append(name)
-    return parts, [*notes, *about_unbounded(endless, study.samples)]
+    whole = [
+        name for name in _whole_numbers(spec) if name in variables(*(part.spec.formula for part in parts))
+    ]
+    return parts, [*notes, *about_unbounded(endless, study.samples), *about_whole(whole)]
 
 
 def about_unbounded(names: Sequence[str], samples: int) -> list[str]:
@@ -110,6 +119,18 @@ def about_unbounded(names: Sequence[str], samples: int) -> list[str]:
     return [
         f"{_listed(names)} {have} unbounded operators: traces longer than {samples} samples are not covered"
     ]
+
+
+def about_whole(names: Sequence[str]) -> list[str]:
+    """Return the note that variables are declared as whole numbers, if some are."""
+    if not names:
+        return []
+    are = "are whole numbers" if len(names) > 1 else "is a whole number"
+    return [f"{_listed(names)} {are}: traces have any number there, as recordings may"]
+
+
+def _whole_numbers(spec: Specification) -> list[str]:
+    return [each.name for each in spec.document.declarations if each.kind == "var" and each.type in WHOLE]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -1,10 +1,12 @@
 """What the opcodes of the operator table compute, as terms: arithmetic that is linear piece by piece.
 
-An operator whose opcode is not among them, such as ``sqrt``, is not covered.
+The table defines what an operator computes by functions of arrays, from which no terms can be derived. Each opcode is
+therefore listed here a second time, as a term or as nonlinear; a test compares this list with the table.
 """
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
@@ -58,6 +60,10 @@ def _at_least(of: Values, a: Value, b: Value) -> Value:
     return a
 
 
+def _scaled(factor: float) -> Encoding:
+    return lambda of, a: of.times(_constant(Fraction(factor)), a)
+
+
 ENCODED: Mapping[str, Encoding] = MappingProxyType(
     {
         "neg": lambda of, a: of.minus(a),
@@ -74,8 +80,32 @@ ENCODED: Mapping[str, Encoding] = MappingProxyType(
         "round": _round,
         "mod": _mod,
         "at_least": _at_least,
+        "degrees": _scaled(180 / math.pi),
+        "radians": _scaled(math.pi / 180),
         "holds_gt": lambda of, a, b: of.verdict(of.exceeds(a, b)),
         "holds_ge": lambda of, a, b: of.verdict(of.reaches(a, b)),
         "holds_eq": lambda of, a, b: of.verdict(of.equals(a, b)),
     }
+)
+
+#: The opcodes of functions that no linear arithmetic computes. Requirements with them are not covered.
+NONLINEAR = frozenset(
+    (
+        "acos",
+        "asin",
+        "atan",
+        "atan2",
+        "cos",
+        "cosh",
+        "exp",
+        "hypot",
+        "ln",
+        "log",
+        "pow",
+        "sin",
+        "sinh",
+        "sqrt",
+        "tan",
+        "tanh",
+    )
 )

@@ -102,6 +102,13 @@ class Problem:
         """Return the indices of some wishes that cannot be fulfilled together; None where none are known."""
         return self._solver.conflict([self._truth(wish) for wish in wishes])
 
+    def has_values(self, wishes: Sequence[Wish], limit: float) -> bool | None:
+        """Return whether formulas have values together on some trace; None if there is no answer in so many seconds."""
+        for wish in wishes:
+            self._truth(wish)
+        defined = [self._encoder.defined(wish.formula) for wish in wishes]
+        return all(each is True for each in defined) or self._solver.ask(defined, limit)
+
     def covers(self, wish: Wish) -> None:
         """Raise :class:`NotCoveredError` if a part of the formula is not covered."""
         self._truth(wish)

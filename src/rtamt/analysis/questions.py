@@ -43,6 +43,8 @@ def implies(
 ) -> Conclusion:
     """Answer whether every trace that satisfies the first specification satisfies the second.
 
+    Ranges and rates are assumed of the signals: those that one specification declares hold for the other one, too.
+
     >>> import rtamt
     >>> from rtamt.analysis import implies
     >>> soon, later = rtamt.parse("eventually[0:5](x > 3)"), rtamt.parse("eventually[0:10](x > 3)")
@@ -58,7 +60,7 @@ def implies(
 def equivalent(
     first: Specification, second: Specification, *, samples: int = SAMPLES, limit: float = LIMIT
 ) -> Conclusion:
-    """Answer whether two specifications have the same verdict on every trace.
+    """Answer whether two specifications have the same verdict on every trace, within the limits that either declares.
 
     >>> import rtamt
     >>> from rtamt.analysis import equivalent

@@ -6,7 +6,7 @@ from fractions import Fraction
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
-from rtamt.analysis.encoder import Limits, NotCoveredError
+from rtamt.analysis.declared import common_limits, last_limits, require_covered, require_same_signals
 from rtamt.analysis.problem import Answer, Problem, related
 from rtamt.analysis.witness import Wish, Witness
 from rtamt.errors import UsageError, shown
@@ -22,7 +22,7 @@ from rtamt.signals.arrays import is_number
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from rtamt.specification import Specification
 
@@ -68,17 +68,25 @@ class Conclusion:
 class Study:
     """Requirements over the same variables, and the traces of 1 to ``samples`` samples.
 
-    ``limit``: seconds that one question may take. Raises :class:`NotCoveredError` for dense time, and for groups of
-    signals.
+    ``limit``: seconds that one question may take. ``versions``: whether the specifications are versions of one, of
+    which the last one declares the limits of variables. Raises :class:`NotCoveredError` for dense time, and for groups
+    of signals.
     """
 
-    def __init__(self, specs: Sequence[Specification], samples: int = SAMPLES, limit: float = LIMIT) -> None:
+    def __init__(
+        self,
+        specs: Sequence[Specification],
+        samples: int = SAMPLES,
+        limit: float = LIMIT,
+        *,
+        versions: bool = False,
+    ) -> None:
         if not is_number(samples) or samples != int(samples) or samples < 1:
             raise UsageError(f"samples is {shown(samples)}; give a number of samples, 1 or more")
         if not is_number(limit) or not limit > 0:
             raise UsageError(f"limit is {shown(limit)}; give a number of seconds above 0")
         for spec in specs:
-            _require_covered(spec)
+            require_covered(spec)
         periods = {spec.period or Fraction(1) for spec in specs}
         if len(periods) > 1:
             listed = " and ".join(format_duration(each) for each in sorted(periods))
@@ -88,8 +96,8 @@ class Study:
         (self.period,) = periods
         self.samples = int(samples)
         self.limit = limit
-        self.limits = _limits(specs)
-        _require_same_signals(specs)
+        self.limits = last_limits(specs) if versions else common_limits(specs)
+        require_same_signals(specs)
         for spec in specs:
             Discrete(self.period).check(spec.formula, spec.text)
         self._problems: dict[tuple[int, bool, bool], Problem] = {}
@@ -138,6 +146,15 @@ class Study:
         """Raise :class:`NotCoveredError` if a part of a formula is not covered."""
         self.problem(min(_SHORT, self.samples)).covers(Wish(spec, formula, True))
 
+    def without_value(self, *parts: Part) -> str | None:
+        """Return the sentence that there is no trace on which the parts have values; None if there may be one."""
+        wishes = [part.wish() for part in parts]
+        problems = [self.problem(min(_SHORT, self.samples)), self.problem(self.samples)]
+        if any(problem.has_values(wishes, self.limit) is not False for problem in problems):
+            return None
+        verb = "it has" if len(parts) == 1 else "they have"
+        return f"{verb} no value on any trace up to {self._length}: evaluations report an error"
+
     # ---- one requirement -------------------------------------------------------------------------
 
     def satisfiable(self, *parts: Part) -> Conclusion:
@@ -146,15 +163,21 @@ class Study:
         question = "satisfiable" if one else "consistent"
         wishes = [part.wish() for part in parts]
         answer = self.find_whole(wishes)
-        satisfies = "satisfies it" if one else "satisfies all of them"
+        satisfies = "satisfies it" if one else "satisfies all of them together"
         if answer.exists is False:
+            if nothing := self.without_value(*parts):
+                return Conclusion(question, names, False, nothing, True)
             if not one:
                 problem = self.problem(self.samples, whole=True)
                 names = tuple(parts[k].name for k in _smallest(problem, wishes))
-            sentence = f"no trace of {self._length} {'satisfies it' if len(names) == 1 else 'satisfies these together'}"
+            sentence = (
+                f"no trace of {self._length} satisfies it"
+                if len(names) == 1
+                else f"they contradict each other: no trace of {self._length} satisfies them together"
+            )
             shorter = self.find(wishes)
             if shorter.exists and shorter.witness is not None:
-                sentence += f"; one of {_samples(shorter.witness.samples)} does"
+                sentence += f"; a trace of {_samples(shorter.witness.samples)} does"
             return Conclusion(question, names, False, sentence, True, shorter.witness)
         return self._open(question, names, answer) or Conclusion(
             question, names, True, f"{trace_text(answer.witness)} {satisfies}", witness=answer.witness
@@ -164,6 +187,8 @@ class Study:
         """Answer whether a requirement holds on every trace."""
         answer = self.find([part.wish(False)])
         if answer.exists is False:
+            if nothing := self.without_value(part):
+                return Conclusion("valid", (part.name,), False, nothing, True)
             sentence = f"it always holds: {self._none([part.spec.formula])}"
             return Conclusion("valid", (part.name,), True, sentence, True)
         return self._open("valid", (part.name,), answer) or Conclusion(
@@ -177,6 +202,8 @@ class Study:
         names = (first.name, second.name)
         answer = self.find([first.wish(), second.wish(False)])
         if answer.exists is False:
+            if nothing := self.without_value(first, second):
+                return Conclusion("implies", names, None, nothing)
             none = self._none([first.spec.formula, second.spec.formula])
             return Conclusion("implies", names, True, f"the first implies the second: {none}")
         return self._open("implies", names, answer) or Conclusion(
@@ -337,45 +364,3 @@ def trace_text(witness: Witness | None) -> str:
     if not witness.confirmed:
         return f"a trace of {_samples(witness.samples)}"
     return f"a trace of {_samples(witness.samples)} (margin {witness.margin:.6g})"
-
-
-def _require_covered(spec: Specification) -> None:
-    if not spec.domain.sampled:
-        raise NotCoveredError(
-            f"{spec.domain.name} time is not covered by the analysis, which counts samples: read the specification in "
-            f"discrete time"
-        )
-    if spec.groups:
-        name = next(iter(spec.groups))
-        raise NotCoveredError(
-            f"quantifiers are not covered by the analysis: choose the members of '{name}' with spec.over(...)"
-        )
-
-
-def _limits(specs: Sequence[Specification]) -> Mapping[str, Limits]:
-    """Return the declared limits of variables; those of later specifications replace those of earlier ones."""
-    return {
-        each.name: Limits(each.range, each.rate)
-        for spec in specs
-        for each in spec.document.declarations
-        if each.kind == "var"
-    }
-
-
-def _require_same_signals(specs: Sequence[Specification]) -> None:
-    """Raise unless a variable has one type, and one unit: data in another unit are other numbers."""
-    types: dict[str, object] = {}
-    units: dict[str, str] = {}
-    for spec in specs:
-        for name in spec.input_names:
-            type_ = spec.types.get(name)
-            unit = spec.units.get(name, units.get(name, ""))
-            if types.setdefault(name, type_) != type_:
-                _differ("type", name)
-            if units.setdefault(name, unit) not in ("", unit):
-                _differ("unit", name)
-            units[name] = unit
-
-
-def _differ(what: str, name: str) -> None:
-    raise UsageError(f"the {what}s of '{name}' differ: declare the same {what} in both specifications")

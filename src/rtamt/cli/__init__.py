@@ -1,8 +1,8 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
-``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``, ``describe``,
-``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``,
+``describe``, ``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ================  =============================================================
@@ -61,6 +61,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("explain", "report which instants of which signals decide the verdict"),
             ("plot", "plot signals, robustness and the cause of the verdict"),
             ("report", "write an interactive page: signals, robustness, explanations"),
+            ("play", "edit requirements and signals in a local web page, evaluated while typing"),
             ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
             ("worker", "monitor the samples of a Kafka topic, for many vehicles"),
             ("ros2", "monitor ROS 2 topics, publish robustness and verdicts"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.chunks import Chunks
 from rtamt.cli.outcome import Outcome, moment_of, plain_time
-from rtamt.cli.reading_options import choice_for, is_resampled, oldest_held, on_clock
+from rtamt.cli.reading_options import choice_for, is_resampled, oldest_held, on_time_base
 from rtamt.errors import StlError
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
@@ -54,7 +54,7 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
                 taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
             else:
                 whole = spec.binding.applied(trace_of(source, choice_for([spec], trace, reading)))
-                parts = in_parts(on_clock(whole, spec, trace, reading))
+                parts = in_parts(on_time_base(whole, spec, trace, reading))
                 taken = chunks = Chunks(spec, parts, bound=True)
             if not any(map(check.take, taken)):
                 return None

@@ -184,7 +184,7 @@ def choice_for(specs: Sequence[Specification], trace: str, reading: Reading) -> 
     columns = dict.fromkeys(name for spec in specs for name in spec.input_names)
     _check_places(specs)
     # In discrete time a gap is an error, unless each signal has its own time base, or is resampled.
-    gaps = has_own_clocks(specs[0], trace, reading)
+    gaps = has_own_time_bases(specs[0], trace, reading)
     names: dict[str, str] = {}
     if is_bag(trace):
         from rtamt.ros.bags import columns_of
@@ -225,7 +225,7 @@ def _sampling_of(spec: Specification) -> tuple[bool, bool]:
     return rule is not None and rule.hold, rule is not None and rule.skip_nan
 
 
-def has_own_clocks(spec: Specification, trace: str, reading: Reading) -> bool:
+def has_own_time_bases(spec: Specification, trace: str, reading: Reading) -> bool:
     """Return whether each signal has its own time base, so that signals may begin at different times."""
     return spec.domain.own_time_bases or is_bag(trace) or is_resampled(spec, trace, reading)
 
@@ -246,7 +246,7 @@ def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
     return None if spec.sampling is None else spec.sampling.limit
 
 
-def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
+def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading) -> Trace:
     """Return the variables of a requirement in a recording, on the time base that the options select.
 
     Which other requirements were read with it makes no difference. Discrete time samples a bag as a node
@@ -262,7 +262,7 @@ def on_clock(data: Trace, spec: Specification, trace: str, reading: Reading) -> 
     if period is not None:
         return mine.resample(period, reading.how, oldest_held(spec, reading))
     try:
-        times = timestamps(mine.on_one_clock(mine.names)[TIME]).seconds
+        times = timestamps(mine.on_one_time_base(mine.names)[TIME]).seconds
         check_regular(times, infer_period(times))
     except TraceError as error:
         raise TraceError(

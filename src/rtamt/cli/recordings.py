@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.cli.reading_options import on_clock, read_for, reading_of, recording
+from rtamt.cli.reading_options import on_time_base, read_for, reading_of, recording
 from rtamt.files import replacing
 from rtamt.readers.sql import shown
 
@@ -34,7 +34,7 @@ def recordings_of(
             found[name] = recording(args, trace)
         else:
             data = spec.binding.applied(read_for([spec], trace, reading))
-            found[name] = on_clock(data, spec, trace, reading)
+            found[name] = on_time_base(data, spec, trace, reading)
     return found
 
 

@@ -24,7 +24,7 @@ from rtamt.cli.reading_options import (
     choice_for,
     how_to_mend,
     is_resampled,
-    on_clock,
+    on_time_base,
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
@@ -158,7 +158,7 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
                 gaps=True,
             )
             whole = spec.binding.applied(trace_of(source, choice))
-        bound = members.bound(whole, spec.groups, spec.input_names, own_clocks=True, source=shown(trace))
+        bound = members.bound(whole, spec.groups, spec.input_names, own_time_bases=True, source=shown(trace))
         over = spec.over(bound.members)
         rows = tuple(
             replace(row, spec=over.select(row.spec.document.requirements[0].name)) for row in requirement.rows
@@ -312,7 +312,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         place = f"{shown(trace)}: "
         if spec.domain.own_time_bases and any(whole.channel(name).times is None for name in whole):
             raise TraceError(NO_STAMPS)
-        whole = on_clock(spec.binding.applied(whole), spec, trace, reading)
+        whole = on_time_base(spec.binding.applied(whole), spec, trace, reading)
         alone = len(spec.requirements) == 1
         parts = (
             evaluate_requirements(spec, whole).values()

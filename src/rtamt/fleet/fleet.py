@@ -93,7 +93,7 @@ class Fleet:
         )
         if records is None:
             raise UsageError(
-                "a fleet monitors the delayed robustness in discrete time, without operators of your own; "
+                "a fleet monitors the delayed robustness in discrete time, without custom operators; "
                 "make a monitor for each key instead"
             )
         self._usage = UsageGuard()

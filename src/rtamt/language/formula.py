@@ -149,7 +149,7 @@ class Var(Formula):
     ``type``: as declared; None for numbers. A text declares each name once, so equality ignores it.
     """
 
-    #: Whether a quantifier determines what it is: see ``groups.py``.
+    #: Whether a quantifier determines what it is: see ``quantifiers.py``.
     bound: ClassVar[bool] = False
 
     name: str

@@ -10,8 +10,8 @@ from rtamt.errors import StlError, UsageError, line_and_column
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.substitution import substituted
 from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.mutation.changes import changes_of, described
-from rtamt.mutation.normal import Keys
+from rtamt.mutation.equal_formulas import Keys
+from rtamt.mutation.operators import changes_of, described
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -45,8 +45,8 @@ def mutants_of(spec: Specification, step: Fraction | None = None) -> list[Mutant
 
     Each differs from its requirement by one other operator (of the same operands, by the operator table), one constant
     that is a tenth larger or smaller, or one bound that is. A mutant that is trivially equal to the requirement, or to
-    an earlier mutant, is left out: see :mod:`rtamt.mutation.normal`. ``step``: the sampling period, of which bounds
-    are multiples in discrete time; by default that of the specification.
+    an earlier mutant, is left out: see :mod:`rtamt.mutation.equal_formulas`. ``step``: the sampling period, of which
+    bounds are multiples in discrete time; by default that of the specification.
 
     Raises :class:`UsageError` where bounds have to be changed and no sampling period is known.
 

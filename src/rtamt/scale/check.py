@@ -39,7 +39,7 @@ def checked(
     r"""Yield the rows of each recording, in their order; first all are computed that the manifest does not have.
 
     ``manifest``: the path of the file that remembers results. ``jobs``: processes of the local engine. ``progress``: is
-    told whenever a recording is done.
+    called whenever a recording is done.
 
     >>> import pathlib, tempfile
     >>> import rtamt

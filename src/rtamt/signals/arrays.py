@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 TIME = counting.TIME
 
 
-class Clocked(ABC):
+class WithTimeBases(ABC):
     """Data with its own time bases: see ``trace.py``."""
 
     __slots__ = ()
@@ -53,11 +53,11 @@ class Clocked(ABC):
         """The units of the signals whose source provides them."""
 
     @abstractmethod
-    def on_one_clock(self, names: Collection[str]) -> Mapping[str, Any]:
+    def on_one_time_base(self, names: Collection[str]) -> Mapping[str, Any]:
         """Return n values for each name, and ``"time"`` in seconds if there are timestamps."""
 
     @abstractmethod
-    def on_own_clocks(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
+    def on_own_time_bases(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
         """Return times and values for each name."""
 
 
@@ -80,7 +80,7 @@ def plain(time: Any) -> Any:
 
 def units_of(data: Any) -> Mapping[str, str]:
     """Return the units of the variables, as far as the data provides them."""
-    return data.units if isinstance(data, Clocked) else {}
+    return data.units if isinstance(data, WithTimeBases) else {}
 
 
 def columns_of(
@@ -91,8 +91,8 @@ def columns_of(
     ``types``: of the variables that may be given by the names of members.
     """
     require_no_unit(data, unit)
-    if data.__class__ is not dict and isinstance(data, Clocked):
-        data = data.on_one_clock(names)
+    if data.__class__ is not dict and isinstance(data, WithTimeBases):
+        data = data.on_one_time_base(names)
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
@@ -105,7 +105,7 @@ def require_no_unit(data: Any, unit: str | None) -> None:
     """Raise :class:`UsageError` if a time unit is given for data that has its own."""
     if unit is not None:
         check_unit(unit)
-        if isinstance(data, Clocked):
+        if isinstance(data, WithTimeBases):
             raise UsageError(
                 "a trace that was read knows its unit of time: give time_unit= to rtamt.read, "
                 "not to what takes the trace"

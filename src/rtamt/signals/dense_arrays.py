@@ -99,8 +99,8 @@ def columns_of(
     given as ``req``, whose values are objects that have them. ``declared``: for a chunk, which need not
     hold every variable, names that it may hold besides.
     """
-    if data.__class__ is not dict and isinstance(data, arrays.Clocked):
-        data = data.on_own_clocks(names)
+    if data.__class__ is not dict and isinstance(data, arrays.WithTimeBases):
+        data = data.on_own_time_bases(names)
     if not arrays.is_mapping(data):
         if not arrays.is_frame(data):
             raise arrays.not_a_mapping(data, "(times, values), such as {'x': ([0.0, 1.5], [3, 4])}")

@@ -15,7 +15,7 @@ import numpy as np
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, Clocked, is_mapping, number_of
+from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping, number_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,12 +113,12 @@ def range_of(name: str, value: Any) -> tuple[float, float]:
     return low, high
 
 
-def fill_gaps(data: Any, names: Sequence[str], *, own_clocks: bool) -> tuple[Any, dict[str, Mask]]:
+def fill_gaps(data: Any, names: Sequence[str], *, own_time_bases: bool) -> tuple[Any, dict[str, Mask]]:
     """Return the data with missing samples replaced by zeros, and masks of the variables with missing samples."""
-    if isinstance(data, Clocked):
+    if isinstance(data, WithTimeBases):
         return data, {}  # readers handle gaps
     missing: dict[str, Mask] = {}
-    if own_clocks:
+    if own_time_bases:
         filled: dict[str, Any] = {}
         for name, (times, values) in dense_arrays.columns_of(data, names).items():
             filled[name] = times, _filled(values, name, missing)

@@ -13,7 +13,7 @@ from rtamt.signals.members import (
     in_objects,
     members_of,
     names_of,
-    on_one_clock,
+    on_one_time_base,
     with_absences,
     with_aliases,
     with_gaps,
@@ -56,7 +56,7 @@ def chunk(data: Any, groups: Fields) -> Chunk:
     data = with_aliases(data, known)
     if isinstance(data, Trace):
         data = with_absences(data, [each.column(field) for each in known for field in each.fields])
-    made, throughout = on_one_clock(data, known, ())
+    made, throughout = on_one_time_base(data, known, ())
     channels = {each.name: channel_of(each.name) for each in known if each.name not in throughout}
     types = {
         each.column(field): type_
@@ -79,7 +79,7 @@ def chunk(data: Any, groups: Fields) -> Chunk:
     )
 
 
-def fields_on_own_clocks(data: Any, groups: Fields) -> dict[str, tuple[Any, Any]]:
+def fields_on_own_time_bases(data: Any, groups: Fields) -> dict[str, tuple[Any, Any]]:
     """Return the times and values of the fields of members in samples of a stream, None where a member is absent."""
     found = columns_of_members(members_of(groups, names_of(data), aliases_of(data), partly=True), groups)
     data = with_aliases(data, found)

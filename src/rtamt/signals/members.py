@@ -19,7 +19,7 @@ from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, Clocked, field_of, is_frame, is_mapping, not_a_mapping
+from rtamt.signals.arrays import TIME, WithTimeBases, field_of, is_frame, is_mapping, not_a_mapping
 from rtamt.signals.inexact import gaps_of, items_of
 from rtamt.signals.regular import merged
 from rtamt.signals.time_columns import check_frame
@@ -93,7 +93,7 @@ def declared_fields(members: Mapping[str, tuple[str, ...]], groups: Fields) -> d
 
 
 def bound(
-    data: Any, groups: Fields, names: Collection[str], *, own_clocks: bool, source: str = "the data"
+    data: Any, groups: Fields, names: Collection[str], *, own_time_bases: bool, source: str = "the data"
 ) -> Bound:
     """Return finished data with the members of groups as ordinary variables.
 
@@ -103,7 +103,7 @@ def bound(
     known = names_of(data)
     members = members_of(groups, known, aliases_of(data))
     require_members(members, groups, known, source)
-    read = _trace if isinstance(data, Trace) else _on_own_clocks if own_clocks else on_one_clock
+    read = _trace if isinstance(data, Trace) else _on_own_time_bases if own_time_bases else on_one_time_base
     columns = columns_of_members(members, groups)
     made, throughout = read(with_aliases(data, columns), columns, names)
     return Bound(made, Members(members, frozenset(throughout)))
@@ -145,7 +145,7 @@ def columns_of_members(members: Mapping[str, tuple[str, ...]], groups: Fields) -
 
 def names_of(data: Any) -> list[str]:
     """Return the names of the variables in data, in their order."""
-    if isinstance(data, Clocked) or is_mapping(data):
+    if isinstance(data, WithTimeBases) or is_mapping(data):
         return [str(name) for name in data if name != TIME]
     if not is_frame(data):
         raise not_a_mapping(data, "values, such as {'time': [...], 'car_1.x': [...]}")
@@ -172,7 +172,7 @@ def with_aliases(data: Any, members: Sequence[Member]) -> Any:
 # ---- samples that all have the same timestamps ---------------------------------------------------
 
 
-def on_one_clock(
+def on_one_time_base(
     data: Any, members: Sequence[Member], _names: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
     """Return samples with the fields and channels of members, and the members that are present throughout."""
@@ -236,7 +236,7 @@ def filler(type_: Any) -> float:
 # ---- samples with their own timestamps -----------------------------------------------------------
 
 
-def _on_own_clocks(
+def _on_own_time_bases(
     data: Any, members: Sequence[Member], names: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
     fields = {each.column(field): each for each in members for field in each.fields}
@@ -287,17 +287,17 @@ def _in_steps(
 
     The presence is None where it is present from the start of the trace on, and never absent.
     """
-    clocks = {field: np.asarray(times) for field, (times, _) in recorded.items()}
-    times = merged(list(clocks.values()))
+    bases = {field: np.asarray(times) for field, (times, _) in recorded.items()}
+    times = merged(list(bases.values()))
     if not len(times):
         times = np.asarray([start])
     present = np.ones(len(times), bool)
     places = {}
-    for field, clock in clocks.items():
-        at = clock.searchsorted(times, "right") - 1
+    for field, base in bases.items():
+        at = base.searchsorted(times, "right") - 1
         mask = gaps_of(recorded[field][1])
         has = at >= 0
-        if mask is not None and len(mask) == len(clock) and len(clock):
+        if mask is not None and len(mask) == len(base) and len(base):
             has &= ~mask[at]
         present &= has
         places[field] = at
@@ -353,7 +353,7 @@ def with_absences(trace: Trace, columns: Collection[str]) -> dict[str, Any]:
             times, values[name] = with_gaps(made[name])
             blank = np.zeros(len(times))
             made[name] = replace(made[name], times=times, values=blank, first_gap=None, table=None)
-    return trace.with_channels(made).on_one_clock([name for name in made if name != TIME]) | values
+    return trace.with_channels(made).on_one_time_base([name for name in made if name != TIME]) | values
 
 
 def _firsts(channels: Iterable[Channel]) -> list[Any]:

@@ -4,7 +4,7 @@
 
     Trace                    what users read from files and frames
       └── Channel            one signal: its times, its values, its unit
-    DiscreteTrace            one clock, a period      (discrete.py)           discrete time evaluates this
+    DiscreteTrace            one time base, a period  (discrete.py)           discrete time evaluates this
     DenseTrace               integer ticks            (dense.py)              dense time evaluates this
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.signals.arrays import TIME, Clocked, timestamps
+from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.regular import merged
@@ -57,7 +57,7 @@ class Channel:
     alias: str = ""
 
 
-class Trace(Clocked):
+class Trace(WithTimeBases):
     """Named signals of one recording, each with its own times and values; cannot be changed.
 
     Made by :func:`rtamt.read`; ``Specification.evaluate`` and the monitors' ``update_many`` take it.
@@ -255,7 +255,7 @@ class Trace(Clocked):
 
     # ---- for the engine --------------------------------------------------------------------------
 
-    def on_one_clock(self, names: Collection[str]) -> dict[str, Any]:
+    def on_one_time_base(self, names: Collection[str]) -> dict[str, Any]:
         """Return discrete-time data: n values for each name, and ``"time"``.
 
         Raises :class:`TraceError` if the signals have different time bases.
@@ -264,15 +264,15 @@ class Trace(Clocked):
         for name, channel in channels.items():
             if channel.first_gap is not None:
                 raise missing_sample(name, channel.first_gap, self._source)
-        clocks = channels or self._channels
-        self._check_one_clock(clocks)
+        chosen = channels or self._channels
+        self._check_one_time_base(chosen)
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
-        times = next((channel.times for channel in clocks.values()), None)
+        times = next((channel.times for channel in chosen.values()), None)
         if times is not None:
             return {TIME: times, **result}
         return result or {name: channel.values for name, channel in self._channels.items()}
 
-    def on_own_clocks(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
+    def on_own_time_bases(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
         """Return dense-time data: (times, values) for each name."""
         result = {}
         for name in names:
@@ -286,7 +286,7 @@ class Trace(Clocked):
             result[name] = (channel.times, channel.values)
         return result
 
-    # ---- one clock, chosen openly ----------------------------------------------------------------
+    # ---- one time base, chosen openly ------------------------------------------------------------
 
     def resample(
         self,
@@ -366,7 +366,7 @@ class Trace(Clocked):
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         return [channel.times for channel in self._channels.values() if channel.times is not None]
 
-    def _check_one_clock(self, channels: Mapping[str, Channel]) -> None:
+    def _check_one_time_base(self, channels: Mapping[str, Channel]) -> None:
         first, *others = channels.items()
         for other in others:
             mine, its = first[1].times, other[1].times

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.analysis import NotCoveredError, analyze, equivalent, implies, satisfiable, valid
+from rtamt.analysis import NotCoveredError, analyze, diff, equivalent, implies, satisfiable, valid
 from rtamt.errors import UsageError
 
 
@@ -16,7 +16,7 @@ def said(spec, **settings):
 
 def test_a_requirement_that_no_long_trace_satisfies_is_shown_with_a_short_one():
     answer = satisfiable(rtamt.parse("always(x > 0 and next(x < 0))"), samples=10)
-    assert str(answer) == "no trace of 10 samples satisfies it; one of 1 sample does"
+    assert str(answer) == "no trace of 10 samples satisfies it; a trace of 1 sample does"
     assert answer.finding
     assert answer.witness.confirmed
 
@@ -74,7 +74,7 @@ def test_a_violation_that_needs_so_many_samples_is_found_with_them_and_not_with_
 
 def test_findings_name_the_requirements_of_a_contradiction():
     assert said("require A: always(x > 3); require B: always(y > 3); require C: always(x < y and y < 3)") == [
-        "B, C: no trace of 20 samples satisfies these together"
+        "B, C: they contradict each other: no trace of 20 samples satisfies them together"
     ]
 
 
@@ -165,6 +165,63 @@ def test_messages_for_specifications_that_cannot_be_compared():
         equivalent(rtamt.parse("float v [m/s]  v < 30"), rtamt.parse("float v [km/h]  v < 30"))
     with pytest.raises(UsageError, match="the sampling periods differ, 100 ms and 1 s"):
         equivalent(first, rtamt.parse("bool x  always(x)", period="100ms"))
+
+
+NOTHING = "no value on any trace up to 20 samples: evaluations report an error"
+
+
+@pytest.mark.parametrize("text", ["clip(x, 5, 3) > 0", "x > 100 -> clip(x, 5, 3) > 0"])
+def test_a_requirement_without_a_value_on_any_trace_neither_holds_nor_implies(text):
+    spec = rtamt.parse(text)
+    for ask in (valid, satisfiable):
+        answer = ask(spec, samples=20)
+        assert (answer.holds, answer.finding) == (False, True)
+        assert answer.sentence == f"it has {NOTHING}"
+    answer = implies(spec, rtamt.parse("x > 0"), samples=20)
+    assert (answer.holds, answer.sentence) == (None, f"they have {NOTHING}")
+    assert said(f"require R: {text}") == [f"R: it has {NOTHING}"]
+    assert diff(spec, rtamt.parse(text), samples=20).conclusions[0].holds is True
+
+
+def test_limits_of_one_specification_hold_for_the_other_and_must_not_differ():
+    free, narrow = rtamt.parse("x < 100"), rtamt.parse("float x in [0, 20]  x < 30")
+    assert implies(free, narrow).holds is True
+    assert implies(free, rtamt.parse("float x  x < 30")).holds is False
+    with pytest.raises(UsageError) as error:
+        equivalent(narrow, rtamt.parse("float x in [0, 10]  x < 30"))
+    assert str(error.value) == "the ranges of 'x' differ: declare the same range in both specifications"
+
+
+def test_whole_numbers_are_named_in_a_note():
+    found = analyze(rtamt.parse("int n  long m  int unused  n > 3 or m > 2"), samples=5)
+    assert found.notes == ("n and m are whole numbers: traces have any number there, as recordings may",)
+
+
+def test_degrees_and_radians_are_covered():
+    answer = valid(rtamt.parse("input float x in [0, 90]  radians(x) <= 1.58 and degrees(radians(x)) <= 91"))
+    assert answer.holds is True
+
+
+def test_versions_that_read_other_data_differ():
+    old = """
+        input float speed in [0, 60]
+        input int n
+        input float gap
+        sample 100ms
+        always(speed <= 50 and n + gap > 3)"""
+    new = old.replace("60", "80").replace("n\n", 'n = "count"\n').replace("100ms", "100ms hold for 1s")
+    new = new.replace("input float gap", "optional input float gap")
+    found = diff(rtamt.parse(old), rtamt.parse(new), samples=5)
+    assert [(each.question, each.sentence) for each in found.findings] == [
+        ("data", "the sampling rule has changed from 'sample 100ms' to 'sample 100ms hold for 1s'"),
+        ("data", "the recorded name of 'n' has changed from 'n' to 'count'"),
+        ("data", "'gap' is optional now"),
+    ]
+    assert (
+        found.notes[-1]
+        == "the range of 'speed' has changed from [0, 60] to [0, 80]: traces stay in the new one"
+    )
+    assert not diff(rtamt.parse(new), rtamt.parse(new), samples=5).findings
 
 
 LONG = """

@@ -43,7 +43,7 @@ def test_a_database(commands, run, tmp_path):
     assert run("info", "x", *database).out == told.out
 
 
-def test_nan_is_skipped_and_the_rest_put_on_one_clock(commands, write, run):
+def test_nan_is_skipped_and_the_rest_put_on_one_time_base(commands, write, run):
     write("log.csv", "time,x,y\n0,5,1\n0.5,nan,1\n1,4,1\n1.5,2,1\n")
     for answer in commands(MENDED, "log.csv").values():
         assert (answer.code, answer.err) == (

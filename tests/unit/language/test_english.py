@@ -11,7 +11,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.english import to_english
 from rtamt.language.printing.printer import to_text
-from rtamt.mutation.changes import changes_of
+from rtamt.mutation.operators import changes_of
 from tests.strategies import formulas
 
 

@@ -182,7 +182,7 @@ def test_what_is_wrong_with_a_quantifier_is_one_sentence(text, caret, kind, mess
 DECLARATIONS = [
     (
         'group cars = "car"; x > 3',
-        'the pattern of a group has one star, which stands for what tells its members apart, such as "cars_*"; '
+        'the pattern of a group has one star, which stands for the name of a member, such as "cars_*"; '
         "got '\"car\"'",
     ),
     (

@@ -1,4 +1,4 @@
-"""``Trace``: names, clocks, renaming, and clocks that are chosen openly."""
+"""``Trace``: names, time bases, renaming, and time bases that are chosen openly."""
 
 from fractions import Fraction
 
@@ -11,43 +11,43 @@ import rtamt
 from tests import strategies
 
 
-def two_clocks():
+def two_time_bases():
     return rtamt.read({"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])})
 
 
 def test_dense_time_reads_each_signal_on_its_own_clock():
     spec = rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))")
     data = {"req": ([0.0, 2.5], [5, 0]), "gnt": ([0.0, 1.0, 4.0], [0, 4, 0])}
-    ours, given_ = spec.evaluate(two_clocks(), time="dense"), spec.evaluate(data, time="dense")
+    ours, given_ = spec.evaluate(two_time_bases(), time="dense"), spec.evaluate(data, time="dense")
     assert ours.signal.times.tolist() == given_.signal.times.tolist()
     assert ours.signal.values.tolist() == given_.signal.values.tolist()
 
 
-def test_discrete_time_needs_one_clock_and_says_what_to_do():
+def test_discrete_time_needs_one_time_base_and_says_what_to_do():
     with pytest.raises(rtamt.TraceError) as error:
-        rtamt.parse("req >= gnt").evaluate(two_clocks())
+        rtamt.parse("req >= gnt").evaluate(two_time_bases())
     assert str(error.value) == (
         "'req' and 'gnt' have different time bases (2 samples, 0 s to 2.5 s; 3 samples, 0 s to 4 s): "
         "evaluate in dense time, or put them on one time base with trace.resample(period=...) or trace.hold(), "
         "on the command line with --resample PERIOD"
     )
     # Of one signal alone the clock is the clock.
-    assert rtamt.parse("req >= 3").evaluate(two_clocks()).signal.values.tolist() == [2, -3]
+    assert rtamt.parse("req >= 3").evaluate(two_time_bases()).signal.values.tolist() == [2, -3]
 
 
 def test_what_discrete_time_reads_after_resampling():
-    trace = two_clocks().resample("500ms")
+    trace = two_time_bases().resample("500ms")
     assert trace["gnt"].times.tolist() == [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4]
     assert trace["req"].values.tolist() == [5, 5, 5, 5, 5, 0, 0, 0, 0]
     assert rtamt.parse("always(req >= 3 -> eventually[0:2](gnt >= 3))").evaluate(trace).robustness == 1
 
 
 def test_a_line_ends_where_the_first_signal_ends_and_hold_where_the_last_one_does():
-    assert two_clocks().resample(0.5, how="linear").end == 2.5
-    assert two_clocks().resample(0.5, how="linear")["gnt"].values.tolist() == [
+    assert two_time_bases().resample(0.5, how="linear").end == 2.5
+    assert two_time_bases().resample(0.5, how="linear")["gnt"].values.tolist() == [
         0, 2, 4, 4 - 4 / 6, 4 - 8 / 6, 2,
     ]  # fmt: skip
-    assert two_clocks().resample(0.5).end == 4
+    assert two_time_bases().resample(0.5).end == 4
 
 
 def test_signals_begin_where_all_of_them_have_begun():
@@ -113,7 +113,7 @@ def test_without_stamps_samples_are_one_period_apart_and_dense_time_says_what_it
 )  # fmt: skip
 def test_messages(call, message):
     with pytest.raises(rtamt.StlError) as error:
-        call(two_clocks())
+        call(two_time_bases())
     assert str(error.value) == message
 
 

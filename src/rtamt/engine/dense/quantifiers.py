@@ -15,7 +15,7 @@ from rtamt.language.units.durations import check_unit
 from rtamt.signals import arrays, dense_arrays, members
 from rtamt.signals.data_errors import missing_field, nan_of_members
 from rtamt.signals.inexact import gaps_of
-from rtamt.signals.member_chunks import fields_on_own_clocks
+from rtamt.signals.member_chunks import fields_on_own_time_bases
 from rtamt.signals.samples import time_of
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
@@ -120,7 +120,7 @@ class DenseMemberMonitor(QuantifierMonitor):
         """
         arrays.require_no_unit(data, self._unit)
         data = self._binding.applied(data, partial=True)
-        fields = fields_on_own_clocks(data, self._fields)
+        fields = fields_on_own_time_bases(data, self._fields)
         unread = {
             name for name in members.names_of(data) if name in self._declared or self._is_of_member(name)
         }

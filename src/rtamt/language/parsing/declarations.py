@@ -7,7 +7,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from rtamt.errors import NameInFormulaError, choices, did_you_mean
+from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.document import Declaration, constant_units
 from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
@@ -17,7 +17,7 @@ from rtamt.language.parsing.import_parser import ImportParser
 from rtamt.language.parsing.lexer import Token, is_name, quoted
 from rtamt.language.parsing.ranges import parse_range, parse_rate
 from rtamt.language.parsing.scope import Scope
-from rtamt.language.quantifiers import Field, Group, begins_group, begins_quantifier, unquoted_pattern
+from rtamt.language.quantifiers import begins_quantifier
 from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, WHOLE, Enumeration
 
@@ -38,7 +38,7 @@ _Kind = Literal["var", "const", "parameter"]
 _KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
 _CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
 
-_ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
+ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
 
 
 class DeclarationParser(ImportParser):
@@ -71,83 +71,6 @@ class DeclarationParser(ImportParser):
             raise self.error(f"'{table.name}' is declared twice{self._from(table.name)}", token.span)
         self._tables[table.name] = table
         return True
-
-    def _group(self) -> bool:
-        """Take the declaration of a group of signals, if there is one here; see ``groups.py``."""
-        if "group" in self._imports:
-            return False
-        if not begins_group(self):
-            unquoted = unquoted_pattern(self)
-            if unquoted is not None:
-                written = quoted(self.text[unquoted.start : unquoted.end])
-                raise self.error(f"the pattern of a group is written in double quotes: {written}", unquoted)
-            return False
-        role = _ROLES.get(self.token.text)
-        if role:
-            self.next()
-        self.next()
-        name = self.next()
-        if "." in name.text:
-            raise self.error(f"the name of a group is one word, and '{name.text}' has a dot", name.span)
-        if name.text in (*self._declarations, *self._given, *self._taken_names()):
-            raise self.error(f"'{name.text}' is declared twice{self._from(name.text)}", name.span)
-        self.next()
-        pattern = self.next()
-        if pattern.name.count("*") != 1 or not pattern.name.isprintable():
-            raise self.error(
-                f"the pattern of a group has one star, which stands for what tells its members apart, such as "
-                f'"{name.text}_*"; got {pattern}',
-                pattern.span,
-            )
-        fields = self._fields(name.text) if self.token.text == "{" else ()
-        self.accept(";")
-        span = Span(name.start, pattern.end)
-        self._groups[name.text] = Group(name.text, pattern.name, fields, role, span)
-        return True
-
-    def _fields(self, group: str) -> tuple[Field, ...]:
-        """``"{" , { type , name , [ "[" , unit , "]" ] , [ "=" , recorded name ] , [ ";" ] } , "}"``."""
-        opening = self.next()
-        found: dict[str, Field] = {}
-        while not self.accept("}"):
-            type_name = self.next()
-            if type_name.kind == "end":
-                raise self.error("this '{' is never closed", opening.span)
-            if type_name.text not in TYPES and type_name.text not in self._enumerations:
-                types = (*TYPES, *self._enumerations)
-                raise self.error(
-                    f"expected the type of a field of '{group}', got {type_name}"
-                    f"{choices(type_name.text, types, 'types')}",
-                    type_name.span,
-                )
-            token = self._taken(f"the name of a field of '{group}'", quotes=True)
-            if token.name in found:
-                raise self.error(f"'{group}' has two fields called '{token.name}'", token.span)
-            unit = self._unit(token)
-            recorded = self._recorded(group, token.name) if self.accept("=") else token.name
-            if recorded in [each.name for each in found.values()]:
-                raise self.error(f"two fields of '{group}' are recorded as '{recorded}'", token.span)
-            called = "" if recorded == token.name else token.name
-            found[token.name] = Field(recorded, type_name.text, self._type(type_name.text), unit, called)
-            self.accept(";")
-        if not found:
-            raise self.error(
-                f"the braces of '{group}' are empty; declare its fields, such as {{ float x [m] }}, or leave "
-                f"them out: its fields are then those that formulas read",
-                opening.span,
-            )
-        return tuple(found.values())
-
-    def _recorded(self, group: str, field: str) -> str:
-        """Take the recorded name of a field."""
-        token = self.next()
-        if token.kind != "quoted" or not token.name.strip() or not token.name.isprintable():
-            raise self.error(
-                f"expected the recorded name of '{field}', what follows the member of '{group}', in double quotes, "
-                f'such as "pose.x"; got {token}',
-                token.span,
-            )
-        return token.name
 
     def _taken_names(self) -> set[str]:
         """Return the names of what a text declares or defines, apart from variables."""
@@ -185,7 +108,7 @@ class DeclarationParser(ImportParser):
         role = None
         if self._plain_type(1) and self.token.text not in self._imports:
             kind = _KINDS.get(self.token.text, "var")
-            role = _ROLES.get(self.token.text)
+            role = ROLES.get(self.token.text)
         if kind != "var" or role:
             self.next()
         type_name = self.next()
@@ -406,7 +329,7 @@ class DeclarationParser(ImportParser):
         first = self.token
         if self._requires() or self._imports_file() or begins_quantifier(self):
             return False
-        if self._is_optional() or ((first.text in _ROLES or first.text in _KINDS) and self._plain_type(1)):
+        if self._is_optional() or ((first.text in ROLES or first.text in _KINDS) and self._plain_type(1)):
             return True
         if self._is_type(first):
             return self._at(1).kind in ("name", "quoted")
@@ -422,7 +345,7 @@ class DeclarationParser(ImportParser):
         """Return whether the declaration of a variable that recordings may lack begins here."""
         if not self._word("optional") or "optional" in self._imports or "optional" in self._enumerations:
             return False
-        role = self._at(1).text in (*_ROLES, *_KINDS) and self._plain_type(2)
+        role = self._at(1).text in (*ROLES, *_KINDS) and self._plain_type(2)
         return role or (self._is_type(self._at(1)) and self._plain_type(1))
 
     def _with_slashes(self, token: Token) -> Token:

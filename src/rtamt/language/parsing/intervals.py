@@ -11,7 +11,7 @@ from rtamt.language.formula import Interval, Span, span_of
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.lexer import is_numeral
-from rtamt.language.parsing.templates import bound, constants_of
+from rtamt.language.parsing.template_names import bound, constants_of
 from rtamt.language.units.durations import UNITS, exact, is_less
 from rtamt.language.value_types import BOOLEAN
 

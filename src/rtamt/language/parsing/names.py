@@ -13,7 +13,8 @@ from rtamt.language.operators import Fixity, Language
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import INFINITY, sign
 from rtamt.language.parsing.lexer import Token, Tokens, quoted, tokenize, unquoted
-from rtamt.language.parsing.templates import Use, Uses, meaning
+from rtamt.language.parsing.template_names import meaning
+from rtamt.language.parsing.templates import Use, Uses
 from rtamt.language.quantifiers import field_of
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import Enumeration

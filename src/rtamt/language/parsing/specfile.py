@@ -43,7 +43,7 @@ from rtamt.language.enumerations import begins_enumeration
 from rtamt.language.formula import Formula, Span, Var, postorder
 from rtamt.language.operators import STL, Language
 from rtamt.language.parsing import diagnostics
-from rtamt.language.parsing.declarations import DeclarationParser
+from rtamt.language.parsing.groups import GroupParser
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.sampling import begins_sampling, parse_sampling
 from rtamt.language.parsing.scope import Scope
@@ -92,7 +92,7 @@ def parse_document(
     return _DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
 
 
-class _DocumentParser(DeclarationParser):
+class _DocumentParser(GroupParser):
     """The grammar productions of a document, in addition to those of declarations."""
 
     def document(self, *, imported: bool = False) -> Document:

@@ -1,4 +1,7 @@
-"""The small changes that make mutants, from the operator table: other operators, constants, bounds and shares."""
+"""The mutation operators: they replace operators, constants, bounds and shares of windows.
+
+Which operators replace one another follows from the operator table of the language.
+"""
 
 from __future__ import annotations
 

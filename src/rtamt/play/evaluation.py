@@ -1,0 +1,246 @@
+"""Robustness, verdict and explanation of a request, as data for the page."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
+from rtamt.language.formula import postorder, variables
+from rtamt.language.printing.printer import excerpt, to_text
+from rtamt.language.units.durations import format_duration
+from rtamt.lazy_dataclasses import dataclass
+from rtamt.play import drawn
+from rtamt.play.recordings import drawn_lines
+from rtamt.play.reduced import line, number
+from rtamt.plot.clock import Clock
+from rtamt.plot.panels import groups
+from rtamt.results import first_violation
+from rtamt.rewrite.truth import is_predicate
+from rtamt.signals.outcomes import BoundedSignal
+from rtamt.texts import parse
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rtamt.explain.report import Explanation, Stretch
+    from rtamt.play.messages import Request
+    from rtamt.play.recordings import File, Recordings
+    from rtamt.results import Result
+    from rtamt.specification import Specification
+
+#: Causes that are listed, stretches of signals and runs of violation that are drawn.
+_CAUSES, _STRETCHES, _RUNS = 6, 400, 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """Where a request finds what it names: recordings, and the folder of imported files, None for no folder."""
+
+    recordings: Recordings
+    file: File | None = None
+    folder: str | None = None
+
+
+def parsed(request: Request, sources: Sources) -> Specification:
+    """Return the specification of a request; raises :class:`SpecificationError`."""
+    if not request.text.strip():
+        raise SpecificationError("write a formula, such as always(x >= 3)")
+    period = None if request.dense else request.period
+    return parse(request.text, time=request.time, period=period, folder=sources.folder)
+
+
+def data_of(request: Request, spec: Specification, sources: Sources) -> Any:
+    """Return the data that a request names, as ``evaluate`` takes it."""
+    if request.recording is None:
+        period = spec.period or request.period or Fraction(1)
+        make = drawn.points if request.dense else drawn.sampled
+        return make(request.signals, period, request.duration)
+    if sources.file is None:
+        raise UsageError("the recording is no longer here: load it again")
+    trace = sources.recordings.trace(sources.file, spec)
+    if not request.resample:
+        return trace
+    if request.period is None:
+        raise UsageError("to put the signals on one time base, give a period")
+    return trace.resample(request.period, request.resample)
+
+
+def result_of(request: Request, spec: Specification, sources: Sources) -> Result:
+    """Evaluate a request."""
+    data = data_of(request, spec, sources)
+    if request.recording is None and not request.dense:
+        return spec.evaluate(data, period=spec.period or request.period)
+    return spec.evaluate(data)
+
+
+def chosen(request: Request, result: Result) -> tuple[str, Result]:
+    """Return the requirement that is explained and monitored: the wanted one, or the first that is violated."""
+    parts = result.requirements
+    if request.focus is not None and request.focus in parts:
+        return request.focus, parts[request.focus]
+    names = [*(name for name, part in parts.items() if verdict_of(part) == "violated"), *parts]
+    return names[0], parts[names[0]]
+
+
+def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
+    """Answer a request; a mistake in the text or in the data is an answer with ``error``."""
+    answer: dict[str, Any] = {"error": None}
+    try:
+        spec = parsed(request, sources)
+        answer |= _facts(spec, request)
+        if answer["missing"] and request.recording is None:
+            return answer
+        result = result_of(request, spec, sources)
+        name, part = chosen(request, result)
+        answer |= _shown(name, part, request) | {
+            "requirements": [_row(each, one) for each, one in result.requirements.items()],
+        }
+    except StlError as error:
+        answer["error"] = told(error, sources)
+    return answer
+
+
+def told(error: StlError, sources: Sources) -> dict[str, Any]:
+    """Return an error as data: the sentence, and its place in the text."""
+    message = error.message if isinstance(error, SpecificationError) else str(error)
+    span = error.span if isinstance(error, SpecificationError) else None
+    for path, name in _private(sources):
+        message = message.replace(path, name)
+    return {
+        "message": message,
+        "start": None if span is None else span.start,
+        "end": None if span is None else span.end,
+    }
+
+
+def _private(sources: Sources) -> list[tuple[str, str]]:
+    """Return the paths that no sentence contains, and what replaces them."""
+    found = [] if sources.file is None else [(sources.file.path, sources.file.name)]
+    return found if sources.folder is None else [*found, (sources.folder, ".")]
+
+
+def _facts(spec: Specification, request: Request) -> dict[str, Any]:
+    """Return what is known without data."""
+    horizon = spec.horizon
+    return {
+        "variables": list(spec.input_names),
+        "missing": [name for name in spec.input_names if name not in request.signals],
+        "period": float(spec.period or request.period or 1),
+        "horizon": number(horizon) if horizon == float("inf") else format_duration(Fraction(str(horizon))),
+        "warnings": [_warning(each) for each in spec.warnings],
+    }
+
+
+def _warning(found: Any) -> dict[str, Any]:
+    span = found.span
+    return {
+        "code": found.code,
+        "message": found.message,
+        "start": None if span is None else span.start,
+        "end": None if span is None else span.end,
+    }
+
+
+def verdict_of(result: Result) -> str:
+    """Return the verdict in one word; "open" where missing samples leave it undecided."""
+    try:
+        return "satisfied" if result.satisfied else "violated"
+    except EvaluationError:
+        if not isinstance(result.signal, BoundedSignal):
+            raise
+        return "open"
+
+
+def _row(name: str, result: Result) -> dict[str, Any]:
+    return {"name": name, "verdict": verdict_of(result), "interval": _interval(result)}
+
+
+def _interval(result: Result) -> list[Any]:
+    return [number(result.interval.lower), number(result.interval.upper)]
+
+
+def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
+    """Return what is drawn and said of one requirement."""
+    clock, spec = Clock.of(result.trace), result.specification
+    signal = result.signal
+    positions = clock.positions(signal.times)
+    known = {each: clock.recorded(each) for each in spec.input_names}
+    answer: dict[str, Any] = {
+        "focus": name,
+        "formula": to_text(spec.formula, limit=2000),
+        "verdict": verdict_of(result),
+        "interval": _interval(result),
+        "dense": result.trace.domain.continuous,
+        "clock": {"start": clock.start, "end": clock.end, "label": clock.label, "origin": str(clock.origin)},
+        "samples": max((len(values) for _, values in known.values()), default=len(positions)),
+        "lines": drawn_lines(known, getattr(result.trace, "units", {}) or {}, request.width),
+        "thresholds": _thresholds(spec),
+    }
+    if isinstance(signal, BoundedSignal):
+        both = [line(positions, bound, request.width) for bound in (signal.lower, signal.upper)]
+        return answer | {
+            "robustness": both[0],
+            "upper": both[1],
+            "fails": [],
+            "explanation": None,
+        }
+    violation = first_violation(result)
+    # In discrete time the value of a sample is drawn until the next one.
+    step = 0.0 if result.trace.domain.continuous else float(result.trace.step)
+    return answer | {
+        "robustness": line(positions, signal.values, request.width),
+        "fails": [
+            [clock.position(each.begin), clock.position(each.end) + step]
+            for each in result.episodes()[:_RUNS]
+        ],
+        "first": None if violation is None else clock.position(violation),
+        "explanation": _explained(result.explain(), clock),
+    }
+
+
+def _thresholds(spec: Specification) -> dict[str, list[float]]:
+    """Return the numbers that each variable is compared with."""
+    predicates = [each for each in postorder(spec.formula) if is_predicate(each)]
+    found: dict[str, list[float]] = {}
+    for name in spec.input_names:
+        alone = [each for each in predicates if variables(each) == (name,)]
+        found[name] = sorted(limit for group in groups([name], alone) for limit in group.thresholds)
+    return found
+
+
+def _explained(explanation: Explanation, clock: Clock) -> dict[str, Any]:
+    shown, point = explanation.shown(_CAUSES), explanation.critical
+    ranking = explanation.ranking[:_STRETCHES]
+    return {
+        "headline": explanation.headline,
+        # The headline and the first violation are shown as numbers.
+        "summary": list(explanation.summary[1 if explanation.first_violation is None else 2 :]),
+        "causes": [{"text": explanation.causes[k], **_place(explanation.implicant[k], clock)} for k in shown],
+        "more": len(explanation.causes) - len(shown),
+        "critical": None if point.predicate is None else clock.position(point.time),
+        "because": _because([explanation.implicant[k] for k in ranking], clock),
+    }
+
+
+def _place(stretch: Stretch, clock: Clock) -> dict[str, float]:
+    start = clock.start if stretch.start is None else clock.position(stretch.start)
+    return {"start": start, "end": clock.end if stretch.end is None else clock.position(stretch.end)}
+
+
+def _because(stretches: Sequence[Stretch], clock: Clock) -> Mapping[str, list[list[float]]]:
+    """Return the intervals of each signal that the cause reads."""
+    found: dict[str, list[list[float]]] = {}
+    for stretch in stretches:
+        for reading in stretch.reads[:_STRETCHES]:
+            end = clock.end if reading.end is None else clock.position(reading.end)
+            found.setdefault(reading.signal, []).append([clock.position(reading.start), end])
+    return found
+
+
+def name_of(spec: Specification) -> str:
+    """Return a formula short enough for a label."""
+    return excerpt(spec.formula)
+
+
+__all__ = ["Sources", "chosen", "data_of", "evaluated", "name_of", "parsed", "result_of", "told"]

@@ -1,0 +1,316 @@
+// The page: its state, what is asked of the server, and where the answers are shown.
+
+import { Editor } from "./editor.js";
+import { decode, encode, fromBase64, toBase64 } from "./link.js";
+import { OverTime } from "./online.js";
+import { Chart, room } from "./chart.js";
+import { bytesOf, cancel, Follower, ask, start, upload } from "./server.js";
+import { Signal } from "./signal.js";
+import { Verdict } from "./verdict.js";
+
+const $ = (id) => document.getElementById(id);
+const EXAMPLE = {
+  text: "always(req >= 3 -> eventually[0:5](gnt >= 3))",
+  signals: {
+    req: { hold: true, points: [[0, 0], [4, 6], [6, 0], [18, 5], [21, 0]] },
+    gnt: { hold: true, points: [[0, 0], [7, 4], [10, 0], [26, 4], [28, 0]] },
+  },
+};
+
+const state = { text: "", time: "discrete", period: "1s", duration: 30, signals: {}, recording: null, resample: "", focus: null, at: null };
+let answer = null; // the last one without an error
+let charts = new Map();
+
+const width = () => Math.max($("charts").clientWidth - 68, 100);
+
+const wish = (more = {}) => ({
+  text: state.text, time: state.time, period: state.period, duration: state.duration, resample: state.resample, focus: state.focus,
+  signals: state.recording ? {} : state.signals, recording: state.recording?.number ?? null, width: width(), ...more,
+});
+
+const toast = (text) => {
+  $("toast").textContent = text;
+  $("toast").hidden = false;
+  clearTimeout(toast.timer);
+  toast.timer = setTimeout(() => { $("toast").hidden = true; }, 4000);
+};
+
+// ---- answers
+
+const evaluation = new Follower("evaluate", () => wish(), (found, begun) => {
+  show(found);
+  document.documentElement.dataset.took = (performance.now() - begun).toFixed(1);
+}, 40);
+const replay = new Follower("replay", () => (answer ? wish() : null), (found) => over.replayed(found), 120);
+const moment = new Follower("moment", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found) => over.known(found), 30);
+
+const changed = ({ delay, kept = true } = {}) => {
+  if (kept) remember();
+  evaluation.soon(delay);
+};
+
+const editor = new Editor(() => { state.text = editor.text; changed(); });
+const verdict = new Verdict((name) => { state.focus = name; changed({ delay: 0 }); });
+const over = new OverTime({
+  moved: (at) => { state.at = at; point(); moment.soon(); remember(); },
+  at: () => state.at,
+});
+
+function show(found) {
+  const problem = $("problem");
+  problem.classList.toggle("wrong", Boolean(found.error));
+  editor.mark([
+    ...(found.error ? [{ ...found.error, kind: "error" }] : []),
+    ...(found.warnings || []).map((each) => ({ ...each, kind: "warning" })),
+  ]);
+  $("text").setAttribute("aria-invalid", Boolean(found.error));
+  if (found.variables) {
+    editor.names = state.recording ? state.recording.signals.map((each) => each.name) : found.variables;
+    if (!state.recording && found.missing.length) { provide(found.missing); return; }
+  }
+  if (found.error) {
+    problem.textContent = where(found.error) + found.error.message;
+    verdict.stale();
+    if (found.variables) arrange(found.variables, []);
+    return;
+  }
+  problem.textContent = found.warnings.length ? found.warnings.map((each) => `${each.code}: ${each.message}`).join("\n") : `Horizon ${found.horizon === "Infinity" ? "∞" : found.horizon} · ${found.samples} samples`;
+  answer = found;
+  verdict.show(found);
+  arrange(found.variables, found.lines);
+  over.evaluated(found);
+  point();
+  replay.soon();
+}
+
+const where = ({ start: at }) => {
+  if (at === null) return "";
+  const before = state.text.slice(0, at).split("\n");
+  return before.length > 1 || state.text.includes("\n") ? `Line ${before.length}, column ${before.at(-1).length + 1}: ` : `Column ${at + 1}: `;
+};
+
+// New variables begin as constants.
+function provide(names) {
+  for (const name of names) state.signals[name] = { hold: true, points: [[0, 0]] };
+  changed({ delay: 0 });
+}
+
+// ---- signals
+
+const page = {
+  get duration() { return state.duration; },
+  get period() { return state.time === "dense" ? (answer?.period ?? 1) / 10 : answer?.period ?? 1; },
+  cursor: () => state.at,
+  model: (name) => state.signals[name],
+  change: (name, model, final) => { state.signals[name] = model; changed({ delay: 0, kept: final }); },
+};
+
+function arrange(names, lines) {
+  const key = JSON.stringify([names, state.recording?.number ?? null]);
+  if (arrange.key !== key) {
+    arrange.key = key;
+    charts = new Map();
+    $("charts").replaceChildren();
+    for (const name of names) {
+      const host = document.createElement("div");
+      host.className = "signal";
+      $("charts").append(host);
+      charts.set(name, state.recording ? new Recorded(name, host) : new Signal(name, host, page));
+    }
+  }
+  for (const [name, chart] of charts) {
+    chart.levels = answer?.thresholds?.[name] || [];
+    chart.because = answer?.explanation?.because?.[name] || [];
+    if (state.recording) chart.data = lines.find((each) => each.name === name) || chart.data;
+    chart.draw();
+  }
+  $("source").textContent = state.recording ? `${state.recording.name} · ${state.recording.samples} samples` : "";
+}
+
+class Recorded {
+  constructor(name, host) {
+    const head = document.createElement("div"), title = document.createElement("h3");
+    this.unit = document.createElement("span");
+    head.className = "signal-head";
+    title.textContent = name;
+    this.unit.className = "unit";
+    head.append(title, this.unit);
+    const place = document.createElement("div");
+    host.append(head, place);
+    this.chart = new Chart(place, { height: 96, label: `Signal ${name}` });
+    over.listen(this.chart);
+  }
+
+  draw() {
+    if (!this.data || !answer) return;
+    this.unit.textContent = this.data.unit;
+    this.chart.frame([answer.clock.start, answer.clock.end], room([...this.data.y.map(Number), ...this.levels]));
+    for (const [from, to] of this.because) this.chart.band(from, to, "because");
+    for (const level of this.levels) this.chart.level(level);
+    this.chart.line(this.data.x, this.data.y, { held: answer.dense, dots: true });
+    this.chart.point(state.at);
+  }
+}
+
+function point() {
+  for (const { chart } of charts.values()) chart.point(state.at);
+  over.point();
+}
+
+// ---- recordings
+
+function use(recording) {
+  state.recording = recording;
+  state.period = "";
+  state.at = null;
+  settings();
+  changed({ delay: 0 });
+}
+
+async function load(file) {
+  $("source").textContent = `reading ${file.name} …`;
+  const found = await upload(file);
+  if (found.error) {
+    $("source").textContent = "";
+    toast(found.error.message);
+    return null;
+  }
+  use(found);
+  return found;
+}
+
+function settings() {
+  for (const each of document.querySelectorAll("input[name=time]")) each.checked = each.value === state.time;
+  $("period").value = state.period;
+  $("duration").value = state.duration;
+  $("resample").value = state.resample;
+  $("lasting").hidden = $("hint").hidden = Boolean(state.recording);
+  $("resampling").hidden = $("draw").hidden = $("columns").hidden = !state.recording;
+  $("columns").replaceChildren(...(state.recording?.signals || []).map(({ name, unit }) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = name;
+    button.title = unit ? `insert ${name} [${unit}]` : `insert ${name}`;
+    button.addEventListener("click", () => editor.insert(name));
+    return button;
+  }));
+}
+
+// ---- the link
+
+const kept = () => ({ ...state, recording: state.recording && { number: state.recording.number, name: state.recording.name } });
+
+const remember = () => {
+  clearTimeout(remember.timer);
+  remember.timer = setTimeout(async () => history.replaceState(null, "", `#${await encode(kept())}`), 300);
+};
+
+$("link").addEventListener("click", async () => {
+  const shared = kept();
+  let whole = true;
+  if (state.recording) {
+    const bytes = await bytesOf(state.recording.number);
+    whole = bytes !== null;
+    shared.recording = whole ? { name: state.recording.name, bytes: toBase64(bytes) } : null;
+  }
+  const text = `${location.origin}/#${await encode(shared)}`;
+  document.documentElement.dataset.link = text;
+  try {
+    await navigator.clipboard.writeText(text);
+    toast(whole ? "Link copied. Open it with: rtamt play 'LINK'" : "Link copied without the recording, which is too large for it.");
+  } catch {
+    toast("The browser does not allow copying: copy the address of this page instead.");
+  }
+});
+
+async function restore(saved) {
+  for (const name of Object.keys(state)) if (name !== "recording" && name in saved) state[name] = saved[name];
+  const { recording } = saved;
+  if (recording?.bytes) await load(new File([fromBase64(recording.bytes)], recording.name));
+  else if (recording) {
+    const found = await ask("recording", { recording: recording.number });
+    if (found.error) toast(`'${recording.name}' is no longer here: load it again`);
+    else state.recording = found;
+  }
+  for (const name of ["period", "at", "focus"]) if (name in saved) state[name] = saved[name];
+}
+
+// ---- the controls
+
+for (const each of document.querySelectorAll("input[name=time]")) each.addEventListener("change", () => { state.time = each.value; changed({ delay: 0 }); });
+$("period").addEventListener("input", () => { state.period = $("period").value; changed(); });
+$("duration").addEventListener("input", () => {
+  const seconds = $("duration").valueAsNumber;
+  if (seconds >= 0) { state.duration = seconds; state.at = null; changed(); }
+});
+$("resample").addEventListener("change", () => { state.resample = $("resample").value; changed({ delay: 0 }); });
+$("upload").addEventListener("change", async (event) => {
+  const [file] = event.target.files;
+  if (file) await load(file);
+  event.target.value = "";
+});
+$("draw").addEventListener("click", () => {
+  state.recording = null;
+  state.period ||= "1s";
+  state.at = null;
+  settings();
+  changed({ delay: 0 });
+});
+addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("dropping"); });
+addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
+addEventListener("drop", (event) => {
+  event.preventDefault();
+  document.body.classList.remove("dropping");
+  const [file] = event.dataTransfer.files;
+  if (file) load(file);
+});
+new ResizeObserver(() => {
+  if (!answer) return;
+  arrange(answer.variables, answer.lines);
+  over.draw();
+}).observe($("charts"));
+
+for (const button of document.querySelectorAll("[data-wanted]")) {
+  button.addEventListener("click", async () => {
+    const buttons = document.querySelectorAll("[data-wanted]");
+    for (const each of buttons) each.disabled = true;
+    $("cancel").hidden = false;
+    $("answer").textContent = "searching …";
+    const found = await ask("question", wish({ wanted: button.dataset.wanted }));
+    for (const each of buttons) each.disabled = false;
+    $("cancel").hidden = true;
+    $("answer").textContent = found.error ? found.error.message : found.sentence;
+    if (!found.signals) return;
+    Object.assign(state, { recording: null, period: `${found.period}s`, duration: found.duration, at: null, focus: null });
+    Object.assign(state.signals, found.signals);
+    settings();
+    changed({ delay: 0 });
+  });
+}
+$("cancel").addEventListener("click", cancel);
+
+// ---- the beginning
+
+const given = await start();
+editor.know(given.vocabulary);
+$("file").textContent = given.name;
+$("upload").accept = given.suffixes.join(",");
+if (!given.analysis) {
+  for (const each of document.querySelectorAll("[data-wanted]")) each.disabled = true;
+  $("answer").textContent = "It needs the package z3: pip install 'rtamt[analysis]'";
+}
+const saved = location.hash.length > 1 ? await decode(location.hash.slice(1)) : null;
+if (location.hash.length > 1 && !saved) toast("The link is damaged: the page starts without it.");
+if (saved) await restore(saved);
+else {
+  state.time = given.time;
+  if (given.text) state.text = given.text;
+  else if (!given.recording) Object.assign(state, structuredClone(EXAMPLE));
+  if (given.recording) state.recording = given.recording;
+  if (given.period || given.recording) state.period = given.period;
+  if (given.complaint) toast(given.complaint);
+}
+editor.text = state.text;
+settings();
+changed({ delay: 0, kept: false });
+document.documentElement.dataset.ready = "true";

@@ -1,0 +1,49 @@
+"""A witness or a counterexample of a requirement, as signals to draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.analysis import satisfiable, valid
+from rtamt.errors import StlError, UsageError
+from rtamt.play.evaluation import parsed, told
+
+if TYPE_CHECKING:
+    from rtamt.play.evaluation import Sources
+    from rtamt.play.messages import Request
+
+#: What can be wanted, and the question about the specification.
+WANTED = {"witness": satisfiable, "counterexample": valid}
+
+#: The longest trace, in samples, and the time of a question, in seconds.
+_SAMPLES, _LIMIT = 100, 8.0
+
+
+def found(request: Request, wanted: Any, sources: Sources) -> dict[str, Any]:
+    """Look for a trace that satisfies a requirement (``"witness"``), or violates it (``"counterexample"``)."""
+    if wanted not in WANTED:
+        raise UsageError(f"'wanted' must be {' or '.join(WANTED)}")
+    try:
+        answer = WANTED[wanted](parsed(request, sources), samples=_SAMPLES, limit=_LIMIT)
+    except StlError as error:
+        return {"error": told(error, sources)}
+    witness = answer.witness
+    if witness is None:
+        return {"error": None, "sentence": answer.sentence, "signals": None}
+    if not witness.confirmed:
+        return {
+            "error": None,
+            "sentence": "the solver found no trace that the engine confirms",
+            "signals": None,
+        }
+    times = [float(k * witness.period) for k in range(witness.samples)]
+    return {
+        "error": None,
+        "sentence": answer.sentence,
+        "period": float(witness.period),
+        "duration": times[-1],
+        "signals": {
+            name: {"hold": True, "points": [list(each) for each in zip(times, column.tolist(), strict=True)]}
+            for name, column in witness.columns.items()
+        },
+    }

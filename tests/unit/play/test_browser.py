@@ -1,0 +1,323 @@
+"""The page of ``rtamt play`` in a real browser: typing, dragging, loading, errors."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tests.unit.report.browser import CHROMIUM, chromium
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
+
+WORD = "document.querySelector('#verdict .word').textContent"
+NUMBERS = (
+    "Object.fromEntries([...document.querySelectorAll('#numbers dt')]"
+    ".map(t => [t.textContent, t.nextSibling.textContent]))"
+)
+PROBLEM = "document.getElementById('problem').textContent"
+TEXT = "document.getElementById('text').value"
+LABEL, VALUE = "getAttribute('aria-label')", "getAttribute('aria-valuetext')"
+HANDLES = f"[...document.querySelectorAll('.handle')].map(h => [h.{LABEL}, h.{VALUE}])"
+FOCUSED = f"document.activeElement.{LABEL} + ': ' + document.activeElement.{VALUE}"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("play")
+    rows = "".join(f"{i / 10},{i % 50}\n" for i in range(200))
+    (folder / "speeds.csv").write_text(f"time,speed [m/s]\n{rows}")
+    (folder / "broken.csv").write_text("")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address():
+    command = [sys.executable, "-m", "rtamt", "play", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        yield process.stdout.readline().strip()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 0
+        assert process.stderr.read() == ""
+
+
+@pytest.fixture(scope="module")
+def browser(folder):
+    with chromium(folder / "profile") as page:
+        yield page
+
+
+@pytest.fixture
+def page(browser, address):
+    """The page as it starts, with the example evaluated."""
+    return opened(browser, address)
+
+
+def opened(browser, url):
+    browser.errors.clear()
+    browser.requests.clear()
+    browser.open("about:blank")
+    browser.open(url)
+    until(browser, f"{WORD} === 'Violated' || {WORD} === 'Satisfied'")
+    return browser
+
+
+def until(page, condition):
+    """Wait until an expression is true, and return its value."""
+    end = time.monotonic() + 30
+    while time.monotonic() < end:
+        found = page.run(condition)
+        if found:
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"not true within half a minute: {condition}; problem: {page.run(PROBLEM)}")
+
+
+def write(page, text):
+    page.run("document.getElementById('text').select()")
+    page.send("Input.insertText", text=text)
+
+
+def press(page, key, **more):
+    for kind in ("keyDown", "keyUp"):
+        page.send("Input.dispatchKeyEvent", type=kind, key=key, code=key, **more)
+
+
+def place(page, selector, number=0):
+    """The middle of an element that is scrolled into view."""
+    return page.run(
+        f"(() => {{ const e = document.querySelectorAll('{selector}')[{number}]; e.scrollIntoView({{block: 'center'}});"
+        " const b = e.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2]; })()"
+    )
+
+
+def drag(page, start, end):
+    page.mouse("mousePressed", *start, button="left", buttons=1, clickCount=1)
+    page.mouse("mouseMoved", *end, button="left", buttons=1)
+    page.mouse("mouseReleased", *end, button="left", clickCount=1)
+
+
+def click(page, selector, number=0):
+    x, y = place(page, selector, number)
+    page.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+    page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+
+
+def test_the_example_is_evaluated_explained_and_replayed_without_another_server(page, address):
+    assert page.run(NUMBERS) == {"Robustness": "−2", "First violation": "18 s", "Critical point": "18 s"}
+    assert "'gnt >= 3' fails from 18 s to 23 s" in page.run("document.getElementById('why').textContent")
+    until(page, "document.querySelectorAll('.run-bad').length === 3")
+    assert (
+        until(page, "document.getElementById('now').textContent")
+        == "All samples: robustness −2, decided at 23 s"
+    )
+    origin = address[: address.index("/", 8)]
+    assert page.requests
+    assert {url[: len(origin)] for url in page.requests if url.startswith("http")} == {origin}
+    assert page.errors == []
+
+
+def test_typing_evaluates_and_a_mistake_is_marked_at_its_place(page):
+    write(page, "always(gnt <= 9)")
+    until(page, f"{WORD} === 'Satisfied'")
+    write(page, "always(gnt <= )")
+    until(page, "document.querySelector('#mirror .error')?.textContent === ')'")
+    assert page.run(PROBLEM) == "Column 15: expected an operand after '<=', got ')'"
+    assert page.run("document.getElementById('text').getAttribute('aria-invalid')") == "true"
+    assert page.run("document.getElementById('result').classList.contains('stale')")
+    write(page, "always(gnt <= 3)")
+    until(page, f"{WORD} === 'Violated'")
+    assert page.run("document.querySelector('#mirror .error')") is None
+    assert page.run("document.getElementById('text').getAttribute('aria-invalid')") == "false"
+    assert page.errors == []
+
+
+def test_words_are_completed_from_operators_and_signals(page):
+    write(page, "hist")
+    until(page, "!document.getElementById('words').hidden")
+    assert page.run("document.querySelector('#words [aria-selected=true] b').textContent") == "historically"
+    press(page, "Enter")
+    page.send("Input.insertText", text="(re")
+    until(page, "document.querySelector('#words [aria-selected=true] b')?.textContent === 'req'")
+    press(page, "Tab")
+    page.send("Input.insertText", text=" >= -1)")
+    until(page, f"{WORD} === 'Satisfied'")
+    assert page.run(TEXT) == "historically(req >= -1)"
+    page.send("Input.insertText", text=" and on")
+    until(page, "!document.getElementById('words').hidden")
+    press(page, "Escape")
+    assert page.run("document.getElementById('words').hidden")
+
+
+def test_new_variables_get_a_signal(page):
+    write(page, "always(temperature >= -1)")
+    until(page, "document.querySelector('#charts h3')?.textContent === 'temperature'")
+    until(page, f"{WORD} === 'Satisfied'")
+
+
+def test_points_are_dragged_and_the_verdict_follows(page):
+    x, y = place(page, ".handle", 3)
+    assert page.run(HANDLES)[3] == ["req, point 4 of 5", "5 at 18 s"]
+    low = page.run("document.querySelectorAll('.handle')[4].getBoundingClientRect().top")
+    drag(page, (x, y), (x, low + 5))
+    until(page, f"{WORD} === 'Satisfied'")
+    assert page.run(HANDLES)[3][1].endswith(" at 18 s")
+    assert page.errors == []
+
+
+def test_drawing_over_a_chart_sets_points(page):
+    (x, y), (end, _) = place(page, ".handle", 2), place(page, ".handle", 3)
+    drag(page, (x + 60, y - 20), (end - 40, y - 20))
+    until(page, "document.querySelectorAll('.handle[aria-label^=req]').length === 7")
+    assert page.errors == []
+
+
+def test_points_are_moved_added_and_removed_by_keys(page):
+    page.run("document.querySelector('.handle').focus()")
+    for _ in range(3):
+        press(page, "ArrowRight")
+    assert page.run(FOCUSED) == "req, point 4 of 5: 5 at 18 s"
+    press(page, "ArrowRight", modifiers=8)
+    assert page.run(FOCUSED) == "req, point 4 of 5: 5 at 19 s"
+    press(page, "ArrowUp")
+    assert float(page.run("document.activeElement.getAttribute('aria-valuenow')")) > 5
+    press(page, "Insert")
+    assert page.run(FOCUSED).startswith("req, point 5 of 6: ")
+    for _ in range(2):
+        press(page, "Delete")
+    until(page, f"{WORD} === 'Satisfied'")
+    assert page.run(FOCUSED) == "req, point 3 of 4: 0 at 6 s"
+
+
+def test_a_point_is_dragged_by_touch(page):
+    page.send("Emulation.setTouchEmulationEnabled", enabled=True)
+    x, y = place(page, ".handle", 3)
+    low = page.run("document.querySelectorAll('.handle')[4].getBoundingClientRect().top")
+    page.send("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+    page.send("Input.dispatchTouchEvent", type="touchMove", touchPoints=[{"x": x + 2, "y": (y + low) / 2}])
+    page.send("Input.dispatchTouchEvent", type="touchMove", touchPoints=[{"x": x, "y": low + 5}])
+    page.send("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+    page.send("Emulation.setTouchEmulationEnabled", enabled=False)
+    until(page, f"{WORD} === 'Satisfied'")
+
+
+def test_shapes_replace_a_signal(page):
+    click(page, ".signal-head button", 2)
+    until(page, "document.querySelectorAll('.handle[aria-label^=req]').length > 20")
+    assert page.run("document.querySelectorAll('.signal-head button')[3].textContent") == "lines"
+    click(page, ".signal-head button", 1)
+    until(page, "document.querySelectorAll('.handle[aria-label^=req]').length === 2")
+
+
+def test_scrubbing_shows_what_the_monitor_knew(page):
+    until(page, "document.querySelectorAll('.run-bad').length === 3")
+    page.run("document.getElementById('at').focus()")
+    page.run(
+        "(() => { const e = document.getElementById('at'); e.value = 667; e.dispatchEvent(new Event('input')); })()"
+    )
+    until(page, "document.querySelectorAll('.whisker').length > 0")
+    assert page.run("document.getElementById('now').textContent") == (
+        "After 20.01 s: robustness between −∞ and 1, not decided yet, 3 pending"
+    )
+    assert page.run("document.querySelectorAll('.run-open').length") == 3
+    assert page.run("document.querySelectorAll('.run-later').length") == 10
+    assert page.run("document.getElementById('at').getAttribute('aria-valuetext')").startswith(
+        "After 20.01 s"
+    )
+    assert page.errors == []
+
+
+def test_a_recording_is_loaded_and_a_broken_one_is_a_sentence(page, folder):
+    document = page.send("DOM.getDocument")["root"]["nodeId"]
+    found = page.send("DOM.querySelector", nodeId=document, selector="#upload")["nodeId"]
+    page.send("DOM.setFileInputFiles", nodeId=found, files=[str(folder / "broken.csv")])
+    until(page, "!document.getElementById('toast').hidden")
+    assert "broken.csv" in page.run("document.getElementById('toast').textContent")
+    page.send("DOM.setFileInputFiles", nodeId=found, files=[str(folder / "speeds.csv")])
+    until(page, "document.getElementById('problem').classList.contains('wrong')")
+    assert page.run(PROBLEM) == "speeds.csv has no 'req'; signals: speed"
+    write(page, "always( <= 48)")
+    page.run("document.getElementById('text').setSelectionRange(7, 7)")
+    click(page, "#columns button")
+    until(page, f"{NUMBERS}.Robustness === '−1'")
+    assert page.run(TEXT) == "always(speed <= 48)"
+    assert page.run(NUMBERS)["First violation"] == "4.9 s"
+    assert page.run("document.getElementById('source').textContent") == "speeds.csv · 200 samples"
+    click(page, "#link")
+    link = until(page, "document.documentElement.dataset.link")
+    base = page.run("location.href").partition("#")[0]
+    opened(page, f"{base}#{link.partition('#')[2]}")
+    assert page.run(TEXT) == "always(speed <= 48)"
+    assert page.run(NUMBERS)["Robustness"] == "−1"
+    assert page.run("document.getElementById('source').textContent") == "speeds.csv · 200 samples"
+    click(page, "#draw")
+    until(page, "document.querySelectorAll('.handle').length > 0")
+
+
+def test_a_counterexample_is_drawn(page):
+    write(page, "always[0:2](req >= 3 -> eventually[0:2](gnt >= 3)) and eventually[0:2](req >= 4)")
+    until(page, "document.getElementById('problem').textContent.startsWith('Horizon 4 s')")
+    click(page, "[data-wanted=witness]")
+    until(page, f"{WORD} === 'Satisfied'")
+    assert "satisfies it" in page.run("document.getElementById('answer').textContent")
+    click(page, "[data-wanted=counterexample]")
+    until(page, f"{WORD} === 'Violated'")
+    assert page.errors == []
+
+
+def test_a_link_contains_the_text_the_signals_and_the_settings(page):
+    write(page, "always(level <= 2)")
+    until(page, "document.querySelector('#charts h3')?.textContent === 'level'")
+    click(page, ".signal-head button", 1)
+    page.run("document.querySelector('input[value=dense]').click()")
+    until(page, f"{WORD} === 'Satisfied' && document.querySelectorAll('.handle').length === 2")
+    handles = page.run(HANDLES)
+    click(page, "#link")
+    link = until(page, "document.documentElement.dataset.link")
+    base = page.run("location.href").partition("#")[0]
+    assert base.split("/")[3] not in link  # the token stays here
+    opened(page, f"{base}#{link.partition('#')[2]}")
+    assert page.run(TEXT) == "always(level <= 2)"
+    assert page.run("document.querySelector('input[name=time]:checked').value") == "dense"
+    assert page.run(HANDLES) == handles
+
+
+def test_a_damaged_link_is_a_sentence(browser, address):
+    opened(browser, f"{address}#1nonsense")
+    assert (
+        browser.run("document.getElementById('toast').textContent")
+        == "The link is damaged: the page starts without it."
+    )
+
+
+def test_everything_that_is_operated_has_a_name_and_the_verdict_is_announced(page):
+    nodes = page.send("Accessibility.getFullAXTree")["nodes"]
+    named = {"button", "combobox", "slider", "textbox", "spinbutton", "radio", "link"}
+    operated = [node for node in nodes if node.get("role", {}).get("value") in named and not node["ignored"]]
+    assert len(operated) > 20
+    assert [node for node in operated if not node.get("name", {}).get("value")] == []
+    assert page.run("document.getElementById('verdict').getAttribute('aria-live')") == "polite"
+
+
+@pytest.mark.parametrize("width", [320, 390, 768, 1280])
+def test_nothing_is_wider_than_the_window(page, width):
+    page.send(
+        "Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False
+    )
+    try:
+        until(page, f"innerWidth === {width}")
+        until(page, "document.querySelector('.chart').getBoundingClientRect().right <= innerWidth")
+        assert page.run("document.scrollingElement.scrollWidth <= innerWidth")
+    finally:
+        page.send("Emulation.clearDeviceMetricsOverride")
+
+
+def test_the_theme_is_that_of_the_system_until_it_is_switched(page):
+    theme = "document.documentElement.dataset.theme"
+    page.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    until(page, f"{theme} === 'dark'")
+    click(page, "#theme")
+    assert page.run(theme) == "light"
+    page.run("sessionStorage.clear()")
+    page.send("Emulation.setEmulatedMedia", features=[])

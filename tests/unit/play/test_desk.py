@@ -1,0 +1,259 @@
+"""Messages in, data out: evaluation, recordings, online replay, questions."""
+
+import json
+import math
+
+import pytest
+
+import rtamt
+from rtamt.play.desk import Desk
+from rtamt.play.messages import MOST_POINTS, MessageError
+
+TEXT = "always(req >= 3 -> eventually[0:5](gnt >= 3))"
+REQ = [[0, 0], [4, 6], [6, 0], [18, 5], [21, 0]]
+GNT = [[0, 0], [7, 4], [10, 0], [26, 4], [28, 0]]
+MESSAGE = {
+    "text": TEXT,
+    "time": "discrete",
+    "period": "1s",
+    "duration": 30,
+    "width": 800,
+    "signals": {"req": {"points": REQ, "hold": True}, "gnt": {"points": GNT, "hold": True}},
+}
+
+
+@pytest.fixture(scope="module")
+def desk():
+    return Desk()
+
+
+def held(points, count):
+    return [next(value for time, value in reversed(points) if time <= t) for t in range(count)]
+
+
+def test_the_answer_is_that_of_evaluate_and_explain(desk):
+    result = rtamt.parse(TEXT).evaluate({"req": held(REQ, 31), "gnt": held(GNT, 31)}, period=1)
+    answer = desk.answer("evaluate", MESSAGE)
+    assert answer["error"] is None
+    assert (answer["verdict"], answer["interval"]) == ("violated", [result.robustness] * 2)
+    assert answer["robustness"]["y"] == result.signal.values.tolist()
+    assert answer["first"] == result.explain().first_violation == 18
+    assert [each["text"] for each in answer["explanation"]["causes"]] == list(result.explain().causes)
+    assert answer["explanation"]["because"] == {"req": [[18, 18]], "gnt": [[18, 23]]}
+    assert answer["fails"] == [[18, 21]]
+    assert answer["thresholds"] == {"req": [3], "gnt": [3]}
+
+
+def test_dense_time_has_the_points_themselves(desk):
+    message = {**MESSAGE, "time": "dense", "signals": {**MESSAGE["signals"]}}
+    message["signals"]["gnt"] = {"points": [[0, 0], [7.25, 4]], "hold": True}
+    answer = desk.answer("evaluate", message)
+    expected = rtamt.parse(TEXT, time="dense").evaluate(
+        {"req": [*REQ, [30, 0]], "gnt": [[0, 0], [7.25, 4], [30, 4]]}
+    )
+    assert answer["dense"] is True
+    assert answer["interval"] == [expected.robustness] * 2
+    assert answer["lines"][1]["x"] == [0, 7.25, 30]
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "place"),
+    [
+        ("always(x >= )", "expected an operand after '>=', got ')'", (12, 13)),
+        ("", "write a formula, such as always(x >= 3)", (None, None)),
+        (
+            "always[0:2.5](req >= 3)",
+            "The operator bound must be a multiple of the sampling period: 2.5 s is not a whole number of periods of "
+            "1 s; change the bound or the period",
+            (6, 13),
+        ),
+    ],
+)
+def test_a_mistake_in_the_text_is_an_answer_with_its_place(desk, text, message, place):
+    error = desk.answer("evaluate", {**MESSAGE, "text": text})["error"]
+    assert error == {"message": message, "start": place[0], "end": place[1]}
+
+
+def test_variables_without_a_signal_are_listed(desk):
+    answer = desk.answer("evaluate", {**MESSAGE, "text": "always(req >= speed)"})
+    assert (answer["variables"], answer["missing"]) == (["req", "speed"], ["speed"])
+    assert "verdict" not in answer
+
+
+def test_of_several_requirements_the_first_violated_one_is_explained_unless_another_is_wanted(desk):
+    text = "require LOW: always(req <= 9); require HIGH: always(gnt >= 1)"
+    answer = desk.answer("evaluate", {**MESSAGE, "text": text})
+    assert [(each["name"], each["verdict"]) for each in answer["requirements"]] == [
+        ("LOW", "satisfied"),
+        ("HIGH", "violated"),
+    ]
+    assert answer["focus"] == "HIGH"
+    assert desk.answer("evaluate", {**MESSAGE, "text": text, "focus": "LOW"})["verdict"] == "satisfied"
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"text": 5}, "'text' must be a text"),
+        ({"time": "lunar"}, "'time' is 'lunar'; it must be one of discrete, dense"),
+        ({"duration": math.nan}, "'duration' must be a finite number"),
+        ({"duration": True}, "'duration' must be a finite number"),
+        ({"signals": []}, "'signals' must map names to drawn signals"),
+        ({"signals": {"x": {}}}, "the signal 'x' must have a list of points"),
+        (
+            {"signals": {"x": {"points": []}}},
+            f"the signal 'x' has 0 points; give 1 to {MOST_POINTS}",
+        ),
+        (
+            {"signals": {"x": {"points": [[1]]}}},
+            "a point of the signal 'x' must be a pair of time and value",
+        ),
+        (
+            {"signals": {"x": {"points": [[1, 0], [1, 0]]}}},
+            "the points of the signal 'x' must be in the order of time",
+        ),
+        ({"recording": "../a.csv"}, "'recording' must be a number that the server gave, or null"),
+        ({"resample": "cubic"}, "'resample' is 'cubic'; it must be hold, linear or empty"),
+        ({"focus": 3}, "'focus' must be the name of a requirement, or null"),
+        ({"text": "x" * 200_001}, "'text' has 200001 characters; at most 200000 are allowed"),
+    ],
+)
+def test_malformed_messages_are_one_sentence(desk, change, sentence):
+    with pytest.raises(MessageError) as error:
+        desk.answer("evaluate", {**MESSAGE, **change})
+    assert str(error.value) == sentence
+
+
+def test_unusable_settings_are_answers(desk):
+    assert "'soon'" in desk.answer("evaluate", {**MESSAGE, "period": "soon"})["error"]["message"]
+    assert desk.answer("evaluate", {**MESSAGE, "duration": 1e9})["error"]["message"] == (
+        "1000000001 samples are too many to draw, at most 200000: choose a longer period, a shorter duration, or "
+        "load a recording"
+    )
+    assert desk.answer("evaluate", {**MESSAGE, "recording": 7})["error"]["message"] == (
+        "the recording is no longer here: load it again"
+    )
+
+
+def test_texts_read_no_file_of_the_machine(tmp_path):
+    (tmp_path / "given").mkdir()
+    (tmp_path / "given" / "near.stl").write_text("const float limit = 3;")
+    (tmp_path / "far.stl").write_text("const float limit = 3;")
+    text = 'import "{}"\nalways(req >= limit)'
+    alone, with_folder = Desk(), Desk(str(tmp_path / "given"))
+    assert (
+        "no file 'near.stl'"
+        in alone.answer("evaluate", {**MESSAGE, "text": text.format("near.stl")})["error"]["message"]
+    )
+    assert with_folder.answer("evaluate", {**MESSAGE, "text": text.format("near.stl")})["error"] is None
+    for path in ("../far.stl", str(tmp_path / "far.stl"), "other.stl"):
+        error = with_folder.answer("evaluate", {**MESSAGE, "text": text.format(path)})["error"]
+        assert error is not None
+        assert str(tmp_path / "given") not in error["message"]
+
+
+def test_a_recording_is_evaluated_whole_and_drawn_reduced(desk, tmp_path):
+    values = [math.sin(i / 50) for i in range(10_000)]
+    values[5000] = -9
+    path = tmp_path / "secret folder" / "1.csv"
+    path.parent.mkdir()
+    path.write_text("time,x [m/s]\n" + "".join(f"{i / 10},{x}\n" for i, x in enumerate(values)))
+    file = {"number": 1, "path": str(path), "name": "drive.csv"}
+    summary = desk.answer("recording", {}, file)
+    assert (summary["name"], summary["samples"], summary["signals"]) == (
+        "drive.csv",
+        10_000,
+        [{"name": "x", "unit": "m/s"}],
+    )
+    message = {
+        **MESSAGE,
+        "text": "always(x >= -2)",
+        "period": "",
+        "signals": {},
+        "recording": 1,
+        "width": 100,
+    }
+    answer = desk.answer("evaluate", message, file)
+    assert (answer["interval"], answer["first"]) == ([-7, -7], 500)
+    (line,) = answer["lines"]
+    assert line["points"] == 10_000
+    assert len(line["x"]) <= 200
+    assert (min(line["y"]), line["x"][line["y"].index(-9)]) == (-9, 500)
+    assert "secret folder" not in json.dumps([summary, answer])
+    missing = desk.answer("evaluate", {**message, "text": "always(y >= 0)"}, file)
+    assert "secret folder" not in missing["error"]["message"]
+    assert "'y'" in missing["error"]["message"]
+
+
+def test_an_unreadable_recording_is_a_sentence_without_its_folder(desk, tmp_path):
+    path = tmp_path / "9.csv"
+    path.write_text("")
+    answer = desk.answer("recording", {}, {"number": 9, "path": str(path), "name": "empty.csv"})
+    assert "empty.csv" in answer["error"]["message"]
+    assert str(tmp_path) not in answer["error"]["message"]
+
+
+# In dense time no sample comes between 21 s and 26 s.
+@pytest.mark.parametrize(("time", "decided_at"), [("discrete", 23), ("dense", 26)])
+def test_the_replay_is_what_monitors_report(desk, time, decided_at):
+    answer = desk.answer("replay", {**MESSAGE, "time": time})
+    assert answer["error"] is None
+    assert answer["formula"] == "req >= 3 -> eventually[0:5](gnt >= 3)"
+    assert answer["bounds"]["decided"] == decided_at
+    assert (answer["bounds"]["lower"][0], answer["bounds"]["upper"][-1]) == ("-Infinity", -2)
+    runs = {begin: (good, decided) for begin, _, good, decided in answer["runs"]}
+    assert runs[18] == (False, decided_at)
+    assert runs[4][0] is True
+    for begin, end, _, decided in answer["runs"]:
+        assert begin < end
+        assert decided is None or 0 <= decided <= 30
+
+
+def test_in_discrete_time_each_verdict_is_that_of_the_eager_monitor(desk):
+    monitor = rtamt.parse("req >= 3 -> eventually[0:5](gnt >= 3)").monitor(verdict="eager")
+    expected = {}
+    for t, (req, gnt) in enumerate(zip(held(REQ, 31), held(GNT, 31), strict=True)):
+        expected |= {v.time: (v.satisfied, v.decided_at) for v in monitor.update(t, req=req, gnt=gnt)}
+    runs = desk.answer("replay", MESSAGE)["runs"]
+    assert len(runs) == 31
+    assert {begin: (good, at) for begin, _, good, at in runs if at is not None} == expected
+
+
+def test_pending_instants_have_intervals_that_contain_their_value(desk):
+    final = rtamt.parse("req >= 3 -> eventually[0:5](gnt >= 3)").evaluate(
+        {"req": held(REQ, 31), "gnt": held(GNT, 31)}, period=1
+    )
+    pending = desk.answer("moment", {**MESSAGE, "at": 20})["pending"]
+    assert [time for time, _, _ in pending] == [16, 17, 18, 19, 20]
+    for time, low, high in pending:
+        assert float(low) <= final.signal.values[int(time)] <= float(high)
+
+
+def test_long_recordings_are_not_replayed(desk):
+    message = {**MESSAGE, "duration": 20_001}
+    assert desk.answer("evaluate", message)["error"] is None
+    assert desk.answer("replay", message)["error"]["message"] == (
+        "a recording of more than 20000 samples is not replayed; it is evaluated as a whole"
+    )
+
+
+@pytest.mark.parametrize(("wanted", "verdict"), [("witness", "satisfied"), ("counterexample", "violated")])
+def test_a_found_trace_has_the_wanted_verdict_when_it_is_drawn(desk, wanted, verdict):
+    message = {
+        **MESSAGE,
+        "text": "always[0:3](req >= 3 -> eventually[0:2](gnt >= 3)) and eventually[0:3](req >= 5)",
+    }
+    found = desk.answer("question", {**message, "wanted": wanted})
+    assert found["error"] is None
+    drawn = {**message, "signals": found["signals"], "duration": found["duration"]}
+    assert desk.answer("evaluate", drawn)["verdict"] == verdict
+
+
+def test_what_no_trace_violates_has_no_counterexample(desk):
+    found = desk.answer(
+        "question", {**MESSAGE, "text": "always[0:3](req >= 3 or req <= 3)", "wanted": "counterexample"}
+    )
+    assert found["signals"] is None
+    assert "always holds" in found["sentence"]
+    with pytest.raises(MessageError, match="'wanted' must be witness or counterexample"):
+        desk.answer("question", {**MESSAGE, "wanted": "money"})
