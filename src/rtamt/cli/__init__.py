@@ -2,7 +2,8 @@
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
 ``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``,
-``describe``, ``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``, ``completion``.
+``describe``, ``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``,
+``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ================  =============================================================
