@@ -318,3 +318,14 @@ def test_requirements_over_different_variables_keep_no_more_than_their_windows()
         monitor.update(i / 10, **({"x": i % 7 - 3} if i % 2 else {"y": i % 5 - 2}))
         sizes.append(monitor.memory)
     assert max(sizes[2000:]) <= max(sizes[:2000])
+
+
+@pytest.mark.parametrize("verdict", ["eager", "interval"])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_no_value_is_an_error_before_the_traces_of_other_requirements_have_started(backend, verdict):
+    spec = rtamt.parse("require A: y > 1; require B: z > z - z", time="dense", backend=backend)
+    monitor = spec.monitor(verdict=verdict)
+    with pytest.raises(rtamt.EvaluationError, match="'z - z' has no value at time 0 s"):
+        monitor.update(0, z=np.inf)
+    assert monitor.update(1, z=3, y=2) or verdict == "interval"
+    monitor.finish()

@@ -144,9 +144,11 @@ class PythonDenseEarlyMonitor:
         """Return the bounds of an output; None while the trace has not started. ``later``: see DenseKnowledge."""
         knowledge = replace(self._knowledge(came), later=later or {})
         parts = [(formula, knowledge.of(names)) for formula, names in output]
-        if any(known.start is None for _, known in parts) or (self._waits and knowledge.start is None):
+        if self._waits and knowledge.start is None:
             return None
-        return least([bounds(formula, known, self._tick) for formula, known in parts])
+        # What has no value is an error once its own trace reaches it, also before the others have started.
+        begun = [bounds(formula, known, self._tick) for formula, known in parts if known.start is not None]
+        return least(begun) if len(begun) == len(parts) else None
 
     def _parts(
         self, formula: int, came: _Came, later: Mapping[str, Samples] | None = None
