@@ -4,9 +4,32 @@
 #include "../values/real.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 namespace rtamt::early {
+
+namespace {
+
+// The least or the greatest of some values, in four lanes that do not wait for each other.
+template <bool greatest>
+[[nodiscard]] double extreme_of(const double* begin, const double* end) noexcept {
+    constexpr std::size_t lanes = 4;
+    const auto join = [](double a, double b) {
+        return greatest ? Real::join(a, b) : Real::meet(a, b);
+    };
+    std::array<double, lanes> found{};
+    found.fill(greatest ? -infinity : infinity);
+    for (; end - begin >= static_cast<std::ptrdiff_t>(lanes); begin += lanes) {
+        for (std::size_t i = 0; i < lanes; ++i)
+            found[i] = join(found[i], begin[i]);
+    }
+    for (; begin != end; ++begin)
+        found[0] = join(found[0], *begin);
+    return join(join(found[0], found[1]), join(found[2], found[3]));
+}
+
+} // namespace
 
 Runs::Runs(Tick from, double value) {
     directory_.push_back(Entry{});
@@ -189,14 +212,8 @@ void Runs::drop_before(Tick t) noexcept {
 
 void Runs::sum(const Entry& entry) const noexcept {
     const Chunk& chunk = *entry.chunk;
-    double least = infinity;
-    double most = -infinity;
-    for (int i = chunk.begin; i < chunk.end; ++i) {
-        least = Real::meet(least, chunk.value[i]);
-        most = Real::join(most, chunk.value[i]);
-    }
-    entry.least = least;
-    entry.most = most;
+    entry.least = extreme_of<false>(chunk.value + chunk.begin, chunk.value + chunk.end);
+    entry.most = extreme_of<true>(chunk.value + chunk.begin, chunk.value + chunk.end);
     entry.summed = true;
 }
 
@@ -222,11 +239,7 @@ double Runs::extreme(Tick l, Tick r, double enough) const noexcept {
         return greatest ? result >= enough : result <= enough;
     };
     const auto within = [&](const Chunk& chunk, int begin, int end) noexcept {
-        double extreme = greatest ? -infinity : infinity;
-        for (int i = begin; i < end; ++i)
-            extreme = greatest ? Real::join(extreme, chunk.value[i])
-                               : Real::meet(extreme, chunk.value[i]);
-        return take(extreme);
+        return take(extreme_of<greatest>(chunk.value + begin, chunk.value + end));
     };
     const Place to = find(r);
     const Chunk& last = *directory_[to.chunk].chunk;

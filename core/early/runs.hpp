@@ -180,15 +180,12 @@ inline Runs::Place Runs::find(Tick t) const noexcept {
         int low = chunk.begin;
         --high;
         if (high >= low && chunk.start[high] <= t) low = high; // most accesses are near the end
-        while (low < high) {
-            const int middle = (low + high + 1) / 2;
-            if (chunk.start[middle] <= t) {
-                low = middle;
-            } else {
-                high = middle - 1;
-            }
+        for (int count = high - low + 1; count > 1;) { // without branches, which nobody predicts
+            const int half = count / 2;
+            low += chunk.start[low + half] <= t ? half : 0;
+            count -= half;
         }
-        if (high < chunk.begin) high = chunk.begin;
+        high = low < chunk.begin ? chunk.begin : low;
     }
     return {c, high};
 }
