@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import builtins
 import copy
 import importlib
 import math
 import sys
 from abc import ABC, abstractmethod
-from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compat.associativity import warn_of_chains
 from rtamt.compat.failures import raises_rtamt
-from rtamt.compat.objects import head_of, numbers_in
+from rtamt.compat.objects import SCALARS, head_of, lacks, new_object
 from rtamt.errors import (
     NameInFormulaError,
     SpecificationError,
@@ -26,11 +24,9 @@ from rtamt.errors import (
 from rtamt.extras import message_class
 from rtamt.language.formula import Var, postorder, variables
 from rtamt.language.operators import STL, Language
-from rtamt.language.parsing.declarations import TYPES
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import check_unit
-from rtamt.signals.arrays import field
 
 if TYPE_CHECKING:
     import os
@@ -40,9 +36,6 @@ if TYPE_CHECKING:
 
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
-
-#: The types of variables that need no import, and their classes; ``long`` is from Python 2.
-SCALARS: dict[str, type] = {name: getattr(builtins, name, int) for name in TYPES}
 
 #: What a program sets before ``parse``.
 _DECLARED = (
@@ -115,7 +108,7 @@ class Declarations(ABC):
         _require_text("the name of a variable", var_name)
         if var_name in self._constants:
             raise UsageError(f"'{var_name}' is a constant already; give the variable another name")
-        self._objects[var_name] = self._new_object(var_name, var_type)
+        self._objects[var_name] = new_object(var_name, var_type, self.modules)
         self._types[var_name] = var_type
         self.var_io_dict[var_name] = "output"
         self.var_topic_dict.setdefault(var_name, f"rtamt/{var_name}")
@@ -362,20 +355,8 @@ class Declarations(ABC):
 
     def _lacks(self, name: str) -> str:
         """Return why a declared object has no number called ``name``, or an empty string."""
-        head, *path = name.split(".")
-        held, kind = self._objects[head], self._types.get(head, "number")
-        try:
-            if any(step.startswith("__") for step in path):  # Python's own, such as __class__
-                raise AttributeError
-            value = field(held, path)
-        except AttributeError:
-            missing = ".".join(path)
-            hint = did_you_mean(missing, numbers_in(held))
-            return f"'{head}' is {with_article(kind)} and has no field '{missing}'{hint}"
-        if path or isinstance(value, Real):
-            return ""
-        such = [f", such as {head}.{number}" for number in numbers_in(held)[:1]]
-        return f"'{head}' is {with_article(kind)} and no number; name one of its fields{''.join(such)}"
+        head = head_of(name)
+        return lacks(name, self._objects[head], self._types.get(head, "number"))
 
     def _assertions(self, document: Document) -> dict[str, Formula]:
         """Return the formulas by name, the result last."""
@@ -390,23 +371,6 @@ class Declarations(ABC):
                 f"the variable '{name}' is not declared{did_you_mean(name, self._types)}; "
                 f"call declare_var('{name}', ...) first"
             )
-
-    def _new_object(self, name: str, type_name: str) -> Any:
-        if type_name in SCALARS:
-            return SCALARS[type_name]()
-        if type_name not in self.modules:
-            raise UsageError(
-                f"the type '{type_name}' of '{name}' is neither built in ({', '.join(SCALARS)}) nor imported"
-                f"{did_you_mean(type_name, [*SCALARS, *self.modules])}; import it with import_module(module, "
-                f"'{type_name}') first"
-            )
-        cls = getattr(self.modules[type_name], type_name)
-        try:
-            return cls()
-        except TypeError as error:
-            raise UsageError(
-                f"'{name}' cannot start as {with_article(type_name)} without arguments: {error}"
-            ) from error
 
 
 def _require_text(what: str, value: object) -> None:
