@@ -46,10 +46,10 @@ class EagerFeed:
         self._types = types
         self._explain = explain
 
-    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+    def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it settles; return what is wrong with it, if anything is."""
         try:
-            self._print(self.monitor.update(_time(self.monitor, stamp), **values))
+            self._print(self.monitor.update(_time(self.monitor, timestamp), **values))
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
         return ""
@@ -98,10 +98,10 @@ class StartFeed:
         self.monitor = start.bounds
         self._last: tuple[Interval, str] | None = None
 
-    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+    def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
-            time = _time(self.monitor, stamp)
+            time = _time(self.monitor, timestamp)
             self.start.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
@@ -146,10 +146,10 @@ class IntervalFeed:
         #: What is known at the samples that are drawn, in the order in which they came.
         self._known: dict[Any, Interval] = {}
 
-    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+    def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
-            time = _time(self.monitor, stamp)
+            time = _time(self.monitor, timestamp)
             self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
@@ -196,10 +196,10 @@ class CausationFeed:
     def __init__(self, monitor: CausationMonitor) -> None:
         self.monitor = monitor
 
-    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+    def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it causes; return what is wrong with it, if anything is."""
         try:
-            time = _time(self.monitor, stamp)
+            time = _time(self.monitor, timestamp)
             caused = self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
@@ -213,10 +213,10 @@ class CausationFeed:
             say(f'{{{_caused(caused)}, "final": true}}', flush=True)
 
 
-def _time(monitor: EarlyMonitor | MemberIntervalMonitor, stamp: Any) -> Any:
+def _time(monitor: EarlyMonitor | MemberIntervalMonitor, timestamp: Any) -> Any:
     """Return the time of a sample; without timestamps, samples are one period apart."""
-    if stamp is not None:
-        return stamp
+    if timestamp is not None:
+        return timestamp
     if not isinstance(monitor, _DISCRETE):
         raise TraceError("in dense time every sample needs its time")
     return monitor.samples * float(monitor.period)

@@ -30,8 +30,8 @@ class HeldFeed:
         if time is None:
             return f"{STDIN}, line {line}: values that are held need their time"
         try:
-            for stamp, sample in self._sampler.take(time, values):
-                problem = self._feed.take(stamp, sample, line)
+            for timestamp, sample in self._sampler.take(time, values):
+                problem = self._feed.take(timestamp, sample, line)
                 if problem:
                     return problem
         except TraceError as error:
@@ -41,8 +41,8 @@ class HeldFeed:
     def finish(self) -> str:
         """End the trace; return what is wrong with the last samples, if anything is."""
         try:
-            for stamp, sample in self._sampler.finish():
-                problem = self._feed.take(stamp, sample, 0)
+            for timestamp, sample in self._sampler.finish():
+                problem = self._feed.take(timestamp, sample, 0)
                 if problem:
                     return problem
         except TraceError as error:

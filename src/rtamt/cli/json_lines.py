@@ -76,7 +76,7 @@ def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
-    """Return a stamp as it would be written in a cell: a number, or a date."""
+    """Return a timestamp as it would be written in a cell: a number, or a date."""
     value = given_in(data, name, number)
     if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
         if not is_date(value):

@@ -90,12 +90,12 @@ class Live:
             self._next = time.monotonic() + self.PAUSE
             self._live.refresh()
 
-    def point(self, stamp: Any, robustness: float) -> None:
+    def point(self, timestamp: Any, robustness: float) -> None:
         """Take a robustness that became known."""
         self._values.append(robustness)
-        self._known = stamp
+        self._known = timestamp
         if robustness < self._lowest[0] or self._lowest[1] is None:
-            self._lowest = (robustness, stamp)
+            self._lowest = (robustness, timestamp)
 
     def bounds(self, known: Interval, status: str, satisfied: bool | None) -> None:
         """Take the bounds and the verdict at the start of the trace, as known after a sample."""
@@ -149,7 +149,7 @@ class Live:
         return f"{sign} {short(last)} at {rounded(self._known)}  ({lowest})"
 
 
-def rounded(stamp: Any) -> str:
+def rounded(timestamp: Any) -> str:
     """Return a time for people: to the millisecond, below a second to six digits.
 
     >>> rounded(12.300000000000001), rounded(1.25e-5), rounded(1700000000.1)
@@ -157,9 +157,9 @@ def rounded(stamp: Any) -> str:
     >>> rounded(np.datetime64("2026-05-01T12:00:00.123456789")), rounded(np.timedelta64(1500, "ms"))
     ('2026-05-01T12:00:00.123', '1.5 s')
     """
-    if isinstance(stamp, np.datetime64):
-        return str(stamp.astype("datetime64[ms]"))
-    seconds = float(in_seconds(np.array([stamp]))[0])
+    if isinstance(timestamp, np.datetime64):
+        return str(timestamp.astype("datetime64[ms]"))
+    seconds = float(in_seconds(np.array([timestamp]))[0])
     text = f"{seconds:.3f}".rstrip("0").rstrip(".") if abs(seconds) >= 1 else short(seconds)
     return f"{text} s"
 

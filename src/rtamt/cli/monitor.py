@@ -294,14 +294,14 @@ class SampleFeed:
         self._last: float | None = None
         self._timestamps: deque[Any] = deque()
 
-    def take(self, stamp: Any, values: dict[str, float], line: int) -> str:
+    def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what became known; return what is wrong with the sample, if anything is.
 
-        ``stamp``: seconds, or a date or duration of numpy, which is printed with all its digits.
+        ``timestamp``: seconds, or a date or duration of numpy, which is printed with all its digits.
         """
-        if stamp is None:
-            stamp = self.monitor.samples * self._period
-        time = stamp if isinstance(stamp, float) else float(in_seconds(np.array([stamp]))[0])
+        if timestamp is None:
+            timestamp = self.monitor.samples * self._period
+        time = timestamp if isinstance(timestamp, float) else float(in_seconds(np.array([timestamp]))[0])
         if self._assumed and self._last is not None and self._differs(time - self._last):
             return (
                 f"{STDIN}, line {line}: sample {self.monitor.samples} at {time:.15g} s is {time - self._last:g} s "
@@ -313,7 +313,7 @@ class SampleFeed:
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
         self._last = time
-        self._timestamps.append(stamp)
+        self._timestamps.append(timestamp)
         for name, known in self._parts.items():
             value = self.monitor[name]
             if isinstance(value, float):
@@ -333,8 +333,8 @@ class SampleFeed:
             signal = self.monitor[name]
             assert isinstance(signal, Signal)
             known.extend(signal.values.tolist())
-        for stamp, robustness in zip(self._timestamps, rest.values.tolist(), strict=True):
-            self._point(stamp, robustness)
+        for timestamp, robustness in zip(self._timestamps, rest.values.tolist(), strict=True):
+            self._point(timestamp, robustness)
 
     def _point(self, time: Any, robustness: float) -> None:
         self._output.point(time, robustness, {name: known.popleft() for name, known in self._parts.items()})

@@ -59,7 +59,7 @@ Sample = tuple[Any, dict[str, Any]]
 class Samples:
     """Reads one sample from each line: its timestamp (None if there are none) and the values wanted.
 
-    A stamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
+    A timestamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
     that :func:`rtamt.read` would take. ``unit``: of timestamps that are numbers. ``binding``: under which names the
     variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN. ``members``:
@@ -228,15 +228,15 @@ class _Stamps:
             )
         return selection
 
-    def sample(self, stamp: str | None, values: dict[str, float], number: int) -> Sample:
-        """Return a sample with its stamp, a text in line ``number``; None where there are no timestamps."""
+    def sample(self, timestamp: str | None, values: dict[str, float], number: int) -> Sample:
+        """Return a sample with its timestamp, a text in line ``number``; None where there are no timestamps."""
         time = None
-        if stamp is not None:
+        if timestamp is not None:
             assert self.clock is not None
             if self._cells is None:
                 column = self.clock.field.column
                 self._cells = Cells(Header(STDIN, (column,), ",", 0), column)
-            self._cells.extend([stamp], [number])
+            self._cells.extend([timestamp], [number])
             times = self.clock.times(self._cells.take(), self._samples)
             time = times[0] if times.dtype.kind != "f" else float(times[0])
             if TIME in self._names:  # a formula may read the time
@@ -288,8 +288,8 @@ class JsonSamples:
             if clock is not None:
                 found.pop(clock.field.column, None)
             values = found | values
-        stamp = None if clock is None else stamp_in(data, clock.field.column, number)
-        return self._timestamps.sample(stamp, values, number)
+        timestamp = None if clock is None else stamp_in(data, clock.field.column, number)
+        return self._timestamps.sample(timestamp, values, number)
 
 
 class CsvSamples:
@@ -359,8 +359,8 @@ class CsvSamples:
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         values |= codes
         clock = self._timestamps.clock
-        stamp = None if clock is None else row[header.names.index(clock.field.column)]
-        return self._timestamps.sample(stamp, values, number)
+        timestamp = None if clock is None else row[header.names.index(clock.field.column)]
+        return self._timestamps.sample(timestamp, values, number)
 
     def _member(self, column: Column, row: Sequence[str], number: int) -> float | None:
         """Return the code of the member in a cell, None where a number is expected."""

@@ -103,7 +103,7 @@ class Dates:
         try:
             moments: Raw = np.array(timestamps, dtype="M8[ns]") - np.array(offsets, dtype="m8[m]")
         except ValueError:
-            i = next(i for (i, _), stamp in zip(texts, timestamps, strict=True) if _is_no_date(stamp))
+            i = next(i for (i, _), timestamp in zip(texts, timestamps, strict=True) if _is_no_date(timestamp))
             raise DateError(i, "which is no date of the calendar") from None
         return moments
 
@@ -150,9 +150,9 @@ def _offset(i: int, zone: str | None) -> int:
     return -(hours * 60 + minutes) if zone[0] == "-" else hours * 60 + minutes
 
 
-def _is_no_date(stamp: str) -> bool:
+def _is_no_date(timestamp: str) -> bool:
     try:
-        np.datetime64(stamp, "ns")
+        np.datetime64(timestamp, "ns")
     except ValueError:
         return True
     return False

@@ -77,10 +77,10 @@ class CallerTimes:
             start = Fraction(last) + self.period_in_unit(dtype)
         timestamps = [start + i * self.period_in_unit(dtype) for i in range(count)]
         if dtype.kind in "mM":
-            return np.array([round(stamp) for stamp in timestamps], np.int64).view(dtype)
-        if dtype.kind == "i" and all(stamp.denominator == 1 for stamp in timestamps):
-            return np.array([int(stamp) for stamp in timestamps], np.int64)
-        return np.array([float(stamp) for stamp in timestamps])
+            return np.array([round(timestamp) for timestamp in timestamps], np.int64).view(dtype)
+        if dtype.kind == "i" and all(timestamp.denominator == 1 for timestamp in timestamps):
+            return np.array([int(timestamp) for timestamp in timestamps], np.int64)
+        return np.array([float(timestamp) for timestamp in timestamps])
 
     def period_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
         """Return how much a period is in times of a format."""

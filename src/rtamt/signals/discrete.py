@@ -257,12 +257,14 @@ class DiscreteTrace(DomainTrace):
 
     def show(self, position: int) -> str:
         """See :class:`DomainTrace`."""
-        stamp = self.time(position)
-        if isinstance(stamp, np.datetime64):
-            return str(stamp.astype("M8[ms]")) if stamp == stamp.astype("M8[ms]") else str(stamp)
-        if isinstance(stamp, np.timedelta64):
-            return f"{decimal(int(stamp.astype(np.int64)) * UNITS['ns'])} s"
-        number = f"{stamp:.15g}" if isinstance(stamp, float) else str(stamp)
+        timestamp = self.time(position)
+        if isinstance(timestamp, np.datetime64):
+            return (
+                str(timestamp.astype("M8[ms]")) if timestamp == timestamp.astype("M8[ms]") else str(timestamp)
+            )
+        if isinstance(timestamp, np.timedelta64):
+            return f"{decimal(int(timestamp.astype(np.int64)) * UNITS['ns'])} s"
+        number = f"{timestamp:.15g}" if isinstance(timestamp, float) else str(timestamp)
         return f"{number} {self.unit or 's'}"
 
     def position(self, at: Any) -> int:

@@ -34,18 +34,18 @@ def read_time(time: Any, index: int, last: float | None, *, again: bool = False)
 
     ``again``: whether it may be the same as the ``last`` one.
     """
-    stamp = arrays.number_of(time)
-    if stamp is None:
+    timestamp = arrays.number_of(time)
+    if timestamp is None:
         raise TraceError(
             f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
         )
-    if is_implausible(stamp):
-        raise implausible("time", index, time if is_implausible(time) else stamp)
-    if not isfinite(stamp):
-        raise TraceError(f"time is {stamp} at sample {index}: give a finite number of seconds")
-    if last is not None and (stamp < last or (stamp == last and not again)):
-        raise not_increasing(index, stamp, last)
-    return stamp
+    if is_implausible(timestamp):
+        raise implausible("time", index, time if is_implausible(time) else timestamp)
+    if not isfinite(timestamp):
+        raise TraceError(f"time is {timestamp} at sample {index}: give a finite number of seconds")
+    if last is not None and (timestamp < last or (timestamp == last and not again)):
+        raise not_increasing(index, timestamp, last)
+    return timestamp
 
 
 def read_values(

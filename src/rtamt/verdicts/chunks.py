@@ -155,7 +155,7 @@ class Output:
         self.minima: list[Tracker] = []
         self.episodes: list[WindowTracker] = []
         self.known = 0
-        self.last: Any = None  # the last stamp at which it was known
+        self.last: Any = None  # the last timestamp at which it was known
 
     def take(
         self, positions: Positions, values: FloatArray, last: int | None = None, times: Any = None

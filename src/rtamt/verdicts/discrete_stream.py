@@ -72,7 +72,7 @@ class DiscreteStream(Stream):
             begin = output.known
             output.known += len(signal)
             output.take(np.arange(begin, output.known), signal.values, times=signal.times)
-            # A tracker decides on a position when the next one comes: the stamp before is wanted, too.
+            # A tracker decides on a position when the next one comes, which needs the timestamp before.
             violated = (t.violated for t in output.trackers if t.violated is not None)
             for position in {0, *violated}:
                 if position == begin - 1:

@@ -86,9 +86,11 @@ class DiscreteFleet:
         for name in columns:
             if name not in monitor.input_names and name not in monitor._declared:
                 raise unknown_variable(name, monitor.input_names)
-        stamps, found, _ = columns_of({**columns, "time": times}, monitor.input_names, None, monitor._types)
-        assert stamps is not None
-        return stamps.seconds, found
+        timestamps, found, _ = columns_of(
+            {**columns, "time": times}, monitor.input_names, None, monitor._types
+        )
+        assert timestamps is not None
+        return timestamps.seconds, found
 
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> list[Known]:
         """Take a batch; return what became known of each output. Raises for wrong data, and nothing has changed."""

@@ -170,21 +170,21 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     def _take_at_caller_time(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time is not given in seconds."""
-        stamp = self._times.read([time], self.samples)
-        robustness = self._take(float(stamp.seconds[0]), values)
-        self._remember(stamp.original)
+        timestamp = self._times.read([time], self.samples)
+        robustness = self._take(float(timestamp.seconds[0]), values)
+        self._remember(timestamp.original)
         return robustness
 
     def _take(self, time: Any, values: dict[str, Any]) -> float | None:
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
-        stamp = read_time(time, self.samples, self._last_time)
-        numbers = read_values(flat, self.input_names, self.samples, stamp, self._types)
+        timestamp = read_time(time, self.samples, self._last_time)
+        numbers = read_values(flat, self.input_names, self.samples, timestamp, self._types)
         try:
-            robustness: float | None = self._update(stamp, numbers)
+            robustness: float | None = self._update(timestamp, numbers)
         except self._refused:
-            raise self._refusal(stamp) from None
+            raise self._refusal(timestamp) from None
         except self._undefined as error:
             raise self._no_value(error) from None
         return robustness

@@ -77,19 +77,19 @@ class SampledMembers(QuantifierMonitor):
             if name not in own:
                 raise missing_variable(name, tuple(values))
         seconds = arrays.number_of(time)
-        stamp = self._next_time() if seconds is None else seconds
-        numbers = read_values(own, self.input_names, self.samples, stamp, self._types)
+        timestamp = self._next_time() if seconds is None else seconds
+        numbers = read_values(own, self.input_names, self.samples, timestamp, self._types)
         present = {}
         for name, (group, fields) in self._fields.items():
             present[name] = {
-                member: self._sample(member, sample, group, fields, stamp)
+                member: self._sample(member, sample, group, fields, timestamp)
                 for member, sample in given.items()
                 if group.matches(member) and all(sample.get(field, 0.0) is not None for field in fields)
             }
         return numbers, present
 
     def _sample(
-        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], stamp: float
+        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], timestamp: float
     ) -> Sample:
         """Return the fields of a member as numbers."""
         for field in fields:
@@ -101,7 +101,7 @@ class SampledMembers(QuantifierMonitor):
             {name: sample[field] for field, name in names.items()},
             tuple(names.values()),
             self.samples,
-            stamp,
+            timestamp,
             types,
         )
         return {field: numbers[name] for field, name in names.items()}
