@@ -42,10 +42,10 @@ class Output:
             if sys.stdout.isatty():
                 return
         # The time by hand: it may have more digits than a double.
-        stamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
+        timestamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
         rest: dict[str, Any] = {"robustness": json_number(robustness)}
         if self.verdicts:
             rest["satisfied"] = robustness > 0
         if parts:
             rest["requirements"] = {name: json_number(value) for name, value in parts.items()}
-        say(f'{{"time": {stamp}, {json.dumps(rest)[1:]}', flush=True)
+        say(f'{{"time": {timestamp}, {json.dumps(rest)[1:]}', flush=True)
