@@ -10,6 +10,7 @@
 #pragma once
 
 #include "../discrete/arena.hpp"
+#include "batch.hpp"
 #include "keys.hpp"
 #include "layout.hpp"
 
@@ -24,15 +25,6 @@
 
 namespace rtamt::fleet {
 
-// Samples of a batch: key, time and a value of each input.
-struct Batch {
-    KeySpan keys;
-    const double* times = nullptr;
-    std::span<const double* const> columns;
-
-    [[nodiscard]] std::size_t size() const noexcept { return keys.size(); }
-};
-
 // What a batch has made known of an output, in its order; `when` is the time that a value is for.
 // The values of what is not known are 0, its times NaN. `warming` may be null.
 struct Output {
@@ -40,18 +32,6 @@ struct Output {
     std::uint8_t* known = nullptr;
     double* when = nullptr;
     std::uint8_t* warming = nullptr;
-};
-
-// Why a batch was rejected: the index in it, and what is wrong there.
-struct Rejected {
-    enum class Reason : std::uint8_t { time, gap, value, undefined, full };
-
-    std::size_t index = 0;
-    Reason reason{};
-    std::int64_t samples = 0;                  // of the key so far
-    std::optional<double> last = std::nullopt; // its time before
-    std::uint32_t instruction = 0;             // without a value; of `value` the input
-    std::optional<double> time = std::nullopt; // of the undefined value
 };
 
 class Fleet {
@@ -77,6 +57,9 @@ class Fleet {
 
     [[nodiscard]] bool contains(const KeySpan& keys, std::size_t index) noexcept {
         return place_of(keys, index).has_value();
+    }
+    [[nodiscard]] double last_time(std::size_t place) noexcept {
+        return Layout::header(record(place)).last;
     }
     [[nodiscard]] const Keys& keys() const noexcept { return keys_; }
     [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
@@ -140,7 +123,6 @@ class Fleet {
 
     [[nodiscard]] std::optional<Rejected> take(const Batch& batch, std::span<const Output> outputs,
                                                std::size_t old_size);
-    [[nodiscard]] std::optional<Rejected> wrong_value(const Batch& batch) const;
     template <class Key>
     [[nodiscard]] std::optional<Rejected> admit(std::span<const Key> keys, const Batch& batch,
                                                 std::size_t count);

@@ -5,6 +5,7 @@
 #include "../discrete/undefined.hpp"
 #include "../program/crc32.hpp"
 #include "fleet.hpp"
+#include "state_bytes.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -23,48 +24,6 @@ constexpr std::uint16_t version = 1;
 constexpr std::size_t header_size = 80;
 constexpr std::size_t part_size = 32;
 constexpr std::size_t checksum_size = 4;
-
-[[noreturn]] void refuse(const std::string& reason) {
-    throw std::invalid_argument("This is not the state of a fleet: " + reason + ".");
-}
-
-// Writes numbers one after another; the caller has made room.
-class Writer {
-  public:
-    explicit Writer(std::uint8_t* out) noexcept : out_(out) {}
-    template <class Value>
-    void put(Value value) noexcept {
-        put(&value, sizeof(Value));
-    }
-    void put(const void* memory, std::size_t size) noexcept {
-        if (size != 0) std::memcpy(out_, memory, size);
-        out_ += size;
-    }
-
-  private:
-    std::uint8_t* out_;
-};
-
-class Bytes {
-  public:
-    explicit Bytes(std::span<const std::uint8_t> rest) noexcept : rest_(rest) {}
-    template <class Value>
-    [[nodiscard]] Value take() {
-        Value value{};
-        std::memcpy(&value, take(sizeof(Value)).data(), sizeof(Value));
-        return value;
-    }
-    [[nodiscard]] std::span<const std::uint8_t> take(std::uint64_t size) {
-        if (size > rest_.size()) refuse("it ends too early");
-        const auto part = rest_.first(static_cast<std::size_t>(size));
-        rest_ = rest_.subspan(static_cast<std::size_t>(size));
-        return part;
-    }
-    [[nodiscard]] std::size_t left() const noexcept { return rest_.size(); }
-
-  private:
-    std::span<const std::uint8_t> rest_;
-};
 
 // What the header and the table of parts contain.
 struct Stored {
@@ -142,13 +101,6 @@ struct Stored {
     return stored;
 }
 
-[[nodiscard]] std::size_t text_bytes(std::span<const std::string> texts) noexcept {
-    std::size_t size = 0;
-    for (const std::string& text : texts)
-        size += sizeof(std::uint32_t) + text.size();
-    return size;
-}
-
 template <class Value>
 [[nodiscard]] Value read_at(const std::byte* memory, std::uint64_t offset) noexcept {
     Value value{};
@@ -159,10 +111,8 @@ template <class Value>
 } // namespace
 
 std::size_t Fleet::snapshot_size() const noexcept {
-    const std::size_t keys =
-        keys_.textual() ? text_bytes(keys_.texts()) : size() * sizeof(std::uint64_t);
-    return header_size + layout_.parts().size() * part_size + size() * record_size() + keys +
-           checksum_size;
+    return header_size + layout_.parts().size() * part_size + size() * record_size() +
+           key_bytes(keys_) + checksum_size;
 }
 
 void Fleet::snapshot(std::span<std::uint8_t> out) const noexcept {
@@ -188,14 +138,7 @@ void Fleet::snapshot(std::span<std::uint8_t> out) const noexcept {
                                 static_cast<std::uint32_t>(kernel.sizes().tail)});
     }
     writer.put(arena_, size() * record_size());
-    if (keys_.textual()) {
-        for (const std::string& text : keys_.texts()) {
-            writer.put(static_cast<std::uint32_t>(text.size()));
-            writer.put(text.data(), text.size());
-        }
-    } else {
-        writer.put(keys_.integers().data(), size() * sizeof(std::uint64_t));
-    }
+    put_keys(keys_, writer);
     writer.put(crc32(out.first(out.size() - checksum_size)));
 }
 
@@ -357,20 +300,7 @@ Fleet Fleet::restore(Program program, std::vector<std::string> names, Settings s
     const bool warming = Move::warms(Layout(program, names, false), stored);
     Fleet fleet(std::move(program), std::move(names), settings, warming);
     const auto records = rest.take(stored.count * stored.record_size);
-    fleet.keys_.set_kind(stored.kind);
-    for (std::uint64_t i = 0; i < stored.count; ++i) {
-        const auto add = [&](auto key) {
-            const std::uint64_t code = fleet.keys_.code(key);
-            if (fleet.keys_.find(key, code) != nullptr) refuse("it has a key twice");
-            fleet.keys_.add(key, code);
-        };
-        if (fleet.keys_.textual()) {
-            const auto text = rest.take(rest.take<std::uint32_t>());
-            add(std::string_view(reinterpret_cast<const char*>(text.data()), text.size()));
-        } else {
-            add(rest.take<std::int64_t>());
-        }
-    }
+    take_keys(fleet.keys_, stored.kind, stored.count, rest);
     if (rest.left() != 0) refuse("it is too long");
     Move move(fleet.program_, fleet.layout_, stored);
     for (std::size_t i = 0; i < stored.count; ++i) {

@@ -9,6 +9,7 @@
 #include "offline.hpp"
 #include "online.hpp"
 #include "recording.hpp"
+#include "reorder.hpp"
 #include "tick_points.hpp"
 
 #include <nanobind/nanobind.h>
@@ -65,6 +66,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_offline(m, exceptions);
     rtamt::python::add_evaluator(m, exceptions);
     rtamt::python::add_fleet(m);
+    rtamt::python::add_reorder(m);
     rtamt::python::add_recording(m);
     rtamt::python::add_tick_points(m);
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import struct
 import zlib
+from math import floor
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
+from rtamt.language.printing.printer import to_text
 from rtamt.signals.discrete import Discrete
 from tests.strategies import formulas
 
@@ -214,3 +216,109 @@ def test_damaged_bytes_are_no_state(data: st.DataObject) -> None:
     with contextlib.suppress(TraceError, EvaluationError, UsageError):
         forged.update(np.array(keys), np.array([2.0, 1.0, 3.0]), columns)
     assert len(forged) <= 100
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.data())
+def test_in_event_time_the_order_of_arrival_and_the_batches_do_not_matter(data: st.DataObject) -> None:
+    """Random arrival orders within the lateness, late samples, gaps and restarts, against a monitor of each key."""
+    formula = data.draw(formulas(max_depth=3))
+    spec = rtamt.parse(to_text(formula), period=1)
+    gaps = data.draw(st.sampled_from(["restart", "hold"]))
+    lateness = data.draw(st.sampled_from([0, 1, 2.5, 5]))
+    names: list[Any] = data.draw(st.sampled_from([[3, -1], ["a", "Ä€\U0001f600"]]))
+    inputs = spec.input_names
+    sent: list[tuple[float, Any, float, dict[str, float]]] = []  # arrival, key, time, values
+    for key in names:
+        time = data.draw(st.sampled_from([0.0, -7.5, 1e6]))
+        for _ in range(data.draw(st.integers(1, 9))):
+            row = {name: data.draw(NUMBERS) for name in inputs}
+            delay = data.draw(st.sampled_from([0.0, 0.5, 1.0, 2.5, 4.0, 20.0]))
+            sent += [(time + delay, key, time, row)] * data.draw(st.sampled_from([1, 1, 1, 2]))
+            time += data.draw(st.sampled_from([1.0, 1.0, 1.0, 1.0625, 3.0, 2.5]))
+    sent.sort(key=lambda each: (each[0], str(each[1])))
+    expected, late = ordered(sent, float(lateness))
+    wanted = [
+        found
+        for key in names
+        for found in monitored(
+            spec, [(time, row) for other, time, row in expected if other == key], gaps, key
+        )
+    ]
+    fleet = rtamt.Fleet(spec, 2, lateness=lateness, gaps=gaps)
+    assume(all(each is not None for each in wanted))
+    reported, diverted = [], []
+    rest = sent
+    while rest:
+        size = data.draw(st.integers(1, len(rest)))
+        batch, rest = rest[:size], rest[size:]
+        keys = np.array([key for _, key, _, _ in batch])
+        columns = {name: np.array([row[name] for _, _, _, row in batch]) for name in inputs}
+        update = fleet.update_many(keys, np.array([time for _, _, time, _ in batch]), columns)
+        diverted += update.late.tolist()
+        reported += reports(keys, update)
+        if data.draw(st.booleans()):
+            fleet = rtamt.Fleet.restore(spec, fleet.snapshot())
+        if data.draw(st.booleans()):
+            twin = rtamt.Fleet.restore(spec, fleet.snapshot())
+            with pytest.raises(TraceError):
+                twin.update_many([*names, names[0]], [0.5, 1e7, np.inf], {name: [1.0] * 3 for name in inputs})
+            assert twin.snapshot() == fleet.snapshot()
+    assert diverted == late
+    assert fleet.late == sum(late)
+    reported += reports(np.array([]), fleet.watermark(np.inf))
+    assert fleet.waiting == 0
+    assert sorted(reported, key=str) == sorted(wanted, key=str)
+
+
+def reports(keys: Any, update: rtamt.FleetUpdate) -> list[tuple[Any, ...]]:
+    """Return key, time and value of all that an update made known."""
+    own = zip(keys, update.times, update.values, update.known, strict=True)
+    found = [(key.item(), float(time), bits(value)) for key, time, value, known in own if known]
+    released = update.released
+    others = zip(released.keys.tolist(), released.times.tolist(), released.values, strict=True)
+    return found + [(key, time, bits(value)) for key, time, value in others]
+
+
+def ordered(
+    sent: list[tuple[float, Any, float, dict[str, float]]], lateness: float
+) -> tuple[list[tuple[Any, float, dict[str, float]]], list[bool]]:
+    """Return the samples that are not late in the order of their times, and which are: by the definition."""
+    newest: dict[Any, float] = {}
+    taken: dict[tuple[Any, float], dict[str, float]] = {}
+    late = []
+    for _, key, time, row in sent:
+        known = newest.get(key, -np.inf)
+        late.append(time < known - lateness or (key, time) in taken)
+        if not late[-1]:
+            newest[key] = max(known, time)
+            taken[key, time] = row
+    return [(key, time, taken[key, time]) for key, time in sorted(taken, key=lambda each: each[1])], late
+
+
+def monitored(spec: Any, samples: list[tuple[float, dict[str, float]]], gaps: str, key: Any) -> list[Any]:
+    """Return key, time and value of what a monitor makes known; [None] if it rejects a sample."""
+    monitor, found, times = spec.monitor(), [], []
+    lag = round(monitor.horizon)
+    held: dict[str, float] = {}
+    filled = []
+    for time, row in samples:
+        periods = floor(time - times[-1] + 0.5) if times else 1
+        fits = bool(times) and abs(time - times[-1] - periods) <= 0.1 * periods
+        if gaps == "hold" and periods > 1 and fits:
+            filled += [(times[-1] + i * ((time - times[-1]) / periods), held) for i in range(1, periods)]
+        filled.append((time, row))
+        times.append(time)
+        held = row
+    times = []
+    try:
+        for time, row in filled:
+            if times and abs(time - times[-1] - 1) > 0.1 and gaps == "restart":
+                monitor, times = spec.monitor(), []
+            value = monitor.update(time, **row)
+            times.append(time)
+            if value is not None:
+                found.append((key, times[-1 - lag], bits(value)))
+    except (TraceError, EvaluationError):
+        return [None]
+    return found

@@ -15,6 +15,7 @@ offline_bounds  offline bounds of recordings with missing or uncertain samples
 time_axis       a recording divided into cells, as explanations evaluate it
 apart           keep calls whose times are converted off the fast path
 online          watched formulas and copies, shared by the monitors
+reorder         samples of many keys, put in the order of their times
 quantifiers     monitors of quantifiers over members that come and go, in both time domains
 native          load the compiled core
 cores           how many threads may evaluate one long trace

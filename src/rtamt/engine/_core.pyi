@@ -143,6 +143,9 @@ class Fleet:
     def contains(self, keys: NDArray[Any]) -> bool:
         """Whether the first key of an array is there."""
 
+    def last_times(self) -> list[float]:
+        """The time of the last sample of each key, in the order of keys()."""
+
     def keys(self) -> list[int] | list[str] | list[bytes]:
         """All keys."""
 
@@ -164,6 +167,79 @@ class Fleet:
     @property
     def state_bytes(self) -> int:
         """Bytes of state by now."""
+
+class Reorder:
+    """Puts samples in the order of their times, by key; keys as for Fleet."""
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        lateness: float | None,
+        capacity: int,
+        period: float,
+        tolerance: float,
+        filled: int,
+        state: bytes | None = None,
+    ) -> None: ...
+    def offer(
+        self,
+        keys: NDArray[Any],
+        times: NDArray[np.float64],
+        columns: Sequence[NDArray[np.float64]],
+        late: NDArray[np.uint8],
+    ) -> tuple[int, str, int, float | None, int, float | None] | None:
+        """Take a batch and note which samples are late. Return None, or why it was rejected, as Fleet.update does."""
+
+    def advance(self, watermark: float) -> tuple[int, str, int, float | None, int, float | None] | None:
+        """Release what is not after a time. Return None, or why it was rejected, with the place of the key."""
+
+    def ready(
+        self,
+    ) -> tuple[NDArray[np.int64], NDArray[np.uint8], NDArray[np.float64], list[NDArray[np.float64]]]:
+        """What was released: places in the batch (or of keys), whether it is that sample, times, columns."""
+
+    def accept(self) -> None:
+        """Keep the batch that was offered."""
+
+    def withdraw(self) -> None:
+        """Forget the batch that was offered."""
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """Forget keys; return the index of the first that is not there, and forget none then."""
+
+    def stale(self, before: float) -> list[int] | list[str] | list[bytes]:
+        """The keys whose newest sample is before a time."""
+
+    def contains(self, keys: NDArray[Any]) -> bool:
+        """Whether the first key of an array is there."""
+
+    def left(self, keys: NDArray[Any]) -> NDArray[np.uint8]:
+        """By key, whether a sample of it was released."""
+
+    def keys(self) -> list[int] | list[str] | list[bytes]:
+        """All keys."""
+
+    def keys_at(self, places: NDArray[np.int64]) -> list[int] | list[str] | list[bytes]:
+        """The keys at places."""
+
+    def snapshot(self) -> bytes:
+        """What waits."""
+
+    @property
+    def size(self) -> int:
+        """How many keys there are."""
+
+    @property
+    def waiting(self) -> int:
+        """How many samples wait."""
+
+    @property
+    def late(self) -> int:
+        """How many samples were late."""
+
+    @property
+    def state_bytes(self) -> int:
+        """Bytes by now."""
 
 class DenseMonitor:
     """Runs a program online in dense time, one instant or one chunk at a time; times are ticks."""

@@ -4,6 +4,7 @@
 module                purpose
 ====================  =====================================================================
 fleet                 ``Fleet``: an array of monitors by key: vehicles, machines, sessions
+event_time            late samples, gaps, and what a snapshot has of them
 suite                 ``Suite``: many requirements compiled once into few programs
 groups                requirements that read a recording in the same way
 suite_bytes           the bytes of a suite: programs, and how recordings are read

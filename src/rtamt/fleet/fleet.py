@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isnan
 from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
+from rtamt.fleet.event_time import GAPS, EventTime, InOrder, unpacked
+from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.signals.arrays import timestamps
 from rtamt.specification import Specification
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rtamt.engine.discrete.fleet import DiscreteFleet
+    from rtamt.fleet.event_time import EventState, Gaps, Taken
+    from rtamt.language.units.durations import Duration
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.binding import Binding
-
-#: What is done where the next sample of a key is not one period after the last one.
-GAPS = ("reject", "restart")
 
 #: No fleet has as many keys.
 MOST = 2**31
@@ -32,18 +34,37 @@ _PADDED: dict[type, Any] = {str: "\0", bytes: b"\0"}
 
 
 @dataclass(frozen=True, slots=True)
+class Released:
+    """What became known by samples that are not of the batch: that waited for earlier ones, or fill a gap.
+
+    ``keys``: of each value, ``times``: the time that it is for.
+    """
+
+    keys: NDArray[Any]
+    times: FloatArray
+    values: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+@dataclass(frozen=True, slots=True)
 class FleetUpdate:
     """What a batch has made known, in the order of the batch.
 
     ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
     ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it
     is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
+    ``late``: which samples came too late, or a second time, and were left out. ``released``: what samples made known
+    that are not of this batch.
     """
 
     values: FloatArray
     known: NDArray[np.bool_]
     times: FloatArray
     warming: NDArray[np.bool_]
+    late: NDArray[np.bool_]
+    released: Released
 
     def __len__(self) -> int:
         return len(self.values)
@@ -52,9 +73,12 @@ class FleetUpdate:
 class Fleet:
     """Monitors one specification for many keys, such as vehicles, in discrete time.
 
-    ``capacity``: the largest number of keys; memory is used only for those that have come. ``settings``: those of
-    ``Specification.monitor``. ``gaps``: what a gap between two samples of a key does that is not the period:
-    ``"reject"`` the batch, or ``"restart"`` the trace of the key with the sample after the gap.
+    ``capacity``: the largest number of keys; memory is used only for those that have come. ``lateness``: how late a
+    sample may arrive, in seconds or as text such as ``"2s"``: samples of a key then come in any order and wait until
+    one has come that is newer by the lateness. Without it, they come in the order of their times. ``gaps``: what a gap
+    between two samples of a key does that is not the period: ``"reject"`` the batch, ``"restart"`` the trace of the key
+    with the sample after the gap, or ``"hold"`` the last value where whole periods are missing. ``settings``: those of
+    ``Specification.monitor``.
 
     Each key has the results of its own ``spec.monitor(**settings)``, bit for bit.
 
@@ -67,28 +91,37 @@ class Fleet:
     (array([-1.,  2.]), array([ True,  True]), array([7., 0.]))
     """
 
-    def __init__(self, spec: Specification, capacity: int, *, gaps: str = "reject", **settings: Any) -> None:
-        self._open(spec, capacity, gaps, settings, None)
+    def __init__(
+        self,
+        spec: Specification,
+        capacity: int,
+        *,
+        lateness: Duration | None = None,
+        gaps: str = "reject",
+        **settings: Any,
+    ) -> None:
+        if gaps not in GAPS:
+            raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
+        self._open(spec, _capacity(capacity), _lateness(lateness), GAPS[gaps], settings)
 
     def _open(
         self,
         spec: Specification,
-        capacity: int | None,
-        gaps: str,
+        capacity: int,
+        lateness: float | None,
+        gaps: Gaps,
         settings: Mapping[str, Any],
-        state: bytes | None,
+        state: EventState | None = None,
     ) -> None:
         if not isinstance(spec, Specification):
             raise UsageError(
                 f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
             )
-        if gaps not in GAPS:
-            raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
         monitor = spec.monitor(**settings)
         records = monitor.records(
-            0 if capacity is None else _capacity(capacity),
-            restart=gaps == "restart",
-            state=state,
+            capacity,
+            restart=gaps.restart,
+            state=None if state is None else state.records,
             identities=_identities(spec),
         )
         if records is None:
@@ -98,39 +131,84 @@ class Fleet:
             )
         self._usage = UsageGuard()
         self._binding: Binding = monitor._binding
-        self._engine: DiscreteFleet = records
+        self._gaps, self._lateness = gaps, lateness
+        waiting = None if state is None else state.waiting
+        ordered = lateness is None and not gaps.filled and waiting is None
+        self._samples = InOrder(records) if ordered else EventTime(records, lateness, gaps, waiting)
 
     @exclusive
     def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
         """Take a batch of samples: the key and the time of each, and a column of values for each variable.
 
-        ``keys``: integers, texts or bytes, in any order; samples of one key are in the order of their times. New keys
-        start a trace. Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an
-        operation has no value, with the key and the index in the batch; no key has changed then.
+        ``keys``: integers, texts or bytes, in any order; without ``lateness``, samples of one key are in the order of
+        their times. New keys start a trace. Raises :class:`TraceError` for wrong data and :class:`EvaluationError`
+        where an operation has no value, with the key and the index in the batch; no key has changed then.
         """
         given = _keys(keys)
         if not isinstance(columns, Mapping):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
-        seconds, found = self._engine.columns(times, self._binding.applied(dict(columns)))
+        seconds, found = self._samples.records.columns(times, self._binding.applied(dict(columns)))
         if len(given) != len(seconds):
             raise TraceError(
                 f"there are {len(given)} keys and {len(seconds)} times: give one of each for every sample"
             )
-        (known,) = self._engine.update(given, seconds, found)
-        return FleetUpdate(*known)
+        return _update(self._samples.update(given, seconds, found))
+
+    @exclusive
+    def watermark(self, time: Any) -> FleetUpdate:
+        """Declare that no sample before a time will arrive, of any key: what waits up to it is released.
+
+        ``time``: in seconds, or a date. Earlier samples are late from now on. Returns an update with an empty batch:
+        see ``released``.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10, lateness="2s")
+        >>> fleet.update_many([7, 7], [1, 0], {"x": [5, 4]}).known
+        array([False, False])
+        >>> fleet.watermark(1).released
+        Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]))
+        """
+        return self._mark(time, 0.0)
+
+    @exclusive
+    def advance(self, now: Any) -> FleetUpdate:
+        """Set the current time: no sample will arrive that is older than the lateness. As :meth:`watermark`.
+
+        For streams with keys that fall silent, whose own samples release nothing.
+        """
+        return self._mark(now, self._lateness or 0.0)
+
+    def _mark(self, time: Any, late: float) -> FleetUpdate:
+        if isinstance(time, int | float | np.number) and not isinstance(time, bool):
+            seconds = float(time)
+        else:
+            seconds = float(timestamps([time]).seconds[0])
+        if isnan(seconds):
+            raise TraceError("the watermark is NaN: give a number of seconds")
+        return _update(self._samples.watermark(seconds - late, _keys))
+
+    @property
+    def late(self) -> int:
+        """How many samples were late since the start; they are part of the state."""
+        return self._samples.late
+
+    @property
+    def waiting(self) -> int:
+        """How many samples wait for earlier ones."""
+        return self._samples.waiting
 
     @property
     def capacity(self) -> int:
         """The largest number of keys."""
-        return self._engine.capacity
+        return int(self._samples.records.capacity)
 
     @property
     def memory(self) -> int:
         """The size of the state in bytes, of the keys that there are."""
-        return self._engine.memory
+        return self._samples.memory
 
     def __len__(self) -> int:
-        return len(self._engine)
+        return len(self._samples)
 
     @exclusive
     def __contains__(self, key: object) -> bool:
@@ -138,12 +216,12 @@ class Fleet:
             given = _keys([key])
         except TraceError:
             return False
-        return self._engine.contains(given)
+        return self._samples.contains(given)
 
     @exclusive
     def keys(self) -> list[Any]:
         """Return all keys, in no particular order."""
-        return self._engine.keys()
+        return self._samples.keys()
 
     @exclusive
     def drop(self, keys: Any) -> None:
@@ -157,7 +235,7 @@ class Fleet:
         (1, False, [2])
         """
         given = _keys(keys)
-        missing = self._engine.drop(given)
+        missing = self._samples.drop(given)
         if missing is not None:
             raise UsageError(
                 f"the fleet has no key {given[missing].item()!r} (index {missing}); no key was dropped"
@@ -173,7 +251,7 @@ class Fleet:
         >>> fleet.expire(before=30), fleet.keys()
         (1, [2])
         """
-        return self._engine.expire(before)
+        return self._samples.expire(before, _keys)
 
     @exclusive
     def snapshot(self) -> bytes:
@@ -186,7 +264,7 @@ class Fleet:
         >>> rtamt.Fleet.restore(spec, fleet.snapshot()).update_many([1], [1], {"x": [0]}).values
         array([2.])
         """
-        return self._engine.snapshot()
+        return self._samples.snapshot(self._gaps)
 
     @classmethod
     def restore(
@@ -195,20 +273,42 @@ class Fleet:
         state: bytes,
         *,
         capacity: int | None = None,
-        gaps: str = "reject",
+        lateness: Duration | None = None,
+        gaps: str | None = None,
         **settings: Any,
     ) -> Fleet:
         """Return a fleet in a state that :meth:`snapshot` returned, perhaps of another specification.
 
         Parts of the formula that are the same go on where they were. For those that are new, or that read what is
-        new, no value is known until all samples that it depends on have come: ``FleetUpdate.warming``. ``capacity``:
-        by default that of the fleet of the snapshot. Raises :class:`UsageError` for bytes that are not a state.
+        new, no value is known until all samples that it depends on have come: ``FleetUpdate.warming``. ``capacity``,
+        ``lateness`` and ``gaps``: by default those of the fleet of the snapshot. Raises :class:`UsageError` for bytes
+        that are not a state.
         """
         if not isinstance(state, bytes):
             raise UsageError(f"expected the bytes that snapshot() returns, got {shown(state)}")
+        if gaps is not None and gaps not in GAPS:
+            raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
+        stored = unpacked(state)
         made = cls.__new__(cls)
-        made._open(spec, capacity, gaps, settings, state)
+        made._open(
+            spec,
+            0 if capacity is None else _capacity(capacity),
+            stored.lateness if lateness is None else _lateness(lateness),
+            stored.gaps if gaps is None else GAPS[gaps],
+            settings,
+            stored,
+        )
         return made
+
+
+def _update(taken: Taken) -> FleetUpdate:
+    (output,) = taken.outputs
+    released = Released(output.keys, output.at, output.found)
+    return FleetUpdate(output.values, output.known, output.times, output.warming, taken.late, released)
+
+
+def _lateness(given: Duration | None) -> float | None:
+    return None if given is None else float(duration(given))
 
 
 def _capacity(given: Any) -> int:

@@ -112,7 +112,15 @@ def test_wrong_data_is_named_by_key_and_index_and_changes_nothing(
             "expected a specification, got 'x > 3'; write rtamt.parse(...) or rtamt.load(...)",
         ),
         (lambda _: rtamt.Fleet(SPEC, 0), "capacity is 0, expected a number of keys, at least 1"),
-        (lambda _: rtamt.Fleet(SPEC, 3, gaps="hold"), "gaps is 'hold'"),
+        (
+            lambda _: rtamt.Fleet(SPEC, 3, gaps="holds"),
+            "gaps is 'holds'; did you mean 'hold'? (policies: hold, reject, restart)",
+        ),
+        (
+            lambda f: f.watermark(3),
+            "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)",
+        ),
+        (lambda _: rtamt.Fleet(SPEC, 3, lateness=-1), "a duration may not be negative, got -1"),
         (
             lambda _: rtamt.Fleet(SPEC, 2**31),
             "capacity is 2147483648, expected a number of keys below 2**31",

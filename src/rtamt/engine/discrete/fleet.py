@@ -12,6 +12,7 @@ import numpy as np
 
 from rtamt.engine.discrete.backends import SampleProgram
 from rtamt.engine.native import core
+from rtamt.engine.reorder import Reordering, full, place_of, rows_of, sentence
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.signals.arrays import TIME, columns_of
@@ -22,7 +23,7 @@ from rtamt.signals.regular import irregular
 from rtamt.signals.samples import read_time
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
@@ -62,8 +63,8 @@ class DiscreteFleet:
         program = session.program
         made_of = float(monitor.period), monitor._tolerance, restart, capacity
         try:
-            names = [identities.get(name, name) for name in program.inputs]
-            self._core = core().Fleet(program.code(), names, *made_of, state)
+            self._names = [identities.get(name, name) for name in program.inputs]
+            self._core = core().Fleet(program.code(), self._names, *made_of, state)
             if state is not None:
                 self._core.keys()  # decodes texts
         except MemoryError:
@@ -73,7 +74,7 @@ class DiscreteFleet:
         except UnicodeDecodeError:
             raise UsageError("this is not the state of a fleet: a key is no UTF-8") from None
         except ValueError as error:
-            raise UsageError(_sentence(error)) from None
+            raise UsageError(sentence(error)) from None
 
     def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[FloatArray, dict[str, FloatArray]]:
         """Return a batch as arrays; raise :class:`TraceError` for data that is not one."""
@@ -92,8 +93,8 @@ class DiscreteFleet:
         assert timestamps is not None
         return timestamps.seconds, found
 
-    def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> list[Known]:
-        """Take a batch; return what became known of each output. Raises for wrong data, and nothing has changed."""
+    def check(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> None:
+        """Raise :class:`TraceError` for a value that is none of its type."""
         for name, type_ in self._monitor._types.items():
             require_truths(
                 name,
@@ -101,6 +102,19 @@ class DiscreteFleet:
                 np.where(np.isnan(columns[name]), 0.0, columns[name]),
                 lambda i: f"index {i} of the batch, key {keys[i].item()!r}, time {times[i]:.15g} s",
             )
+
+    def update(
+        self,
+        keys: NDArray[Any],
+        times: FloatArray,
+        columns: Mapping[str, FloatArray],
+        place: Callable[[int], int | None] = int,
+    ) -> list[Known]:
+        """Take samples that :meth:`check` accepts; return what became known of each output.
+
+        ``place``: where in the batch of the caller a sample is; None for one that waited. Raises for wrong data, and
+        nothing has changed.
+        """
         n = len(times)
         made = [
             Known(np.empty(n), np.empty(n, np.bool_), np.empty(n), np.empty(n, np.bool_))
@@ -111,21 +125,18 @@ class DiscreteFleet:
         try:
             rejected = self._core.update(rows_of(keys), times, given, outputs)
         except ValueError as error:
-            raise UsageError(_sentence(error)) from None
+            raise UsageError(sentence(error)) from None
         if rejected is not None:
-            raise self._error(keys, times, rejected)
+            raise self._error(keys, times, rejected, place(rejected[0]))
         return made
 
-    def _error(self, keys: NDArray[Any], times: FloatArray, rejected: Any) -> Exception:
+    def _error(self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None) -> Exception:
         """Return the error for a batch that the core rejected: that of a monitor, with key and index."""
         index, reason, sample, last, instruction, moment = rejected
-        where = f"key {keys[index].item()!r} at index {index} of the batch"
+        where = place_of(keys[index].item(), place)
         time = float(times[index])
         if reason == "full":
-            return UsageError(
-                f"{where} is new, and the fleet has its {self.capacity} keys already; drop or expire keys, or make "
-                f"a fleet of a larger capacity"
-            )
+            return full(where, self.capacity)
         if reason == "undefined":
             failure = core().Undefined(instruction, sample)
             culprit = undefined(self._session.culprit(failure), at_sample(sample, moment))
@@ -136,13 +147,30 @@ class DiscreteFleet:
             error = nan_error(monitor.input_names[instruction], sample, time)
         elif reason == "gap":
             error = irregular(sample, time, last, monitor.period, monitor._tolerance)
+            if place is None:
+                error = TraceError(f"{error}, or drop the key")
         else:
             try:
                 read_time(time, sample, last)
             except TraceError as wrong:
                 error = wrong
         variable = monitor.input_names[instruction] if reason == "value" else "time"
-        return TraceError(f"{where}: {error}", variable=variable, index=index, time=time)
+        return TraceError(f"{where}: {error}", variable=variable, index=place, time=time)
+
+    def reordering(self, lateness: float | None, filled: int, state: bytes | None) -> Reordering:
+        """Return what puts samples in the order of their times; ``filled``: how many are held in a gap."""
+        monitor = self._monitor
+        buffer = Reordering(
+            self._names,
+            monitor.input_names,
+            lateness,
+            self.capacity,
+            (float(monitor.period), monitor._tolerance),
+            filled,
+            state,
+        )
+        buffer.follow(self._core.keys(), np.asarray(self._core.last_times()), new=state is None)
+        return buffer
 
     @property
     def capacity(self) -> int:
@@ -201,16 +229,3 @@ def has_records(monitor: Any) -> bool:
         and monitor._episodes is None
         and len(monitor._formulas) == 1
     )
-
-
-def rows_of(keys: NDArray[Any]) -> NDArray[Any]:
-    """Return keys as the core reads them: texts and bytes as rows of characters."""
-    if keys.dtype.kind == "i":
-        return keys
-    width = keys.dtype.itemsize // (4 if keys.dtype.kind == "U" else 1)
-    return keys.view(np.uint32 if keys.dtype.kind == "U" else np.uint8).reshape(len(keys), width)
-
-
-def _sentence(error: ValueError) -> str:
-    text = str(error).rstrip(".")
-    return text[:1].lower() + text[1:]

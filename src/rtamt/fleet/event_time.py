@@ -1,0 +1,267 @@
+"""What is done with samples that do not arrive one period after another: late ones, and gaps."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from math import isfinite, isnan, nan
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rtamt.errors import UsageError
+from rtamt.lazy_dataclasses import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Gaps:
+    """What a gap between two samples of a key does that is not the period.
+
+    ``code``: in a state. ``restart``: whether it starts a new trace. ``filled``: for how many samples at most the last
+    value is held; 0 if gaps are not filled.
+    """
+
+    name: str
+    code: int
+    restart: bool = False
+    filled: int = 0
+
+
+#: THE LIST of policies for gaps.
+GAPS: Mapping[str, Gaps] = MappingProxyType(
+    {
+        each.name: each
+        for each in (Gaps("reject", 0), Gaps("restart", 1, restart=True), Gaps("hold", 2, filled=10_000))
+    }
+)
+
+_MAGIC = b"RTAMTFLE"
+_VERSION = 1
+_HEAD = struct.Struct("<8sHBBIdQ")
+_CHECKSUM = struct.Struct("<I")
+
+
+class EventState(NamedTuple):
+    """A state in parts: the settings that it was made with, what waits, and the state of the monitors."""
+
+    gaps: Gaps
+    lateness: float | None
+    waiting: bytes | None
+    records: bytes
+
+
+class Output(NamedTuple):
+    """What became known of an output: by the samples of a batch, in its order, and by others (``keys`` ...).
+
+    ``keys``, ``at``, ``found``: key, time and value of each that samples made known which are not of the batch.
+    """
+
+    values: FloatArray
+    known: NDArray[np.bool_]
+    times: FloatArray
+    warming: NDArray[np.bool_]
+    keys: NDArray[Any]
+    at: FloatArray
+    found: FloatArray
+
+
+class Taken(NamedTuple):
+    """What a batch has done: which of its samples were late, and each output."""
+
+    late: NDArray[np.bool_]
+    outputs: list[Output]
+
+
+class InOrder:
+    """Samples that arrive in the order of their times; ``records``: what monitors them."""
+
+    #: How many samples were late, and how many wait for earlier ones.
+    late = waiting = 0
+
+    def __init__(self, records: Any) -> None:
+        self.records = records
+
+    def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
+        """Take a batch. Raises for wrong data, and nothing has changed."""
+        self.records.check(keys, times, columns)
+        nothing = np.empty(0)
+        outputs = [
+            Output(each.values, each.known, each.times, each.warming, keys[:0], nothing, nothing)
+            for each in self.records.update(keys, times, columns)
+        ]
+        return Taken(np.zeros(len(times), np.bool_), outputs)
+
+    def watermark(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002
+        """Release what waits up to a time; ``arrays``: makes an array of keys."""
+        raise UsageError(
+            "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)"
+        )
+
+    @property
+    def memory(self) -> int:
+        """Bytes of state."""
+        return int(self.records.memory)
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def contains(self, key: NDArray[Any]) -> bool:
+        """Return whether the key of an array of one is there."""
+        return bool(self.records.contains(key))
+
+    def keys(self) -> list[Any]:
+        """Return all keys, in no particular order."""
+        return list(self.records.keys())
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """Forget keys; return the index of the first that is not there, and forget none then."""
+        missing: int | None = self.records.drop(keys)
+        return missing
+
+    def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:  # noqa: ARG002
+        """Forget the keys whose last sample is before a time; return how many."""
+        return int(self.records.expire(before))
+
+    def snapshot(self, gaps: Gaps) -> bytes:
+        """Return the state; that of rejected gaps is that of the monitors alone."""
+        records = bytes(self.records.snapshot())
+        return records if gaps.code == 0 else packed(EventState(gaps, None, None, records))
+
+
+class EventTime(InOrder):
+    """Samples that a reorder buffer for each key puts in order."""
+
+    def __init__(self, records: Any, lateness: float | None, gaps: Gaps, state: bytes | None) -> None:
+        super().__init__(records)
+        self._lateness = lateness
+        self._buffer = records.reordering(lateness, gaps.filled, state)
+
+    def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
+        """See :class:`InOrder`."""
+        self.records.check(keys, times, columns)
+        late, ready = self._buffer.offer(keys, times, columns)
+        return self._taken(late, keys[ready.places], ready)
+
+    def watermark(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:
+        """See :class:`InOrder`."""
+        if self._lateness is None:
+            return super().watermark(time, arrays)
+        keys, ready = self._buffer.advance(time)
+        return self._taken(np.empty(0, np.bool_), arrays(keys), ready)
+
+    def _taken(self, late: NDArray[np.bool_], keys: NDArray[Any], ready: Any) -> Taken:
+        """Have what is ready monitored; ``keys``: of each of these samples."""
+        try:
+            known = self.records.update(np.ascontiguousarray(keys), ready.times, ready.columns, ready.place)
+        except BaseException:
+            self._buffer.withdraw()
+            raise
+        self._buffer.accept()
+        return Taken(late, [_sorted_out(len(late), keys, ready, each) for each in known])
+
+    @property
+    def late(self) -> int:  # type: ignore[override]
+        """How many samples were late."""
+        return int(self._buffer.late)
+
+    @property
+    def waiting(self) -> int:  # type: ignore[override]
+        """How many samples wait for earlier ones."""
+        return int(self._buffer.waiting)
+
+    @property
+    def memory(self) -> int:
+        """See :class:`InOrder`."""
+        return super().memory + int(self._buffer.memory)
+
+    def __len__(self) -> int:
+        return len(self._buffer)
+
+    def contains(self, key: NDArray[Any]) -> bool:
+        """See :class:`InOrder`."""
+        return bool(self._buffer.contains(key))
+
+    def keys(self) -> list[Any]:
+        """See :class:`InOrder`."""
+        return list(self._buffer.keys())
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """See :class:`InOrder`."""
+        left = self._buffer.left(keys)
+        missing: int | None = self._buffer.drop(keys)
+        if missing is None:
+            absent = self.records.drop(np.ascontiguousarray(keys[left]))
+            assert absent is None, "what has left the buffer is monitored"
+        return missing
+
+    def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:
+        """See :class:`InOrder`."""
+        stale = self._buffer.stale(before)
+        self.drop(arrays(stale))
+        return len(stale)
+
+    def snapshot(self, gaps: Gaps) -> bytes:
+        """See :class:`InOrder`."""
+        waiting = self._buffer.snapshot()
+        return packed(EventState(gaps, self._lateness, waiting, bytes(self.records.snapshot())))
+
+
+def _sorted_out(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output:
+    """Return what samples of the batch made known, in its order, and the rest."""
+    values, final, times, warming = (
+        np.zeros(size),
+        np.zeros(size, np.bool_),
+        np.full(size, nan),
+        np.zeros(size, np.bool_),
+    )
+    own, at = ready.own, ready.places[ready.own]
+    for out, found in zip((values, final, times, warming), known, strict=True):
+        out[at] = found[own]
+    others = ~own & known.known
+    return Output(values, final, times, warming, keys[others], known.times[others], known.values[others])
+
+
+# ---- states --------------------------------------------------------------------------------------
+
+
+def packed(state: EventState) -> bytes:
+    """Return a state as bytes (docs/reference/fleet-state.md)."""
+    lateness = nan if state.lateness is None else state.lateness
+    waiting = state.waiting or b""
+    has_buffer = state.waiting is not None
+    head = _HEAD.pack(_MAGIC, _VERSION, state.gaps.code, has_buffer, 0, lateness, len(waiting))
+    body = head + waiting + state.records
+    return body + _CHECKSUM.pack(zlib.crc32(body))
+
+
+def unpacked(state: bytes) -> EventState:
+    """Return the parts of a state; raise :class:`UsageError` for bytes that are none."""
+    if not state.startswith(_MAGIC):
+        return EventState(GAPS["reject"], None, None, state)
+    if len(state) < _HEAD.size + _CHECKSUM.size:
+        raise _damaged("it ends too early")
+    _, version, code, has_buffer, reserved, lateness, length = _HEAD.unpack_from(state)
+    if version != _VERSION:
+        raise _damaged(f"its format has version {version}, and this is for version {_VERSION}")
+    body = state[: -_CHECKSUM.size]
+    if zlib.crc32(body) != _CHECKSUM.unpack(state[-_CHECKSUM.size :])[0]:
+        raise _damaged("its checksum does not match, so it was damaged on the way")
+    gaps = next((each for each in GAPS.values() if each.code == code), None)
+    is_time = isnan(lateness) or (isfinite(lateness) and lateness >= 0)
+    if gaps is None or has_buffer > 1 or reserved or not is_time or length > len(body) - _HEAD.size:
+        raise _damaged("its header has an unknown value")
+    end = _HEAD.size + length
+    waiting = body[_HEAD.size : end] if has_buffer else None
+    return EventState(gaps, None if isnan(lateness) else lateness, waiting, body[end:])
+
+
+def _damaged(reason: str) -> UsageError:
+    return UsageError(f"this is not the state of a fleet: {reason}")
