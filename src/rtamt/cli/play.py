@@ -14,6 +14,7 @@ from rtamt.cli.command import CommandError, add_time_option, is_trace, pack_name
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
+from rtamt.signals.domains import time_domain
 from rtamt.texts import pack
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
     from rtamt.play.crew import Crew
     from rtamt.play.server import Place, application
 
+    time_domain(args.time, args.period or None)  # raises the error of either
     if args.trace is None and is_trace(args.spec):
         args.spec, args.trace = None, args.spec
     given, folder, fragment = _given(args)

@@ -1,6 +1,7 @@
 """The workers as the server sees them: started on demand, ended when they take too long.
 
-One worker answers while the user types; another one answers questions to the solver, which take seconds.
+One worker answers while the user types, another one replays recordings meanwhile, and a third one answers questions to
+the solver, which take seconds.
 """
 
 from __future__ import annotations
@@ -10,8 +11,6 @@ import json
 import os
 import sys
 from typing import TYPE_CHECKING, Any
-
-from rtamt.play.messages import MOST_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -91,8 +90,8 @@ class Crew:
     """
 
     def __init__(self, room: str, folder: str | None = None) -> None:
-        self._quick = Worker(room, folder)
-        self._thorough = Worker(room, folder)
+        self._quick, self._replaying, self._thorough = (Worker(room, folder) for _ in range(3))
+        self._workers = {"replay": self._replaying, "moment": self._replaying, "question": self._thorough}
         self._newest: dict[tuple[str, str], int] = {}
 
     async def ask(
@@ -109,7 +108,7 @@ class Crew:
         def still_wanted() -> bool:
             return not isinstance(number, int) or self._newest.get(key, number) <= number
 
-        worker = self._thorough if kind == "question" else self._quick
+        worker = self._workers.get(kind, self._quick)
         request = {"kind": kind, "message": message, "file": file}
         return await worker.ask(request, SECONDS.get(kind, SECONDS["evaluate"]), still_wanted)
 
@@ -119,8 +118,8 @@ class Crew:
 
     async def close(self) -> None:
         """End all workers."""
-        await self._quick.end()
-        await self._thorough.end()
+        for worker in (self._quick, self._replaying, self._thorough):
+            await worker.end()
 
 
 def _failed(sentence: str) -> tuple[int, bytes]:
@@ -131,6 +130,3 @@ def _environment() -> dict[str, str]:
     """Return the environment of workers, which import what this process can import."""
     path = [os.path.abspath(each) for each in sys.path if each and os.path.isdir(each)]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
-
-
-__all__ = ["MOST_BYTES", "SECONDS", "Crew", "Worker"]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
 from rtamt.language.formula import postorder, variables
 from rtamt.language.printing.printer import excerpt, to_text
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from rtamt.play.messages import Request
     from rtamt.play.recordings import File, Recordings
     from rtamt.results import Result
+    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 #: Causes that are listed, stretches of signals and runs of violation that are drawn.
@@ -94,6 +97,7 @@ def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
         result = result_of(request, spec, sources)
         name, part = chosen(request, result)
         answer |= _shown(name, part, request) | {
+            "lines": _lines(result, part, request),
             "requirements": [_row(each, one) for each, one in result.requirements.items()],
         }
     except StlError as error:
@@ -165,7 +169,6 @@ def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
     clock, spec = Clock.of(result.trace), result.specification
     signal = result.signal
     positions = clock.positions(signal.times)
-    known = {each: clock.recorded(each) for each in spec.input_names}
     answer: dict[str, Any] = {
         "focus": name,
         "formula": to_text(spec.formula, limit=2000),
@@ -173,8 +176,8 @@ def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
         "interval": _interval(result),
         "dense": result.trace.domain.continuous,
         "clock": {"start": clock.start, "end": clock.end, "label": clock.label, "origin": str(clock.origin)},
-        "samples": max((len(values) for _, values in known.values()), default=len(positions)),
-        "lines": drawn_lines(known, getattr(result.trace, "units", {}) or {}, request.width),
+        "samples": result.trace.samples,
+        "step": None if result.trace.domain.continuous else float(result.trace.step),
         "thresholds": _thresholds(spec),
     }
     if isinstance(signal, BoundedSignal):
@@ -197,6 +200,29 @@ def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
         "first": None if violation is None else clock.position(violation),
         "explanation": _explained(result.explain(), clock),
     }
+
+
+def _lines(result: Result, part: Result, request: Request) -> list[dict[str, Any]]:
+    """Return the signals that any requirement reads, on the axis of the one that is shown."""
+    known = {}
+    for name in result.specification.input_names:
+        trace = part.trace if name in part.specification.input_names else result.trace
+        positions, values = Clock.of(trace).recorded(name)
+        # In dense time requirements may start at different instants, from which dates are counted.
+        positions = positions + _shift(trace, part.trace)
+        seen = positions >= Clock.of(part.trace).start
+        known[name] = positions[seen], values[seen]
+    return drawn_lines(known, result.specification.units, request.width)
+
+
+def _shift(trace: DomainTrace, shown: DomainTrace) -> float:
+    """Return how far positions of one trace are ahead of those of another."""
+    ours, theirs = Clock.of(trace).origin, Clock.of(shown).origin
+    if isinstance(ours, np.datetime64) and isinstance(theirs, np.datetime64):
+        return float((ours - theirs) / np.timedelta64(1, "ns")) / 1e9
+    assert not isinstance(ours, np.datetime64)
+    assert not isinstance(theirs, np.datetime64)
+    return ours - theirs
 
 
 def _thresholds(spec: Specification) -> dict[str, list[float]]:

@@ -39,7 +39,9 @@ const toast = (text) => {
 
 const evaluation = new Follower("evaluate", () => wish(), (found, begun) => {
   show(found);
-  document.documentElement.dataset.took = (performance.now() - begun).toFixed(1);
+  const { dataset } = document.documentElement; // for measurements
+  dataset.took = (performance.now() - begun).toFixed(2);
+  dataset.updates = Number(dataset.updates || 0) + 1;
 }, 40);
 const replay = new Follower("replay", () => (answer ? wish() : null), (found) => over.replayed(found), 120);
 const moment = new Follower("moment", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found) => over.known(found), 30);
@@ -76,6 +78,7 @@ function show(found) {
   }
   problem.textContent = found.warnings.length ? found.warnings.map((each) => `${each.code}: ${each.message}`).join("\n") : `Horizon ${found.horizon === "Infinity" ? "∞" : found.horizon} · ${found.samples} samples`;
   answer = found;
+  $("period").placeholder = found.step === null ? "inferred" : `${Number(found.step.toPrecision(6))} s`;
   verdict.show(found);
   arrange(found.variables, found.lines);
   over.evaluated(found);
@@ -124,8 +127,14 @@ function arrange(names, lines) {
     if (state.recording) chart.data = lines.find((each) => each.name === name) || chart.data;
     chart.draw();
   }
-  $("source").textContent = state.recording ? `${state.recording.name} · ${state.recording.samples} samples` : "";
+  $("source").textContent = state.recording ? `${state.recording.name} · ${state.recording.samples} samples${since()}` : "";
 }
+
+// The date from which seconds are counted, if the recording has one.
+const since = () => {
+  const origin = answer?.clock.origin ?? "";
+  return origin.includes("T") ? ` · time from ${origin.slice(0, 19).replace("T", " ")} UTC` : "";
+};
 
 class Recorded {
   constructor(name, host) {
@@ -304,7 +313,7 @@ if (location.hash.length > 1 && !saved) toast("The link is damaged: the page sta
 if (saved) await restore(saved);
 else {
   state.time = given.time;
-  if (given.text) state.text = given.text;
+  if (given.text) state.text = given.text.trimEnd();
   else if (!given.recording) Object.assign(state, structuredClone(EXAMPLE));
   if (given.recording) state.recording = given.recording;
   if (given.period || given.recording) state.period = given.period;
