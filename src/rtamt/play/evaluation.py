@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
-from rtamt.language.formula import postorder, variables
+from rtamt.language.formula import Apply, postorder, variables
+from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import dataclass
@@ -17,7 +18,7 @@ from rtamt.play.recordings import drawn_lines
 from rtamt.play.reduced import line, number
 from rtamt.plot.clock import Clock
 from rtamt.plot.panels import groups
-from rtamt.results import first_violation
+from rtamt.results import first_violation, signals_of
 from rtamt.rewrite.truth import is_predicate
 from rtamt.signals.outcomes import BoundedSignal
 from rtamt.texts import parse
@@ -77,6 +78,19 @@ def result_of(request: Request, spec: Specification, sources: Sources) -> Result
     return spec.evaluate(data)
 
 
+def inner(spec: Specification) -> Specification:
+    """Return what is shown instant by instant: of ``always φ`` without bounds ``φ``, else the formula.
+
+    >>> import rtamt
+    >>> print(inner(rtamt.parse("always(x >= 3 -> eventually[0:2](y >= 1))")).formula)
+    x >= 3 -> eventually[0:2](y >= 1)
+    """
+    formula = spec.formula
+    if isinstance(formula, Apply) and formula.op is STL["always"] and formula.interval is None:
+        return spec.with_formula(formula.args[0])
+    return spec
+
+
 def chosen(request: Request, result: Result) -> tuple[str, Result]:
     """Return the requirement that is explained and monitored: the wanted one, or the first that is violated."""
     parts = result.requirements
@@ -98,6 +112,7 @@ def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
         name, part = chosen(request, result)
         answer |= _shown(name, part, request) | {
             "lines": _lines(result, part, request),
+            "fails": _fails(part),
             "requirements": [_row(each, one) for each, one in result.requirements.items()],
         }
     except StlError as error:
@@ -185,21 +200,29 @@ def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
         return answer | {
             "robustness": both[0],
             "upper": both[1],
-            "fails": [],
             "explanation": None,
         }
     violation = first_violation(result)
-    # In discrete time the value of a sample is drawn until the next one.
-    step = 0.0 if result.trace.domain.continuous else float(result.trace.step)
     return answer | {
         "robustness": line(positions, signal.values, request.width),
-        "fails": [
-            [clock.position(each.begin), clock.position(each.end) + step]
-            for each in result.episodes()[:_RUNS]
-        ],
         "first": None if violation is None else clock.position(violation),
         "explanation": _explained(result.explain(), clock),
     }
+
+
+def _fails(part: Result) -> list[list[float]]:
+    """Return the runs of instants at which the monitored formula does not hold, each until the next instant."""
+    if part.trace.bounds:
+        return []
+    _, truth = signals_of(part, inner(part.specification).formula)
+    clock = Clock.of(part.trace)
+    begins = clock.positions(truth.times)
+    last = clock.end if part.trace.domain.continuous else clock.end + float(part.trace.step)
+    edges = np.diff((truth.values < 0).astype(np.int8), prepend=0, append=0)
+    starts, ends = np.flatnonzero(edges > 0)[:_RUNS], np.flatnonzero(edges < 0)[:_RUNS]
+    until = np.append(begins, last)
+    runs: list[list[float]] = np.column_stack([begins[starts], until[ends]]).tolist()
+    return runs
 
 
 def _lines(result: Result, part: Result, request: Request) -> list[dict[str, Any]]:

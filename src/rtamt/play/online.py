@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt.errors import StlError, UsageError
-from rtamt.language.formula import Apply
-from rtamt.language.operators import STL
-from rtamt.play.evaluation import chosen, name_of, parsed, result_of, told
+from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
 from rtamt.play.reduced import extremes, number, numbers, parts
 from rtamt.plot.band import band
 from rtamt.plot.clock import Clock
@@ -75,19 +73,6 @@ def _pending(request: Request, sources: Sources) -> list[list[Any]] | None:
         if known.lower != known.upper:
             pending.append([position, number(known.lower), number(known.upper)])
     return pending
-
-
-def inner(spec: Specification) -> Specification:
-    """Return what is monitored instant by instant: of ``always φ`` without bounds ``φ``, else the formula.
-
-    >>> import rtamt
-    >>> print(inner(rtamt.parse("always(x >= 3 -> eventually[0:2](y >= 1))")).formula)
-    x >= 3 -> eventually[0:2](y >= 1)
-    """
-    formula = spec.formula
-    if isinstance(formula, Apply) and formula.op is STL["always"] and formula.interval is None:
-        return spec.with_formula(formula.args[0])
-    return spec
 
 
 def _result(request: Request, sources: Sources) -> Result:

@@ -133,6 +133,29 @@ def test_typing_evaluates_and_a_mistake_is_marked_at_its_place(page):
     assert page.errors == []
 
 
+def test_an_answer_that_comes_after_the_text_has_changed_is_dropped(page):
+    page.run(
+        "window.held = []; window.real = window.fetch; window.fetch = (url, options) => String(url) === 'ask/evaluate'"
+        " ? new Promise(done => held.push(() => done(real(url, options)))) : real(url, options);"
+        "window.seen = []; new MutationObserver(() => seen.push(document.getElementById('problem').textContent))"
+        ".observe(document.getElementById('problem'), {childList: true})"
+    )
+    write(page, "always(gnt <= )")
+    until(page, "held.length === 1")
+    write(page, "always(gnt <= 9)")
+    page.run("window.fetch = real; held[0]()")
+    until(page, f"{WORD} === 'Satisfied'")
+    assert page.run("seen.every(text => text.startsWith('Horizon'))")
+    assert page.errors == []
+
+
+def test_without_the_server_a_sentence_is_shown(page):
+    page.run("window.fetch = () => Promise.reject(new TypeError('Failed to fetch'))")
+    write(page, "always(gnt <= 9)")
+    until(page, "document.getElementById('problem').classList.contains('wrong')")
+    assert page.run(PROBLEM) == "the server does not answer: is 'rtamt play' still running?"
+
+
 def test_words_are_completed_from_operators_and_signals(page):
     write(page, "hist")
     until(page, "!document.getElementById('words').hidden")

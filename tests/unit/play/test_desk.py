@@ -74,6 +74,15 @@ def test_a_mistake_in_the_text_is_an_answer_with_its_place(desk, text, message, 
     assert error == {"message": message, "start": place[0], "end": place[1]}
 
 
+@pytest.mark.parametrize(("time", "fails"), [("discrete", [[0, 3], [5, 6]]), ("dense", [[0, 3], [5, 5]])])
+def test_instants_fail_where_the_formula_does_not_hold_even_with_robustness_0(desk, time, fails):
+    signals = {"x": {"points": [[0, 3], [3, 4], [5, 3]], "hold": True}}
+    message = {**MESSAGE, "text": "always(x > 3)", "time": time, "duration": 5, "signals": signals}
+    answer = desk.answer("evaluate", message)
+    assert (answer["verdict"], answer["first"], answer["interval"]) == ("violated", 0, [0, 0])
+    assert answer["fails"] == fails
+
+
 def test_variables_without_a_signal_are_listed(desk):
     answer = desk.answer("evaluate", {**MESSAGE, "text": "always(req >= speed)"})
     assert (answer["variables"], answer["missing"]) == (["req", "speed"], ["speed"])
@@ -227,6 +236,26 @@ def test_pending_instants_have_intervals_that_contain_their_value(desk):
     assert [time for time, _, _ in pending] == [16, 17, 18, 19, 20]
     for time, low, high in pending:
         assert float(low) <= final.signal.values[int(time)] <= float(high)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_groups_and_enumerations_of_a_recording_are_evaluated_and_replayed(desk, tmp_path, time):
+    path = tmp_path / "traffic.csv"
+    path.write_text(
+        "time,ego.x,car_1.x,car_7.x,mode\n0,1,20,,AUTO\n1,2,20,30,MANUAL\n2,3,,7,AUTO\n3,3,,7,AUTO\n"
+    )
+    file = {"number": 20, "path": str(path), "name": path.name}
+    texts = {
+        'group cars = "car_*"; always forall v in cars: v.x - ego.x > 5': ("violated", 2),
+        "enum Mode { AUTO, MANUAL } input Mode mode; always(mode == AUTO)": ("violated", 1),
+    }
+    for text, (verdict, first) in texts.items():
+        message = {**MESSAGE, "text": text, "time": time, "period": "", "recording": 20, "at": 2}
+        answer = desk.answer("evaluate", message, file)
+        assert (answer["error"], answer["verdict"], answer["first"]) == (None, verdict, first)
+        assert answer["fails"][0][0] == first
+        assert desk.answer("replay", message, file)["bounds"]["decided"] == first
+        assert desk.answer("moment", message, file) == {"error": None, "pending": []}
 
 
 def test_long_recordings_are_not_replayed(desk):

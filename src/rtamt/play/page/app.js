@@ -18,6 +18,8 @@ const EXAMPLE = {
 };
 
 const state = { text: "", time: "discrete", period: "1s", duration: 30, signals: {}, recording: null, resample: "", focus: null, at: null };
+const named = (signals) => Object.assign(Object.create(null), signals); // any name, even __proto__
+state.signals = named({});
 let answer = null; // the last one without an error
 let charts = new Map();
 
@@ -37,7 +39,8 @@ const toast = (text) => {
 
 // ---- answers
 
-const evaluation = new Follower("evaluate", () => wish(), (found, begun) => {
+const evaluation = new Follower("evaluate", () => wish(), (found, begun, { text }) => {
+  if (text !== state.text) return; // places in another text
   show(found);
   const { dataset } = document.documentElement; // for measurements
   dataset.took = (performance.now() - begun).toFixed(2);
@@ -94,8 +97,9 @@ const where = ({ start: at }) => {
 
 // New variables begin as constants.
 function provide(names) {
-  for (const name of names) state.signals[name] = { hold: true, points: [[0, 0]] };
-  changed({ delay: 0 });
+  const unknown = names.filter((name) => !(name in state.signals));
+  for (const name of unknown) state.signals[name] = { hold: true, points: [[0, 0]] };
+  if (unknown.length) changed({ delay: 0 });
 }
 
 // ---- signals
@@ -234,6 +238,7 @@ $("link").addEventListener("click", async () => {
 
 async function restore(saved) {
   for (const name of Object.keys(state)) if (name !== "recording" && name in saved) state[name] = saved[name];
+  state.signals = named(state.signals);
   const { recording } = saved;
   if (recording?.bytes) await load(new File([fromBase64(recording.bytes)], recording.name));
   else if (recording) {
@@ -314,7 +319,7 @@ if (saved) await restore(saved);
 else {
   state.time = given.time;
   if (given.text) state.text = given.text.trimEnd();
-  else if (!given.recording) Object.assign(state, structuredClone(EXAMPLE));
+  else if (!given.recording) Object.assign(state, { text: EXAMPLE.text, signals: named(structuredClone(EXAMPLE.signals)) });
   if (given.recording) state.recording = given.recording;
   if (given.period || given.recording) state.period = given.period;
   if (given.complaint) toast(given.complaint);

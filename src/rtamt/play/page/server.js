@@ -68,6 +68,6 @@ export class Follower {
     const again = this.again;
     this.again = false;
     if (again) this.send();
-    if (!answer.late && sent === this.sent - (again ? 1 : 0)) this.show(answer, begun);
+    if (!answer.late && sent === this.sent - (again ? 1 : 0)) this.show(answer, begun, wish);
   }
 }
