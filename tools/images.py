@@ -20,6 +20,7 @@ import rtamt
 from rtamt.cli import main
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.unit.docs.pages import FILES, Page
 from tests.unit.report.browser import chromium
 from tools import patterns, signal_patterns, walkthrough
 
@@ -27,6 +28,9 @@ from rtamt.analysis import diff
 from rtamt.mining import mine
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
+
+#: Pages of docs/how-to, with the plot that the page writes and shows.
+HOW_TO = {"convert": "pump.png", "describe": "described.png", "lint": "ranges.png", "mutate": "matrix.png"}
 
 README = "always((req >= 3) -> eventually[0:2](gnt >= 3))"
 FIVE = {"time": [0, 1, 2, 3, 4], "req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}
@@ -88,6 +92,18 @@ def mining() -> None:
         recordings = {path.name: rtamt.read(path) for path in sorted(Path(folder).glob("step*.csv"))}
         found = mine(rtamt.parse(template[1]), recordings, resolutions={"band": 0.01}, points=8)
     save(found.plot().figure, "mine.png")
+
+
+def how_to() -> None:
+    """Run pages of docs/how-to, and keep the plot that each one writes."""
+    for name, plot in HOW_TO.items():
+        page = IMAGES.parent / "how-to" / f"{name}.md"
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            if (FILES / name).is_dir():
+                shutil.copytree(FILES / name, folder, dirs_exist_ok=True)
+            Page(page.name, page.read_text(encoding="utf-8")).run()
+            shrink(Path(plot))
+            shutil.move(plot, IMAGES / f"{name}.png")
 
 
 def gallery() -> None:
