@@ -18,6 +18,7 @@ from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, posto
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.parameters import bounding
 from rtamt.language.units.durations import UNITS, exact
+from rtamt.language.value_types import WHOLE
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import boolean
@@ -101,7 +102,12 @@ def roles_of(
             raise UsageError(
                 f"'{first}' and '{second}' bound the same interval; mine one of them, with a value for the other"
             )
-    found = _fold(desugar(truth), frozenset(names), ranges, sides)
+    core = desugar(truth)
+    kept = {id(node.interval) for node in postorder(core) if isinstance(node, Apply)}
+    for place, every in sides.items():
+        if place not in kept:  # an expansion made another interval of it
+            unknown.update(side.name for side in every)
+    found = _fold(core, frozenset(names), ranges, sides)
     types = {each.name: each.type for each in spec.document.declarations}
     return [
         _role(name, None if name in unknown else found.get(name), bounds.get(name, []), types.get(name, ""))
@@ -125,7 +131,7 @@ class _Side:
 
 
 def _role(name: str, direction: int | None, sides: list[_Side], type_: str) -> Role:
-    whole = type_.startswith(("int", "uint"))
+    whole = type_ in WHOLE
     if not sides:
         return Role(name, direction, whole=whole)
     seconds = sides[0].seconds
@@ -284,7 +290,8 @@ def require(spec: Specification, names: Iterable[str] | None) -> tuple[str, ...]
         raise UsageError(
             "the specification declares no parameter to mine; declare one, such as parameter float limit = 30"
         )
-    chosen = tuple(dict.fromkeys(names)) if names is not None else tuple(n for n in known if n in there)
+    numbers = [name for name in known if name in there and name not in spec.document.types]
+    chosen = tuple(dict.fromkeys(names)) if names is not None else tuple(numbers)
     for name in chosen:
         if name not in known:
             raise UsageError(f"there is no parameter '{name}'{choices(name, known, 'parameters')}")
@@ -295,5 +302,7 @@ def require(spec: Specification, names: Iterable[str] | None) -> tuple[str, ...]
         if name in spec.document.types:
             raise UsageError(f"the parameter '{name}' is no number, so it has no tight value; leave it out")
     if not chosen:
-        raise UsageError("no parameter of the specification is in its formula, so there is nothing to mine")
+        raise UsageError(
+            "no parameter in the formula of the specification is a number, so there is nothing to mine"
+        )
     return chosen

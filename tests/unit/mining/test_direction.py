@@ -47,6 +47,9 @@ from rtamt.mining import directions
         ("atleast[0:p](80%, x <= 1)", "unknown"),
         ("eventually[0:p](always[0:p](x >= 1))", "unknown"),
         ("always[0:p](x >= p)", "smaller"),
+        ("always[0:p](x <= p)", "unknown"),
+        ("eventually[0:p](x <= p)", "larger"),
+        ("x <= p unless[0:p] y >= 1", "unknown"),
     ],
 )
 def test_direction(text, expected):

@@ -95,6 +95,11 @@ def test_two_parameters_have_a_front():
     assert [point.values for point in first.points] == [{"within": 0.0, "level": 0.0}]
 
 
+def test_parameters_that_are_no_numbers_keep_their_values():
+    spec = rtamt.parse("parameter bool strict = true  parameter float p = 1  always(x <= p or not strict)")
+    assert repr(mine(spec, DRIVES)) == "<p=7.5 on 2 recordings>"
+
+
 def test_three_parameters_in_their_order():
     spec = rtamt.parse(
         "parameter float a = 1  parameter float b = 1  parameter float c = 1  always(x <= a and y >= b and x - y <= c)"
@@ -148,7 +153,7 @@ def test_a_spent_budget_leaves_values_that_hold():
         (
             "parameter float p = 1  always(x <= 3)",
             {},
-            "no parameter of the specification is in its formula, so there is nothing to mine",
+            "no parameter in the formula of the specification is a number, so there is nothing to mine",
         ),
         (
             "parameter float p = 1  parameter float q = 1  always(x <= q)",
