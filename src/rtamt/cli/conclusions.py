@@ -52,7 +52,9 @@ def show(name: str, analysis: Analysis, args: argparse.Namespace) -> int:
             say(json_text({"file": name, "note": note}))
     else:
         _print(name, analysis, plots, use_color(args.color, sys.stdout))
-    return VIOLATED if analysis.findings else ERROR if analysis.unanswered else OK
+    # Where no requirement is covered, nothing is known to be sound.
+    unknown = analysis.unanswered or (analysis.notes and not analysis.conclusions)
+    return VIOLATED if analysis.findings else ERROR if unknown else OK
 
 
 def _print(name: str, analysis: Analysis, plots: dict[Conclusion, str], color: bool) -> None:

@@ -117,3 +117,10 @@ def test_a_changed_requirement_that_is_not_covered_is_no_agreement(run):
         in answer.out
     )
     assert run("diff", "always(x * y > 3)", "always(x * y > 3)").code == 0
+
+
+def test_a_file_of_which_nothing_is_covered_is_not_sound(run):
+    answer = run("analyze", "always(x * y > 3)", "--samples", "9")
+    assert answer.code == 2
+    assert "'x * y' is not covered by the analysis: a product of two signals is nonlinear" in answer.out
+    assert run("analyze", "require A: always(x * y > 3); require B: x > 3", "--samples", "9").code == 0
