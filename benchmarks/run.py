@@ -192,6 +192,8 @@ def main() -> None:
         "load": (load[0], os.getloadavg()[0]),
     }
     report.write(arguments.out, running, absent, many, machine, facts)
+    early = [sys.executable, str(FOLDER / "early.py"), "1000" if arguments.quick else "100000"]
+    subprocess.run([*early, "--into", str(arguments.out / "RESULTS.md")], check=True)
     print(f"written: {arguments.out / 'RESULTS.md'}", file=sys.stderr)
 
 
