@@ -153,7 +153,7 @@ def section(samples: int) -> str:
             "every instant; an",
             "update has one variable, so that a sample of two is two updates) or 1,000 samples (STLRom, bounds at the "
             "start; its process",
-            "ends with `until`).",
+            "ends with `until`). A window longer than the trace never passes.",
             "",
             "| formula | k | delayed | eager | mstlo | at the start | STLRom | at every instant | mstlo |",
             "|---|---:|---:|---:|---:|---:|---:|---:|---:|",
