@@ -193,7 +193,7 @@ def _rows(samples: int) -> Iterator[str]:
 def with_section(text: str, new: str) -> str:
     """Return a report with this section in place of its last version, or at its end."""
     before, found, rest = text.partition(f"{HEADER}\n")
-    after = rest[rest.index("\n## ") :] if "\n## " in rest else "\n"
+    after = rest[rest.index("\n## ") :] if "\n## " in rest else ""
     return f"{before.rstrip()}\n\n{new}\n{after}" if found else f"{text.rstrip()}\n\n{new}\n"
 
 
