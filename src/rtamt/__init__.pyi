@@ -87,8 +87,8 @@ from rtamt.errors import STLParseException as STLParseException
 from rtamt.errors import TraceError as TraceError
 from rtamt.errors import UsageError as UsageError
 from rtamt.fleet.fleet import Fleet as Fleet
-from rtamt.fleet.fleet import FleetUpdate as FleetUpdate
 from rtamt.fleet.suite import Suite as Suite
+from rtamt.fleet.updates import FleetUpdate as FleetUpdate
 from rtamt.fleet.verdict_table import VerdictTable as VerdictTable
 from rtamt.language.operators import STL as STL
 from rtamt.readers.read import read as read

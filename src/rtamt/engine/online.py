@@ -180,8 +180,9 @@ class OnlineMonitor:
         restart: bool,  # noqa: ARG002
         state: bytes | None,  # noqa: ARG002
         identities: Mapping[str, str],  # noqa: ARG002
+        watched: bool = False,  # noqa: ARG002
     ) -> Any:
-        """Return what monitors this formula for many keys at once; None where each key needs a monitor.
+        """Return what monitors this formula, or those watched, for many keys at once; None where each needs a monitor.
 
         See :class:`rtamt.engine.discrete.fleet.DiscreteFleet`.
         """

@@ -4,6 +4,8 @@
 module                purpose
 ====================  =====================================================================
 fleet                 ``Fleet``: an array of monitors by key: vehicles, machines, sessions
+updates               what a batch has made known
+keys                  keys as arrays
 event_time            late samples, gaps, and what a snapshot has of them
 suite                 ``Suite``: many requirements compiled once into few programs
 groups                requirements that read a recording in the same way

@@ -4,81 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import isnan
-from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.fleet.event_time import GAPS, EventTime, InOrder, unpacked
+from rtamt.fleet.keys import capacity_of, keys_of
+from rtamt.fleet.suite import Suite
+from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.arrays import timestamps
 from rtamt.specification import Specification
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from rtamt.engine import OnlineMonitor
     from rtamt.fleet.event_time import EventState, Gaps, Taken
     from rtamt.language.units.durations import Duration
-    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.binding import Binding
-
-#: No fleet has as many keys.
-MOST = 2**31
-
-#: By type of keys, the character at their end that an array of numpy loses: two keys would be one.
-_PADDED: dict[type, Any] = {str: "\0", bytes: b"\0"}
-
-
-@dataclass(frozen=True, slots=True)
-class Released:
-    """What became known by samples that are not of the batch: that waited for earlier ones, or fill a gap.
-
-    ``keys``: of each value, ``times``: the time that it is for.
-    """
-
-    keys: NDArray[Any]
-    times: FloatArray
-    values: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-
-@dataclass(frozen=True, slots=True)
-class FleetUpdate:
-    """What a batch has made known, in the order of the batch.
-
-    ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
-    ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it
-    is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
-    ``late``: which samples came too late, or a second time, and were left out. ``released``: what samples made known
-    that are not of this batch.
-    """
-
-    values: FloatArray
-    known: NDArray[np.bool_]
-    times: FloatArray
-    warming: NDArray[np.bool_]
-    late: NDArray[np.bool_]
-    released: Released
-
-    def __len__(self) -> int:
-        return len(self.values)
 
 
 class Fleet:
-    """Monitors one specification for many keys, such as vehicles, in discrete time.
+    """Monitors one specification, or many, for many keys, such as vehicles, in discrete time.
 
-    ``capacity``: the largest number of keys; memory is used only for those that have come. ``lateness``: how late a
-    sample may arrive, in seconds or as text such as ``"2s"``: samples of a key then come in any order and wait until
-    one has come that is newer by the lateness. Without it, they come in the order of their times. ``gaps``: what a gap
-    between two samples of a key does that is not the period: ``"reject"`` the batch, ``"restart"`` the trace of the key
-    with the sample after the gap, or ``"hold"`` the last value where whole periods are missing. ``settings``: those of
-    ``Specification.monitor``.
+    ``spec``: a specification or, for a column of values for each requirement, a :class:`Suite` of specifications with
+    the same sampling period. A suite that does not select the robustness reports +inf where a requirement holds, and
+    -inf where it does not. ``capacity``: the largest number of keys; memory is used only for those that have come.
+    ``lateness``: how late a sample may arrive, in seconds or as text such as ``"2s"``: samples of a key then come in
+    any order and wait until one has come that is newer by the lateness. Without it, they come in the order of their
+    times. ``gaps``: what a gap between two samples of a key does that is not the period: ``"reject"`` the batch,
+    ``"restart"`` the trace of the key with the sample after the gap, or ``"hold"`` the last value where whole
+    periods are missing. ``settings``: those of ``Specification.monitor``.
 
     Each key has the results of its own ``spec.monitor(**settings)``, bit for bit.
 
@@ -93,7 +51,7 @@ class Fleet:
 
     def __init__(
         self,
-        spec: Specification,
+        spec: Specification | Suite,
         capacity: int,
         *,
         lateness: Duration | None = None,
@@ -102,27 +60,24 @@ class Fleet:
     ) -> None:
         if gaps not in GAPS:
             raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
-        self._open(spec, _capacity(capacity), _lateness(lateness), GAPS[gaps], settings)
+        self._open(spec, capacity_of(capacity), _lateness(lateness), GAPS[gaps], settings)
 
     def _open(
         self,
-        spec: Specification,
+        spec: Specification | Suite,
         capacity: int,
         lateness: float | None,
         gaps: Gaps,
         settings: Mapping[str, Any],
         state: EventState | None = None,
     ) -> None:
-        if not isinstance(spec, Specification):
-            raise UsageError(
-                f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
-            )
-        monitor = spec.monitor(**settings)
+        monitor, specs, self.requirements = _monitor_of(spec, settings)
         records = monitor.records(
             capacity,
             restart=gaps.restart,
             state=None if state is None else state.records,
-            identities=_identities(spec),
+            identities={name: identity for each in specs for name, identity in _identities(each).items()},
+            watched=bool(self.requirements),
         )
         if records is None:
             raise UsageError(
@@ -144,7 +99,7 @@ class Fleet:
         their times. New keys start a trace. Raises :class:`TraceError` for wrong data and :class:`EvaluationError`
         where an operation has no value, with the key and the index in the batch; no key has changed then.
         """
-        given = _keys(keys)
+        given = keys_of(keys)
         if not isinstance(columns, Mapping):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
         seconds, found = self._samples.records.columns(times, self._binding.applied(dict(columns)))
@@ -152,7 +107,7 @@ class Fleet:
             raise TraceError(
                 f"there are {len(given)} keys and {len(seconds)} times: give one of each for every sample"
             )
-        return _update(self._samples.update(given, seconds, found))
+        return self._updated(self._samples.update(given, seconds, found))
 
     @exclusive
     def watermark(self, time: Any) -> FleetUpdate:
@@ -166,7 +121,7 @@ class Fleet:
         >>> fleet.update_many([7, 7], [1, 0], {"x": [5, 4]}).known
         array([False, False])
         >>> fleet.watermark(1).released
-        Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]))
+        Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]), requirements=array([0, 0]))
         """
         return self._mark(time, 0.0)
 
@@ -185,7 +140,24 @@ class Fleet:
             seconds = float(timestamps([time]).seconds[0])
         if isnan(seconds):
             raise TraceError("the watermark is NaN: give a number of seconds")
-        return _update(self._samples.watermark(seconds - late, _keys))
+        return self._updated(self._samples.watermark(seconds - late, keys_of))
+
+    def _updated(self, taken: Taken) -> FleetUpdate:
+        outputs = taken.outputs
+        released = Released(
+            np.concatenate([each.keys for each in outputs]),
+            np.concatenate([each.at for each in outputs]),
+            np.concatenate([each.found for each in outputs]),
+            np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
+        )
+        if not self.requirements:
+            (one,) = outputs
+            return FleetUpdate(one.values, one.known, one.times, one.warming, taken.late, released)
+        values = np.stack([each.values for each in outputs], axis=1)
+        known = np.stack([each.known for each in outputs], axis=1)
+        times = np.stack([each.times for each in outputs], axis=1)
+        warming = np.stack([each.warming for each in outputs], axis=1)
+        return FleetUpdate(values, known, times, warming, taken.late, released, self.requirements)
 
     @property
     def late(self) -> int:
@@ -213,7 +185,7 @@ class Fleet:
     @exclusive
     def __contains__(self, key: object) -> bool:
         try:
-            given = _keys([key])
+            given = keys_of([key])
         except TraceError:
             return False
         return self._samples.contains(given)
@@ -234,7 +206,7 @@ class Fleet:
         >>> len(fleet), 1 in fleet, fleet.keys()
         (1, False, [2])
         """
-        given = _keys(keys)
+        given = keys_of(keys)
         missing = self._samples.drop(given)
         if missing is not None:
             raise UsageError(
@@ -251,7 +223,7 @@ class Fleet:
         >>> fleet.expire(before=30), fleet.keys()
         (1, [2])
         """
-        return self._samples.expire(before, _keys)
+        return self._samples.expire(before, keys_of)
 
     @exclusive
     def snapshot(self) -> bytes:
@@ -269,7 +241,7 @@ class Fleet:
     @classmethod
     def restore(
         cls,
-        spec: Specification,
+        spec: Specification | Suite,
         state: bytes,
         *,
         capacity: int | None = None,
@@ -292,7 +264,7 @@ class Fleet:
         made = cls.__new__(cls)
         made._open(
             spec,
-            0 if capacity is None else _capacity(capacity),
+            0 if capacity is None else capacity_of(capacity),
             stored.lateness if lateness is None else _lateness(lateness),
             stored.gaps if gaps is None else GAPS[gaps],
             settings,
@@ -301,64 +273,26 @@ class Fleet:
         return made
 
 
-def _update(taken: Taken) -> FleetUpdate:
-    (output,) = taken.outputs
-    released = Released(output.keys, output.at, output.found)
-    return FleetUpdate(output.values, output.known, output.times, output.warming, taken.late, released)
+def _monitor_of(
+    spec: Any, settings: Mapping[str, Any]
+) -> tuple[OnlineMonitor, tuple[Specification, ...], tuple[str, ...]]:
+    """Return a monitor, the specifications that it is of, and the names of requirements that it watches."""
+    if isinstance(spec, Suite):
+        if settings:
+            raise UsageError(
+                f"{next(iter(settings))}= is a setting of the suite: write Suite(specs, {next(iter(settings))}=...)"
+            )
+        monitor, specs = spec.monitor()
+        return monitor, specs, tuple(each.name for each in spec.requirements)
+    if not isinstance(spec, Specification):
+        raise UsageError(
+            f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
+        )
+    return spec.monitor(**settings), (spec,), ()
 
 
 def _lateness(given: Duration | None) -> float | None:
     return None if given is None else float(duration(given))
-
-
-def _capacity(given: Any) -> int:
-    if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 1:
-        raise UsageError(f"capacity is {shown(given)}, expected a number of keys, at least 1")
-    if given >= MOST:
-        raise UsageError(f"capacity is {shown(given)}, expected a number of keys below 2**31")
-    return int(given)
-
-
-def _keys(keys: Any) -> NDArray[Any]:
-    """Return keys as an array of int64, texts or bytes; raise :class:`TraceError` for anything else."""
-    given = keys
-    if isinstance(keys, np.ma.MaskedArray):
-        masked = np.ma.getmaskarray(keys)
-        if masked.any():
-            raise _masked(int(masked.argmax()))
-        keys = given = keys.data
-    if not isinstance(keys, np.ndarray):
-        keys = list(keys)
-        kinds = {type(key) for key in keys}
-        if type(np.ma.masked) in kinds:
-            raise _masked([key is np.ma.masked for key in keys].index(True))
-        if len(kinds) > 1:
-            names = ", ".join(sorted(kind.__name__ for kind in kinds))
-            raise TraceError(f"the keys are of several types ({names}): give integers, texts, or bytes")
-        if not keys:
-            return np.empty(0, np.int64)
-        if kinds <= _PADDED.keys() and any(map(methodcaller("endswith", _PADDED[kinds.pop()]), keys)):
-            raise TraceError(
-                "a key ends with the character 0, with which numpy pads texts and bytes: give integers, or texts "
-                "such as key.hex()"
-            )
-    try:
-        found = np.asarray(keys)
-    except (TypeError, ValueError):
-        found = np.empty(0, object)
-    if found.dtype.kind == "O" and isinstance(given, np.ndarray) and found.ndim == 1:
-        return _keys(found.tolist())
-    if found.ndim != 1 or found.dtype.kind not in "iuUS":
-        raise TraceError(f"the keys are {shown(given)}, expected a sequence of integers, texts, or bytes")
-    if found.dtype.kind == "u" and found.size and int(found.max()) >= 2**63:
-        raise TraceError(f"the key {int(found.max())} is beyond 64 bits with a sign; give it as text")
-    if found.dtype.kind in "iu":
-        return np.ascontiguousarray(found, np.int64)
-    return np.ascontiguousarray(found, found.dtype.newbyteorder("="))
-
-
-def _masked(index: int) -> TraceError:
-    return TraceError(f"the key at index {index} of the batch is masked: leave the sample out")
 
 
 def _identities(spec: Specification) -> dict[str, str]:

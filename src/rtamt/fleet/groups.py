@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.engine import Query, engine_of
+from rtamt.engine import Query, Watched, engine_of
 from rtamt.errors import StlError
-from rtamt.language.formula import Const
+from rtamt.language.formula import Apply, Const
+from rtamt.language.operators import STL
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.signals.binding import Binding, union
 from rtamt.signals.sampling import sampled
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.engine import OnlineMonitor
     from rtamt.language.parsing.sampling import Sampling
     from rtamt.language.value_types import ValueType
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
@@ -186,6 +188,21 @@ class Group:
                     found if found.error is None or found.robustness is not None else found.error,
                     trace,
                 )
+
+    def monitor(self, names: Sequence[str]) -> OnlineMonitor:
+        """Return a monitor of the conjunction of all requirements, which watches each by its name."""
+        watched = []
+        for name, asking in zip(names, self.asked.values(), strict=True):
+            formula = next(each for each in _outputs(asking) if each is not None)
+            watched.append(Watched(name, formula, asking.spec.text))
+        whole = reduce(lambda a, b: Apply(STL["and"], (a, b)), (each.formula for each in watched))
+        domain = self.way.domain.online
+        declared = {name for asking in self.asked.values() for name in asking.spec._declared}
+        monitor: OnlineMonitor = engine_of(domain).monitor(
+            whole, domain, unit=self.way.unit, declared=declared, watch=watched
+        )
+        monitor.bind(self.way.binding)
+        return monitor
 
     def of(self, numbers: Sequence[int]) -> Group:
         """Return the group of some of the requirements."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Unpack
 
-    from rtamt.engine import Query
+    from rtamt.engine import OnlineMonitor, Query
     from rtamt.settings import EvaluationSettings
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.verdicts.prepared import Found
@@ -189,6 +189,23 @@ class Suite:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Suite.from_bytes, (self.to_bytes(),)
+
+    def monitor(self) -> tuple[OnlineMonitor, tuple[Specification, ...]]:
+        """Return a monitor that watches every requirement by its name, and their specifications.
+
+        Raises :class:`UsageError` where the requirements need more than one monitor, or have no formulas.
+        """
+        if not self._specs:
+            raise UsageError(
+                "a suite that was read from bytes has no formulas to monitor; make the fleet of Suite(specs)"
+            )
+        if self._apart or len(self._groups) > 1 or self._groups[0].way.rule is not None:
+            raise UsageError(
+                "the requirements of a fleet share the time domain, the sampling period, and the names, units and "
+                "types of their variables, without a sampling rule, quantifiers or operators of your own; make a "
+                "fleet for each that differs"
+            )
+        return self._groups[0].monitor([each.name for each in self.requirements]), tuple(self._specs.values())
 
     @property
     def storable(self) -> bool:

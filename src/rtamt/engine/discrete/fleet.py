@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.engine.discrete.backends import SampleProgram
+from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.native import core
 from rtamt.engine.reorder import Reordering, full, place_of, rows_of, sentence
 from rtamt.errors import EvaluationError, TraceError, UsageError
@@ -19,6 +19,7 @@ from rtamt.signals.arrays import TIME, columns_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
+from rtamt.signals.discrete import Discrete
 from rtamt.signals.regular import irregular
 from rtamt.signals.samples import read_time
 
@@ -45,7 +46,7 @@ class DiscreteFleet:
 
     ``monitor``: of the core, without custom operators (see :func:`has_records`). ``restart``: whether a gap between
     samples begins a new trace of the key. ``identities``: what stands for the names of variables in the state, where
-    their declarations decide what a number means.
+    their declarations decide what a number means. ``watched``: whether the outputs are the watched formulas alone.
     """
 
     def __init__(
@@ -56,8 +57,12 @@ class DiscreteFleet:
         identities: Mapping[str, str] = MappingProxyType({}),
         restart: bool = False,
         state: bytes | None = None,
+        watched: bool = False,
     ) -> None:
         session = monitor._session
+        if watched:
+            domain = Discrete(monitor.period, monitor._tolerance)
+            session = BACKENDS["cpp"].session(monitor._formulas[1:], monitor.input_names, domain)
         assert isinstance(session, SampleProgram)
         self._monitor, self._session = monitor, session
         program = session.program
@@ -218,8 +223,8 @@ def _is_column(values: Any) -> bool:
     )
 
 
-def has_records(monitor: Any) -> bool:
-    """Return whether a monitor can run as a :class:`DiscreteFleet`."""
+def has_records(monitor: Any, *, watched: bool = False) -> bool:
+    """Return whether a monitor, or its watched formulas, can run as a :class:`DiscreteFleet`."""
     session = getattr(monitor, "_session", None)
     return (
         isinstance(session, SampleProgram)
@@ -227,5 +232,5 @@ def has_records(monitor: Any) -> bool:
         and not session.program.worst_case
         and monitor._times.plain
         and monitor._episodes is None
-        and len(monitor._formulas) == 1
+        and (len(monitor._formulas) > 1) == watched
     )

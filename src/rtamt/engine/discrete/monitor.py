@@ -361,14 +361,22 @@ class Monitor(MonitorBase, OnlineMonitor):
             self._connect(inner_of(self._backend))
 
     def records(
-        self, capacity: int, *, restart: bool, state: bytes | None, identities: Mapping[str, str]
+        self,
+        capacity: int,
+        *,
+        restart: bool,
+        state: bytes | None,
+        identities: Mapping[str, str],
+        watched: bool = False,
     ) -> DiscreteFleet | None:
         """See :class:`OnlineMonitor`."""
         from rtamt.engine.discrete.fleet import DiscreteFleet, has_records  # monitors do not wait for it
 
-        if not has_records(self):
+        if not has_records(self, watched=watched):
             return None
-        return DiscreteFleet(self, capacity, restart=restart, state=state, identities=identities)
+        return DiscreteFleet(
+            self, capacity, restart=restart, state=state, identities=identities, watched=watched
+        )
 
     @property
     def _last_time(self) -> float | None:

@@ -1,0 +1,70 @@
+"""Keys of a fleet as arrays: integers, texts or bytes; and how many there may be."""
+
+from __future__ import annotations
+
+from operator import methodcaller
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import TraceError, UsageError, shown
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: No fleet has as many keys.
+MOST = 2**31
+
+#: By type of keys, the character at their end that an array of numpy loses: two keys would be one.
+_PADDED: dict[type, Any] = {str: "\0", bytes: b"\0"}
+
+
+def capacity_of(given: Any) -> int:
+    """Return a number of keys; raise :class:`UsageError` for anything else."""
+    if isinstance(given, bool) or not isinstance(given, int | np.integer) or given < 1:
+        raise UsageError(f"capacity is {shown(given)}, expected a number of keys, at least 1")
+    if given >= MOST:
+        raise UsageError(f"capacity is {shown(given)}, expected a number of keys below 2**31")
+    return int(given)
+
+
+def keys_of(keys: Any) -> NDArray[Any]:
+    """Return keys as an array of int64, texts or bytes; raise :class:`TraceError` for anything else."""
+    given = keys
+    if isinstance(keys, np.ma.MaskedArray):
+        masked = np.ma.getmaskarray(keys)
+        if masked.any():
+            raise _masked(int(masked.argmax()))
+        keys = given = keys.data
+    if not isinstance(keys, np.ndarray):
+        keys = list(keys)
+        kinds = {type(key) for key in keys}
+        if type(np.ma.masked) in kinds:
+            raise _masked([key is np.ma.masked for key in keys].index(True))
+        if len(kinds) > 1:
+            names = ", ".join(sorted(kind.__name__ for kind in kinds))
+            raise TraceError(f"the keys are of several types ({names}): give integers, texts, or bytes")
+        if not keys:
+            return np.empty(0, np.int64)
+        if kinds <= _PADDED.keys() and any(map(methodcaller("endswith", _PADDED[kinds.pop()]), keys)):
+            raise TraceError(
+                "a key ends with the character 0, with which numpy pads texts and bytes: give integers, or texts "
+                "such as key.hex()"
+            )
+    try:
+        found = np.asarray(keys)
+    except (TypeError, ValueError):
+        found = np.empty(0, object)
+    if found.dtype.kind == "O" and isinstance(given, np.ndarray) and found.ndim == 1:
+        return keys_of(found.tolist())
+    if found.ndim != 1 or found.dtype.kind not in "iuUS":
+        raise TraceError(f"the keys are {shown(given)}, expected a sequence of integers, texts, or bytes")
+    if found.dtype.kind == "u" and found.size and int(found.max()) >= 2**63:
+        raise TraceError(f"the key {int(found.max())} is beyond 64 bits with a sign; give it as text")
+    if found.dtype.kind in "iu":
+        return np.ascontiguousarray(found, np.int64)
+    return np.ascontiguousarray(found, found.dtype.newbyteorder("="))
+
+
+def _masked(index: int) -> TraceError:
+    return TraceError(f"the key at index {index} of the batch is masked: leave the sample out")

@@ -1,0 +1,76 @@
+"""What a batch has made known: of its samples, and of those that it released."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.errors import UsageError, choices, shown
+from rtamt.lazy_dataclasses import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Released:
+    """What became known by samples that are not of the batch: that waited for earlier ones, or fill a gap.
+
+    ``keys``: of each value, ``times``: the time that it is for, ``requirements``: of a suite, the number of its
+    requirement; else 0.
+    """
+
+    keys: NDArray[Any]
+    times: FloatArray
+    values: FloatArray
+    requirements: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetUpdate:
+    """What a batch has made known, in the order of the batch.
+
+    ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
+    ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it
+    is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
+    Of a suite, these four have a column for each requirement, and ``update["SPEED"]`` is the update of one.
+    ``late``: which samples came too late, or a second time, and were left out. ``released``: what samples made known
+    that are not of this batch. ``requirements``: the names of those of a suite.
+    """
+
+    values: FloatArray
+    known: NDArray[np.bool_]
+    times: FloatArray
+    warming: NDArray[np.bool_]
+    late: NDArray[np.bool_]
+    released: Released
+    requirements: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, name: str) -> FleetUpdate:
+        if name not in self.requirements:
+            raise UsageError(
+                f"the fleet has no requirement {shown(name)}{choices(name, self.requirements, 'requirements')}"
+            )
+        column = self.requirements.index(name)
+        every = self.released
+        own = every.requirements == column
+        released = Released(
+            every.keys[own], every.times[own], every.values[own], np.zeros(own.sum(), np.int64)
+        )
+        return FleetUpdate(
+            self.values[:, column],
+            self.known[:, column],
+            self.times[:, column],
+            self.warming[:, column],
+            self.late,
+            released,
+        )
