@@ -208,7 +208,7 @@ def play() -> None:
     ):
         assert server.stdout is not None
         tab.send(
-            "Emulation.setDeviceMetricsOverride", width=1200, height=1010, deviceScaleFactor=1, mobile=False
+            "Emulation.setDeviceMetricsOverride", width=1200, height=1115, deviceScaleFactor=1, mobile=False
         )
         tab.open(server.stdout.readline().strip())
         for script, condition in (("0", ready), (scrub, "document.querySelectorAll('.whisker').length > 0")):
@@ -217,12 +217,12 @@ def play() -> None:
                 time.sleep(0.05)
         (IMAGES / "play.png").write_bytes(base64.b64decode(tab.send("Page.captureScreenshot")["data"]))
         server.terminate()
-    shrink(IMAGES / "play.png")
+    shrink(IMAGES / "play.png", 256)
 
 
-def shrink(path: Path) -> None:
-    """Reduce an image to 64 colors, which is enough for plots."""
-    Image.open(path).convert("RGB").quantize(64).save(path, optimize=True)
+def shrink(path: Path, colors: int = 64) -> None:
+    """Reduce an image to few colors; 64 are enough for plots."""
+    Image.open(path).convert("RGB").quantize(colors).save(path, optimize=True)
 
 
 if __name__ == "__main__":
