@@ -10,12 +10,19 @@
 #include "shift.hpp"
 #include "since.hpp"
 #include "steady_window.hpp"
+#include "truth_memory.hpp"
 #include "until.hpp"
 #include "window.hpp"
 
 namespace rtamt::discrete {
 
 namespace detail {
+
+// Whether an instruction with a state keeps bits instead of real numbers. That of until are decided
+// many at a time, which may not be.
+[[nodiscard]] constexpr bool packs(const Instruction& at) noexcept {
+    return at.truth && at.n >= least_packed && (!at.steady || at.opcode != Opcode::until);
+}
 
 struct Make {
     using Pointer = std::unique_ptr<Kernel>;
@@ -36,11 +43,17 @@ struct Make {
     template <ValueDomain D>
     [[nodiscard]] Pointer shift() const {
         using Value = typename D::Value;
+        if constexpr (std::same_as<D, Real>) {
+            if (packs(at)) return with_ring<TruthShift, TruthBits::Word>(at.x);
+        }
         return with_ring<Shift<Value>, Value>(D::of(at.x));
     }
     template <class Algebra>
     [[nodiscard]] Pointer slide() const {
         using M = Joined<Algebra>;
+        if constexpr (std::same_as<typename Algebra::Domain, Real> && Algebra::associative) {
+            if (packs(at)) return std::make_unique<TruthWindow<Algebra>>(lag, width());
+        }
         if constexpr (has_steady<M>) {
             if (is_steady()) return sliding<Sliding<M, SteadyWindow<M>>, M>();
         }
@@ -65,6 +78,9 @@ struct Make {
     template <ValueDomain D>
     [[nodiscard]] Pointer until() const {
         using M = UntilSteps<D>;
+        if constexpr (std::same_as<D, Real>) {
+            if (packs(at)) return with_ring<TruthUntil, TruthBits::Word>();
+        }
         if constexpr (has_steady<M>) {
             if (is_steady()) return sliding<Sliding<M, SteadyWindow<M>>, M>();
         }
@@ -73,8 +89,7 @@ struct Make {
 
     template <ValueDomain D, bool least>
     [[nodiscard]] Pointer rank() const {
-        return std::make_unique<Rank<D, least>>(lag, static_cast<std::size_t>(at.n), at.x, state,
-                                                journal);
+        return std::make_unique<Rank<D, least>>(lag, width(), at.x, state, journal);
     }
 
   private:
@@ -83,19 +98,18 @@ struct Make {
     static constexpr bool has_steady =
         M::associative && std::same_as<typename M::Value, Real::Value>;
 
+    [[nodiscard]] std::size_t width() const noexcept { return static_cast<std::size_t>(at.n); }
     [[nodiscard]] bool is_steady() const noexcept { return at.steady && at.n >= narrowest_steady; }
 
     template <class Kernel, Monoid M>
     [[nodiscard]] Pointer sliding() const {
         using Element = typename M::Element;
-        return std::make_unique<Kernel>(lag, static_cast<std::size_t>(at.n),
-                                        static_cast<Element*>(state),
+        return std::make_unique<Kernel>(lag, width(), static_cast<Element*>(state),
                                         static_cast<Element*>(journal), at.lag);
     }
     template <class Ringed, class Element, class... Arguments>
     [[nodiscard]] Pointer with_ring(const Arguments&... arguments) const {
-        return std::make_unique<Ringed>(lag, static_cast<std::size_t>(at.n), arguments...,
-                                        static_cast<Element*>(state),
+        return std::make_unique<Ringed>(lag, width(), arguments..., static_cast<Element*>(state),
                                         static_cast<Element*>(journal));
     }
 };
@@ -105,6 +119,13 @@ struct Make {
 template <ValueDomain D>
 std::size_t Kernels<D>::state_size(const Instruction& instruction, Sort sort) noexcept {
     const auto n = static_cast<std::size_t>(instruction.n);
+    if constexpr (std::same_as<D, Real>) {
+        if (detail::packs(instruction)) {
+            const bool ring =
+                instruction.opcode == Opcode::shift || instruction.opcode == Opcode::until;
+            return ring ? TruthBits::words(n) * sizeof(TruthBits::Word) : 0;
+        }
+    }
     switch (instruction.opcode) {
     case Opcode::shift:
     case Opcode::slide_max:

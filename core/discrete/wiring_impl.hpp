@@ -153,7 +153,10 @@ std::unique_ptr<Kernel> Wiring<D>::make_kernel(std::uint32_t index,
     if (instruction.opcode == Opcode::call) return make_call(index);
     if (!chain.empty()) return make_chain(chain);
     const std::size_t size = Kernels<D>::state_size(instruction, sorts_[index]);
-    if (size != 0) longest_ = std::max(longest_, instruction.n);
+    if (const Count count = info(instruction.opcode).count;
+        count == Count::distance || count == Count::width || count == Count::rank) {
+        longest_ = std::max(longest_, instruction.n);
+    }
     void* state = arena_.take(size);
     void* journal = fusion_.guarded[index] ? arena_.take(size) : nullptr;
     return Kernels<D>::make(

@@ -281,6 +281,7 @@ Program Program::parse(std::span<const std::uint8_t> bytes, Domain domain,
         program.instructions.push_back(read_instruction(reader, index));
         Checker(program, index).check();
         program.instructions.back().steady = program.worst_case;
+        program.instructions.back().truth = program.is_truth(program.instructions.back());
     }
     program.outputs.reserve(header.outputs);
     for (std::size_t place = 0; place < header.outputs; ++place) {
@@ -302,6 +303,36 @@ std::int64_t Program::operand_lag(const Instruction& instruction) const noexcept
         if (lag < 0 && source.opcode != Opcode::constant) lag = source.lag;
     });
     return std::max<std::int64_t>(lag, 0);
+}
+
+bool Program::is_truth(const Instruction& instruction) const noexcept {
+    const auto truth = [&](std::uint32_t operand) { return instructions[operand].truth; };
+    switch (instruction.opcode) {
+    case Opcode::constant:
+        return std::isinf(instruction.x);
+    case Opcode::holds_gt:
+    case Opcode::holds_ge:
+    case Opcode::holds_eq:
+        return true;
+    case Opcode::shift: {
+        // What stands for absent values, unless it is itself absent everywhere.
+        const bool hidden = instruction.lag == operand_lag(instruction) + instruction.n;
+        return truth(instruction.a) && (hidden || std::isinf(instruction.x));
+    }
+    case Opcode::neg:
+    case Opcode::slide_max:
+    case Opcode::slide_min:
+    case Opcode::run_max:
+    case Opcode::run_min:
+        return truth(instruction.a);
+    case Opcode::min:
+    case Opcode::max:
+    case Opcode::since:
+    case Opcode::until:
+        return truth(instruction.a) && truth(instruction.b);
+    default:
+        return false;
+    }
 }
 
 bool Program::can_fail(const Instruction& instruction) const noexcept {

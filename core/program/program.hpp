@@ -56,6 +56,7 @@ struct Instruction {
     double x = 0.0;     // value of a constant, or what a shift yields where there is no sample
     std::int64_t lag = 0;
     bool steady = false; // if it is a window, every sample costs the same
+    bool truth = false;  // +inf or -inf wherever it is present, and so are its operands
 };
 
 // A kernel from outside the core, and the instructions that it reads. The caller that runs the
@@ -101,6 +102,9 @@ struct Program {
 
     // The lag shared by the operands of an instruction; constants have no time and do not count.
     [[nodiscard]] std::int64_t operand_lag(const Instruction& instruction) const noexcept;
+
+    // Whether the value of an instruction is a truth value, by those of its operands.
+    [[nodiscard]] bool is_truth(const Instruction& instruction) const noexcept;
 
     // Whether an instruction can make NaN of operands that are none. A finite number that is added
     // or subtracted cannot, nor one that is not 0 as a factor or divisor: predicates such as x

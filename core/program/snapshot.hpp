@@ -85,7 +85,7 @@ class Snapshot {
 
   private:
     // To be raised whenever a part holds something else than before.
-    static constexpr std::uint32_t layout = 5;
+    static constexpr std::uint32_t layout = 6;
 
     std::vector<std::uint8_t> written_;
     std::span<const std::uint8_t> rest_;
