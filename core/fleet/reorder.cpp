@@ -227,8 +227,9 @@ std::optional<Rejected> Reorder::leave(std::uint32_t place, std::int64_t at, boo
                 return Rejected{
                     static_cast<std::size_t>(at), Rejected::Reason::gap, 0, line.left, 0, time};
             }
-            for (double step = 1.0; step < periods; ++step)
-                add(false, line.left + step * (gap / periods),
+            const auto steps = static_cast<std::size_t>(periods);
+            for (std::size_t step = 1; step < steps; ++step)
+                add(false, line.left + static_cast<double>(step) * (gap / periods),
                     [&](std::size_t input) { return held[input]; });
         }
         for (std::size_t input = 0; input < inputs(); ++input)

@@ -100,9 +100,9 @@ class Reorder {
         std::uint64_t touched = 0; // number of the batch that changed it last
     };
     struct Saved {
-        std::uint32_t place;
+        std::uint32_t place = 0;
         Line line;
-        std::size_t end; // of its samples in saved_waiting_
+        std::size_t end = 0; // of its samples in saved_waiting_
     };
 
     std::vector<std::string> names_;

@@ -71,6 +71,7 @@ Reorder Reorder::restore(std::vector<std::string> names, const Settings& setting
         refuse("what waits promises more than there is");
     }
     std::vector<std::string_view> stored;
+    stored.reserve(inputs);
     for (std::uint32_t input = 0; input < inputs; ++input)
         stored.push_back(rest.take_text());
     std::vector<std::size_t> from; // where each input is among those of the state
@@ -114,7 +115,7 @@ Reorder Reorder::restore(std::vector<std::string> names, const Settings& setting
         const auto count = rest.take<std::uint64_t>();
         double before = line.left;
         for (std::uint64_t i = 0; i < count; ++i) {
-            const double time = rest.take<double>();
+            const auto time = rest.take<double>();
             take_values();
             const auto undefined = [](double value) { return std::isnan(value); };
             if (!std::isfinite(time) || !(time > before) || time > line.newest ||

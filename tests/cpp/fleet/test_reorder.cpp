@@ -66,7 +66,7 @@ TEST_CASE("samples leave in the order of their times, each once, whatever the ba
         return (seed >> 8U) % most;
     };
     for (int round = 0; round < 50; ++round) {
-        const double lateness = random(6);
+        const auto lateness = static_cast<double>(random(6));
         Reorder reorder = buffer(lateness);
         std::map<std::int64_t, double> newest;
         std::map<std::int64_t, std::vector<double>> expected;
@@ -76,7 +76,7 @@ TEST_CASE("samples leave in the order of their times, each once, whatever the ba
             std::vector<Sample> samples;
             for (unsigned i = 0; i < 1 + random(9); ++i) {
                 const std::int64_t key = random(3);
-                const double time = batch + random(8);
+                const double time = batch + static_cast<double>(random(8));
                 samples.push_back({key, time, 2 * time});
                 auto& times = expected[key];
                 const bool known = newest.contains(key);
