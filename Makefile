@@ -88,6 +88,7 @@ costs: $(VENV)/.core $(VENV)/.extras ## what a sample costs us, beside the figur
 	$(RUN) benchmarks/early.py 100000 dense
 	$(RUN) benchmarks/stream.py
 	$(RUN) benchmarks/packs.py
+	$(RUN) benchmarks/play.py
 	$(RUN) benchmarks/instructions.py
 
 budget: $(VENV)/.core ## record the instructions of the hot paths, which a test compares: benchmarks/budget.toml

@@ -8,6 +8,7 @@ import secrets
 import signal
 import socket
 import tempfile
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import CommandError, add_time_option, is_trace, pack_named
@@ -19,6 +20,7 @@ from rtamt.texts import pack
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable, Iterator
 
     from rtamt.play.crew import Crew
     from rtamt.play.server import Given
@@ -74,7 +76,11 @@ def run(args: argparse.Namespace) -> int:
     if args.trace is None and is_trace(args.spec):
         args.spec, args.trace = None, args.spec
     given, folder, fragment = _given(args)
-    with _socket(args.port) as listening, tempfile.TemporaryDirectory(prefix="rtamt-play-") as room:
+    with (
+        _stopped_by_signals(),
+        _socket(args.port) as listening,
+        tempfile.TemporaryDirectory(prefix="rtamt-play-") as room,
+    ):
         port = listening.getsockname()[1]
         empty, uploads = os.path.join(room, "empty"), os.path.join(room, "uploads")
         for each in (empty, uploads):
@@ -86,32 +92,45 @@ def run(args: argparse.Namespace) -> int:
         server = uvicorn.Server(
             uvicorn.Config(application(place), log_level="error", lifespan="off", server_header=False)
         )
-        address = f"http://{_HOST}:{port}/{token}/"
-        say(f"{address}{fragment}", flush=True)
-        if not args.no_browser:
-            import webbrowser
-
-            webbrowser.open(f"{address}{fragment}")
-        _serve(server, place.crew, listening)
+        address = f"http://{_HOST}:{port}/{token}/{fragment}"
+        _serve(server, place.crew, listening, partial(_announce, address, browser=not args.no_browser))
     return OK
 
 
-def _serve(server: Any, crew: Crew, listening: socket.socket) -> None:
+def _announce(address: str, *, browser: bool) -> None:
+    say(address, flush=True)
+    if browser:
+        import webbrowser
+
+        webbrowser.open(address)
+
+
+def _serve(server: Any, crew: Crew, listening: socket.socket, announce: Callable[[], None]) -> None:
     """Serve until a signal comes; then end the workers."""
     import asyncio
 
-    def stop(_number: int, _frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, stop)
     loop = asyncio.new_event_loop()
     try:
         with contextlib.suppress(KeyboardInterrupt):  # how it is stopped
+            announce()  # from here on, signals may come
             loop.run_until_complete(server.serve(sockets=[listening]))
         loop.run_until_complete(crew.close())
         loop.run_until_complete(loop.shutdown_asyncgens())
     finally:
         loop.close()
+
+
+@contextlib.contextmanager
+def _stopped_by_signals() -> Iterator[None]:
+    """End in order, so that no file is left behind, also when the process is terminated."""
+
+    def stop(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
         signal.signal(signal.SIGTERM, before)
 
 

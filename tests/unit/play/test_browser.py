@@ -177,6 +177,20 @@ def test_new_variables_get_a_signal(page):
     write(page, "always(temperature >= -1)")
     until(page, "document.querySelector('#charts h3')?.textContent === 'temperature'")
     until(page, f"{WORD} === 'Satisfied'")
+    write(page, "always(level >= -1)")
+    until(page, "document.querySelector('#charts h3')?.textContent === 'level'")
+    click(page, ".signal-head button", 1)
+    until(page, "document.querySelectorAll('.handle').length === 2")
+    write(page, "always(temperature <= 1)")
+    until(page, "document.querySelector('#charts h3')?.textContent === 'temperature'")
+    write(page, "always(level <= 2)")
+    until(page, "document.querySelectorAll('.handle').length === 2")  # what was drawn stays
+    click(page, "#link")
+    until(page, "document.documentElement.dataset.link")
+    decoded = (
+        "import('./page/link.js').then(m => m.decode(document.documentElement.dataset.link.split('#')[1]))"
+    )
+    assert page.run(f"{decoded}.then(saved => Object.keys(saved.signals))") == ["req", "gnt", "level"]
 
 
 def test_points_are_dragged_and_the_verdict_follows(page):
@@ -304,6 +318,16 @@ def test_a_link_contains_the_text_the_signals_and_the_settings(page):
     assert page.run(TEXT) == "always(level <= 2)"
     assert page.run("document.querySelector('input[name=time]:checked').value") == "dense"
     assert page.run(HANDLES) == handles
+
+
+def test_a_link_that_the_browser_does_not_copy_is_shown(page):
+    page.run("navigator.clipboard.writeText = () => Promise.reject(new Error('not allowed'))")
+    click(page, "#link")
+    until(page, "document.getElementById('sharing').open")
+    assert page.run("document.getElementById('shared').value === document.documentElement.dataset.link")
+    click(page, "#sharing button")
+    until(page, "!document.getElementById('sharing').open")
+    assert page.errors == []
 
 
 def test_a_damaged_link_is_a_sentence(browser, address):

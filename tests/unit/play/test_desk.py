@@ -258,6 +258,20 @@ def test_groups_and_enumerations_of_a_recording_are_evaluated_and_replayed(desk,
         assert desk.answer("moment", message, file) == {"error": None, "pending": []}
 
 
+def test_missing_samples_leave_bounds_and_maybe_no_verdict(desk, tmp_path):
+    path = tmp_path / "gaps.csv"
+    path.write_text("time,x,y\n0,5,1\n1,,1\n2,4,1\n")
+    file = {"number": 21, "path": str(path), "name": path.name}
+    message = {**MESSAGE, "text": "eventually(x >= 3)", "period": "", "recording": 21}
+    answer = desk.answer("evaluate", message, file)
+    assert "'x' is missing at sample 1 of gaps.csv" in answer["error"]["message"]
+    held = desk.answer("evaluate", {**message, "period": "1s", "resample": "hold"}, file)
+    assert (held["error"], held["verdict"], held["interval"]) == (None, "satisfied", [2, 2])
+    assert desk.answer("evaluate", {**message, "resample": "hold"}, file)["error"]["message"] == (
+        "to put the signals on one time base, give a period"
+    )
+
+
 def test_long_recordings_are_not_replayed(desk):
     message = {**MESSAGE, "duration": 20_001}
     assert desk.answer("evaluate", message)["error"] is None

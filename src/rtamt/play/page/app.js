@@ -70,6 +70,7 @@ function show(found) {
   ]);
   $("text").setAttribute("aria-invalid", Boolean(found.error));
   if (found.variables) {
+    tidy(found.variables);
     editor.names = state.recording ? state.recording.signals.map((each) => each.name) : found.variables;
     if (!state.recording && found.missing.length) { provide(found.missing); return; }
   }
@@ -95,10 +96,19 @@ const where = ({ start: at }) => {
   return before.length > 1 || state.text.includes("\n") ? `Line ${before.length}, column ${before.at(-1).length + 1}: ` : `Column ${at + 1}: `;
 };
 
-// New variables begin as constants.
+// New variables begin as constants, which go with the variable: names that are being typed leave nothing behind.
+const provided = new Set();
+
+const tidy = (names) => {
+  for (const name of [...provided].filter((each) => !names.includes(each))) {
+    delete state.signals[name];
+    provided.delete(name);
+  }
+};
+
 function provide(names) {
   const unknown = names.filter((name) => !(name in state.signals));
-  for (const name of unknown) state.signals[name] = { hold: true, points: [[0, 0]] };
+  for (const name of unknown) { state.signals[name] = { hold: true, points: [[0, 0]] }; provided.add(name); }
   if (unknown.length) changed({ delay: 0 });
 }
 
@@ -109,7 +119,7 @@ const page = {
   get period() { return state.time === "dense" ? (answer?.period ?? 1) / 10 : answer?.period ?? 1; },
   cursor: () => state.at,
   model: (name) => state.signals[name],
-  change: (name, model, final) => { state.signals[name] = model; changed({ delay: 0, kept: final }); },
+  change: (name, model, final) => { provided.delete(name); state.signals[name] = model; changed({ delay: 0, kept: final }); },
 };
 
 function arrange(names, lines) {
@@ -232,7 +242,9 @@ $("link").addEventListener("click", async () => {
     await navigator.clipboard.writeText(text);
     toast(whole ? "Link copied. Open it with: rtamt play 'LINK'" : "Link copied without the recording, which is too large for it.");
   } catch {
-    toast("The browser does not allow copying: copy the address of this page instead.");
+    $("shared").value = text; // the browser does not allow it
+    $("sharing").showModal();
+    $("shared").select();
   }
 });
 

@@ -41,19 +41,9 @@ export class Follower {
     Object.assign(this, { kind, wish, show, delay, timer: null, busy: false, again: false, sent: 0 });
   }
 
-  // Whether an answer is still to come.
-  get waiting() { return this.busy || this.timer !== null; }
-
   soon(delay = this.delay) {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.send(), delay);
-  }
-
-  forget() {
-    clearTimeout(this.timer);
-    this.timer = null;
-    this.again = false;
-    this.sent += 1;
   }
 
   async send() {
