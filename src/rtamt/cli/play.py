@@ -60,7 +60,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("trace", metavar="TRACE", nargs="?", help="a recording")
     add_time_option(parser)
-    parser.add_argument("--period", metavar="DURATION", default="", help="the sampling period, such as 100ms")
+    parser.add_argument(
+        "--period",
+        metavar="DURATION",
+        default="",
+        help="the sampling period, such as 100ms, unless SPEC declares one",
+    )
     parser.add_argument("--port", metavar="PORT", type=int, default=0, help="the port (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
 

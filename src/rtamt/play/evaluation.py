@@ -47,11 +47,16 @@ class Sources:
 
 
 def parsed(request: Request, sources: Sources) -> Specification:
-    """Return the specification of a request; raises :class:`SpecificationError`."""
+    """Return the specification of a request; raises :class:`SpecificationError`.
+
+    A sampling period that the text declares counts, and not that of the request.
+    """
     if not request.text.strip():
         raise SpecificationError("write a formula, such as always(x >= 3)")
-    period = None if request.dense else request.period
-    return parse(request.text, time=request.time, period=period, folder=sources.folder)
+    spec = parse(request.text, time=request.time, folder=sources.folder)
+    if request.dense or request.period is None or spec.document.sampling is not None:
+        return spec
+    return parse(request.text, time=request.time, period=request.period, folder=sources.folder)
 
 
 def data_of(request: Request, spec: Specification, sources: Sources) -> Any:
@@ -65,9 +70,10 @@ def data_of(request: Request, spec: Specification, sources: Sources) -> Any:
     trace = sources.recordings.trace(sources.file, spec)
     if not request.resample:
         return trace
-    if request.period is None:
+    step = spec.period or request.period
+    if step is None:
         raise UsageError("to put the signals on one time base, give a period")
-    return trace.resample(request.period, request.resample)
+    return trace.resample(step, request.resample)
 
 
 def result_of(request: Request, spec: Specification, sources: Sources) -> Result:
@@ -146,6 +152,7 @@ def _facts(spec: Specification, request: Request) -> dict[str, Any]:
         "variables": list(spec.input_names),
         "missing": [name for name in spec.input_names if name not in request.signals],
         "period": float(spec.period or request.period or 1),
+        "declared": spec.document.sampling is not None,
         "horizon": number(horizon) if horizon == float("inf") else format_duration(Fraction(str(horizon))),
         "warnings": [_warning(each) for each in spec.warnings],
     }

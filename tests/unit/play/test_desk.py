@@ -44,6 +44,14 @@ def test_the_answer_is_that_of_evaluate_and_explain(desk):
     assert answer["thresholds"] == {"req": [3], "gnt": [3]}
 
 
+def test_a_period_that_the_text_declares_replaces_that_of_the_page(desk):
+    text = "sample 500ms\nalways[0:500ms](req <= 5)"
+    answer = desk.answer("evaluate", {**MESSAGE, "text": text, "duration": 4})
+    assert (answer["error"], answer["declared"], answer["period"], answer["samples"]) == (None, True, 0.5, 9)
+    assert (answer["verdict"], answer["step"]) == ("satisfied", 0.5)
+    assert desk.answer("evaluate", MESSAGE)["declared"] is False
+
+
 def test_dense_time_has_the_points_themselves(desk):
     message = {**MESSAGE, "time": "dense", "signals": {**MESSAGE["signals"]}}
     message["signals"]["gnt"] = {"points": [[0, 0], [7.25, 4]], "hold": True}

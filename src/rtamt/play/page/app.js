@@ -71,6 +71,8 @@ function show(found) {
   $("text").setAttribute("aria-invalid", Boolean(found.error));
   if (found.variables) {
     tidy(found.variables);
+    $("period").disabled = found.declared; // by the text
+    $("period").value = found.declared ? `${found.period}s` : state.period;
     editor.names = state.recording ? state.recording.signals.map((each) => each.name) : found.variables;
     if (!state.recording && found.missing.length) { provide(found.missing); return; }
   }
