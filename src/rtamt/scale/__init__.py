@@ -12,6 +12,7 @@ job                   what is done with one recording, on every engine
 manifest              the results so far, in a file: nothing is computed twice
 local                 the engine on this machine: a process pool
 spark                 the engine on Apache Spark
+spark_stream          fleets on streams of Spark, whose state is in RocksDB
 ray                   the engine on Ray Data
 check                 all recordings of a job, new ones by an engine and the others from the manifest
 shard                 a fleet that takes any samples, and rejects those that are wrong one by one

@@ -18,7 +18,7 @@ from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import UNITS, check_unit
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.dates import EXAMPLE, date_in
-from rtamt.scale.shard import LONGEST_KEY, Sample
+from rtamt.scale.shard import Sample, key_problem
 from rtamt.signals.counting import is_implausible
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.time_columns import NAMES
@@ -165,8 +165,9 @@ class MessageReader:
             if isinstance(found, bool) or not isinstance(found, (str, int)):
                 raise TraceError(f"{what} is {_shown(found)}, expected text or an integer")
             key = found if isinstance(found, str) else _digits(found, what)
-        if not key or len(key) > LONGEST_KEY or "\0" in key or not key.isprintable():
-            raise TraceError(f"{what} is {_shown(key)}, expected 1 to {LONGEST_KEY} printable characters")
+        problem = key_problem(key)
+        if problem:
+            raise TraceError(f"{what} {problem}")
         return key
 
     def _time_of(self, data: Mapping[str, Any]) -> float:

@@ -6,6 +6,7 @@ that is read again from a snapshot has the same results.
 
 from __future__ import annotations
 
+import json
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -27,6 +28,18 @@ CAPACITY = 1_000_000
 LONGEST_KEY = 256
 #: Samples that are taken together where a batch has wrong ones: each wrong one takes another call.
 _CHUNK = 256
+
+
+def key_problem(key: str) -> str:
+    """Return why a text cannot be a key, as the end of a sentence; empty if it can.
+
+    >>> key_problem("car-1"), key_problem("")
+    ('', 'is "", expected 1 to 256 printable characters')
+    """
+    if key and len(key) <= LONGEST_KEY and key.isprintable():  # the character 0 is not printable
+        return ""
+    text = json.dumps(key[:100])
+    return f"is {text if len(text) <= 40 else f'{text[:40]}...'}, expected 1 to {LONGEST_KEY} printable characters"
 
 
 class Sample(NamedTuple):
@@ -90,7 +103,8 @@ class Shard:
         **settings: Any,
     ) -> None:
         self.names = tuple(spec.input_names)
-        self._columns = [dict(spec.binding.columns).get(name, name) for name in self.names]
+        #: The recorded names of the variables.
+        self.columns = tuple(dict(spec.binding.columns).get(name, name) for name in self.names)
         if state is None:
             self._fleet = Fleet(spec, capacity, gaps="restart", **settings)
         else:
@@ -108,7 +122,7 @@ class Shard:
         taken = Taken()
         if not samples:
             return taken
-        batch = _Batch(samples, self._columns)
+        batch = _Batch(samples, self.columns)
         if self._update(batch, 0, len(samples), taken) is None:
             return taken
         waiting = [(first, min(first + _CHUNK, len(samples))) for first in range(0, len(samples), _CHUNK)]

@@ -1,4 +1,4 @@
-"""The engine on Apache Spark: ``check`` for data frames and paths; needs ``rtamt[spark]`` and Java 17.
+"""The engine on Apache Spark: ``check`` for data frames and paths, ``stream``; needs ``rtamt[spark]`` and Java 17.
 
 Recordings are the rows of a data frame, which Spark distributes; a suite is sent as bytes of programs. Results may be
 kept in a Parquet dataset: then only those recordings are checked that it does not have, by an anti-join on recording,
@@ -18,6 +18,7 @@ from rtamt.extras import library
 from rtamt.fleet.verdict_table import Row, VerdictTable
 from rtamt.scale.job import SEMANTICS_VERSION, Job
 from rtamt.scale.recordings import Recording, recordings_of
+from rtamt.scale.spark_stream import stream
 from rtamt.signals.time_columns import is_stamps, split_unit
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
     from rtamt.fleet.suite import Suite
     from rtamt.scale.job import ReaderOptions
+
+__all__ = ["check", "stream", "tables"]
 
 #: What the results of a recording depend on.
 _KEYS = ("recording", "etag", "program", "options", "semantics")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 
 import pytest
 
@@ -11,35 +10,12 @@ import rtamt
 from rtamt.scale.check import checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
+from tests.unit.scale.conftest import SPARK
 from tests.unit.scale.recorded import columns, expected, suite, write_csv
 
-pytestmark = [
-    pytest.mark.skipif(
-        shutil.which("java") is None and "JAVA_HOME" not in os.environ,
-        reason="there is no Java here: apt-get install openjdk-17-jre-headless",
-    ),
-    pytest.mark.filterwarnings("ignore:PySpark does not yet fully support pandas"),
-    pytest.mark.filterwarnings("ignore::ResourceWarning"),
-]
+pytestmark = SPARK
 
 ROWS = ("recording", "requirement", "robustness", "satisfied", "first_violation", "unchecked", "error")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def session(tmp_path_factory):
-    from pyspark.sql import SparkSession
-
-    from rtamt.scale import spark
-
-    settings = {"spark.sql.shuffle.partitions": "1", "spark.default.parallelism": "1"}
-    settings["spark.sql.warehouse.dir"] = str(tmp_path_factory.mktemp("spark"))
-    for name, value in settings.items():
-        SparkSession.builder.config(name, value)
-    SparkSession.builder.master("local[1]")
-    found = spark._session()
-    found.sparkContext.setLogLevel("ERROR")
-    yield found
-    found.stop()
 
 
 @pytest.fixture
