@@ -53,7 +53,9 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
                 ("requirement",),
             ),
             Metric(
-                "rtamt_late_total", "counter", "samples whose time is not after the one before of their key"
+                "rtamt_late_total",
+                "counter",
+                "samples that came too late: after a newer one of their key, or later than the lateness",
             ),
             Metric(
                 "rtamt_rejected_total",

@@ -34,13 +34,15 @@ _EPILOG = """\
 messages: one sample each, the values by name: {"time": 0.0, "speed": 20.5}, fields of nested objects with dots.
 The key, such as a vehicle, is the key of the message, or the field that --key names. The time is a number or a date in
 a field time, t, timestamp, stamp or datetime, or the one that --time-column names. The samples of one key are in one
-partition, one period apart; after a gap, the trace of the key starts again.
+partition, one period apart; after a gap, the trace of the key starts again. They are in the order of their times, or
+come late by at most --lateness.
 
 output: {"key": "car-1", "time": 0.0, "robustness": 3.0, "satisfied": true}, with the key as the key of the message;
 the time is that of the sample minus the horizon. "satisfied" is null at robustness 0, whose sign does not decide it;
 with --semantics boolean it is always decided. Infinities are the strings "inf" and "-inf", because JSON has none.
 
-A message that is not a sample, and a sample whose time is not after the one before of its key, go to the topic of
+A message that is not a sample, and a sample whose time is not after the one before of its key, or behind by more than
+--lateness, go to the topic of
 dead letters unchanged, with the headers rtamt.error, rtamt.reason (rejected or late), rtamt.topic, rtamt.partition
 and rtamt.offset. The other samples of the key are not affected.
 
@@ -81,6 +83,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="FRACTION",
         help="the allowed deviation of the gap between samples, as a fraction of the period",
+    )
+    reading.add_argument(
+        "--lateness",
+        metavar="DURATION",
+        help="how late a sample may arrive: seconds, or with a unit, such as 2s; samples of a key then come in any "
+        "order, and wait until one is newer by that (default: they come in the order of their times)",
     )
     group = options(parser, "Kafka")
     group.add_argument("--brokers", required=True, metavar="HOST:PORT", help="brokers, separated by commas")
@@ -169,6 +177,7 @@ def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
         raise CommandError("the topics of samples, results and dead letters must be three different ones")
     given: dict[str, Any] = {} if args.capacity is None else {"capacity": args.capacity}
     given |= {} if args.tolerance is None else {"tolerance": args.tolerance}
+    given |= {} if args.lateness is None else {"lateness": args.lateness}
     worker = Worker(spec, reader, settings, say=complain, metrics=metrics, **given)
     before = [
         (each, signal.signal(each, lambda *_: worker.stop())) for each in (signal.SIGTERM, signal.SIGINT)

@@ -20,6 +20,8 @@ from rtamt.signals.counting import is_implausible
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.fleet.updates import FleetUpdate
+    from rtamt.language.units.durations import Duration
     from rtamt.specification import Specification
 
 #: The largest number of keys of a shard, by default; memory is used only for those that have come.
@@ -64,7 +66,7 @@ class Result(NamedTuple):
 
 
 class Rejected(NamedTuple):
-    """A sample that changes nothing; ``position``: in the batch; ``late``: its time is not after the one before."""
+    """A sample that changes nothing; ``position``: in the batch; ``late``: it came too late."""
 
     position: int
     error: str
@@ -83,7 +85,9 @@ class Shard:
     """The monitors of all keys of a shard.
 
     ``state``: what :meth:`snapshot` returned, perhaps for another specification. A gap between two samples of a key
-    restarts its trace. ``settings``: those of ``Specification.monitor``.
+    restarts its trace. ``lateness``: how late a sample may arrive (:class:`rtamt.Fleet`); by default those of a key
+    come in the order of their times. Where a sample that has waited has no value, the trace of its key starts again.
+    ``settings``: those of ``Specification.monitor``.
 
     >>> import rtamt
     >>> shard = Shard(rtamt.parse("x >= 3"))
@@ -100,15 +104,19 @@ class Shard:
         *,
         capacity: int = CAPACITY,
         state: bytes | None = None,
+        lateness: Duration | None = None,
         **settings: Any,
     ) -> None:
+        self._waits = lateness is not None
         self.names = tuple(spec.input_names)
         #: The recorded names of the variables.
         self.columns = tuple(dict(spec.binding.columns).get(name, name) for name in self.names)
         if state is None:
-            self._fleet = Fleet(spec, capacity, gaps="restart", **settings)
+            self._fleet = Fleet(spec, capacity, lateness=lateness, gaps="restart", **settings)
         else:
-            self._fleet = Fleet.restore(spec, state, capacity=capacity, gaps="restart", **settings)
+            self._fleet = Fleet.restore(
+                spec, state, capacity=capacity, lateness=lateness, gaps="restart", **settings
+            )
 
     def __len__(self) -> int:
         return len(self._fleet)
@@ -139,6 +147,10 @@ class Shard:
                 plausible = isfinite(time) and not is_implausible(time)
                 late = isinstance(error, TraceError) and error.variable == "time" and plausible
                 text = str(error).replace(" at index 0 of the batch", "", 1)
+                key = samples[first].key
+                if self._waits and isinstance(error, EvaluationError) and key in self._fleet:
+                    self._fleet.drop([key])  # or the sample that has no value would be taken again and again
+                    text += "; the trace of the key starts again"
                 taken.rejected.append(Rejected(first, text, late))
                 continue
             index = getattr(error, "index", None)
@@ -162,7 +174,23 @@ class Shard:
             known.tolist(), update.times[known].tolist(), update.values[known].tolist(), strict=True
         ):
             taken.results.append(Result(batch.samples[first + i].key, time, value))
+        if self._waits:
+            self._released(batch, first, update, taken)
         return None
+
+    def _released(self, batch: _Batch, first: int, update: FleetUpdate, taken: Taken) -> None:
+        """Note what samples have made known that waited, in the order of their times, and which came too late."""
+        out = update.released
+        for key, time, value in zip(out.keys.tolist(), out.times.tolist(), out.values.tolist(), strict=True):
+            taken.results.append(Result(key, time, value))
+        taken.results.sort(key=lambda result: result.time)
+        for i in np.flatnonzero(update.late).tolist():
+            sample = batch.samples[first + i]
+            text = (
+                f"key {sample.key!r}: the sample at {sample.time:.15g} s is late: one that is newer by the lateness "
+                f"has come, or one of the same time"
+            )
+            taken.rejected.append(Rejected(first + i, text, True))
 
 
 class _Batch:

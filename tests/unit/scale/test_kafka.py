@@ -153,6 +153,20 @@ def test_what_is_no_sample_goes_to_the_dead_letters(brokers, tmp_path):
     assert sorted(found, key=repr) == sorted(wrong, key=repr)
 
 
+def test_late_samples_and_those_that_wait_are_in_the_checkpoint(brokers, tmp_path):
+    speeds = [20, 31, 25, 28, 22, 29]
+    late = [0, 2, 1, 4, 3, 5]
+    for part in (late[:2], late[2:], [0]):
+        send(brokers, "late", [sample("a", t, speeds[t]) for t in part])
+        said = process(brokers, "late", tmp_path, "--until-end", "--lateness", "2s")
+        _, text = said.communicate(timeout=60)
+        assert said.returncode == 0, text
+    assert text == "rtamt: 0 samples, 0 results, 0 of them violations, 1 late, 0 rejected\n"
+    found = [(row["key"], row["time"], row["robustness"]) for row in rows(brokers, "late")]
+    assert found == offline({"a": speeds})[: len(found)]
+    assert len(found) == 2  # up to 3 s, which 5 s has released, less the horizon
+
+
 def test_partitions_move_between_workers_with_their_state(brokers, tmp_path):
     keys = [f"car-{i}" for i in range(40)]
     series = {key: [20 + i % 15, 25, 28 - i % 7, 31, 22] for i, key in enumerate(keys)}

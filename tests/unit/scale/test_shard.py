@@ -27,14 +27,14 @@ def samples():
     return found
 
 
-def taken_in(batches):
-    shard, results, rejected, at = Shard(SPEC), [], [], 0
+def taken_in(batches, lateness=None):
+    shard, results, rejected, at = Shard(SPEC, lateness=lateness), [], [], 0
     for batch in batches:
         taken = shard.take(batch)
         results += taken.results
         rejected += [(at + each.position, each.error, each.late) for each in taken.rejected]
         at += len(batch)
-        shard = Shard(SPEC, state=shard.snapshot())
+        shard = Shard(SPEC, state=shard.snapshot(), lateness=lateness)
     return results, rejected
 
 
@@ -70,6 +70,40 @@ def test_what_is_left_equals_offline_robustness():
             }
     assert set(results) == expected
     assert len(results) == len(expected) > 50
+
+
+def test_samples_that_wait_do_not_depend_on_batches():
+    given = samples()
+    results, rejected = taken_in(([each] for each in given), "4s")
+    assert len(results) > 50
+    assert {"late" if late else error.rpartition("; ")[2] for _, error, late in rejected} > {
+        "late",
+        "the trace of the key starts again",
+    }
+    for batches in ([given], [given[:7], given[7:300], [], given[300:]]):
+        found = taken_in(batches, "4s")
+        assert sorted(found[0]) == sorted(results)
+        assert sorted(found[1]) == rejected
+
+
+def test_samples_in_any_order_have_the_results_of_those_in_order():
+    random = np.random.default_rng(4)
+    values = random.uniform(0, 16, 60).tolist()
+    shard, results = Shard(SPEC, lateness="5s"), []
+    order = sorted(range(60), key=lambda i: i + random.uniform(0, 5))
+    assert order != sorted(order)
+    taken = [shard.take([Sample("a", float(i), (values[i],))]) for i in order]
+    assert not any(each.rejected for each in taken)
+    results = [result for each in taken for result in each.results]
+    signal = SPEC.evaluate({"time": np.arange(60.0), "x": values}).signal
+    known = list(zip(signal.times.tolist(), signal.values.tolist(), strict=True))[: len(results)]
+    assert [result[1:] for result in results] == known
+    assert len(results) > 50
+    (late,) = shard.take([Sample("a", 7.0, (1.0,))]).rejected
+    assert (late.late, late.error) == (
+        True,
+        "key 'a': the sample at 7 s is late: one that is newer by the lateness has come, or one of the same time",
+    )
 
 
 def test_messages_name_the_key():
