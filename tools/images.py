@@ -26,6 +26,8 @@ from tools import patterns, signal_patterns, walkthrough
 
 from rtamt.analysis import diff
 from rtamt.mining import mine
+from rtamt.notebook import view
+from rtamt.notebook.static import StaticView
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
@@ -54,6 +56,7 @@ def draw() -> None:
     analysis()
     failed_test()
     mining()
+    notebook()
     gallery()
     reports()
     play()
@@ -104,6 +107,28 @@ def how_to() -> None:
             Page(page.name, page.read_text(encoding="utf-8")).run()
             shrink(Path(plot))
             shutil.move(plot, IMAGES / f"{name}.png")
+
+
+def notebook() -> None:
+    """Photograph the view of docs/how-to/notebooks.md."""
+    page = (IMAGES.parent / "how-to" / "notebooks.md").read_text(encoding="utf-8")
+    names: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(compile(block, "notebooks.md", "exec"), names)  # noqa: S102 - our own page
+    shown = view(names["result"], height=900)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "view.html")
+        file.write_text(
+            f"<!DOCTYPE html><body>{StaticView(shown.page, '', 900)._repr_html_()}", encoding="utf-8"
+        )
+        with chromium(Path(folder, "profile")) as browser:
+            browser.send(
+                "Emulation.setDeviceMetricsOverride", width=900, height=920, deviceScaleFactor=1, mobile=False
+            )
+            browser.open(file.as_uri())
+            time.sleep(1)  # the frame draws its charts
+            browser.screenshot(IMAGES / "notebook.png")
+    shrink(IMAGES / "notebook.png")
 
 
 def gallery() -> None:

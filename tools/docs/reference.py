@@ -257,6 +257,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
     "Plot": ("", ("Result.plot", "Result.plot_tree")),
     "Assert in tests": ("", ("assert_satisfied", "rtamt.assertions.UnsatisfiedError")),
+    "Notebooks": ("", ("rtamt.notebook", "rtamt.notebook.widget.ResultWidget")),
     "Read recordings": ("", ("read", "scan", "Trace", "Channel")),
     "Extend": ("", ("rtamt.extend", "rtamt.testing")),
     "Search": ("", ("rtamt.search",)),

@@ -36,6 +36,25 @@ class Band:
     robustness: float
 
 
+#: Samples up to which reports and notebooks show bounds after each of them.
+_SHORT = 8192
+
+
+def short_band(result: Result) -> Band | None:
+    """Return the bounds after each sample; None for long traces, and for operators that have none.
+
+    >>> import rtamt
+    >>> short_band(rtamt.parse("always(x >= 3)").evaluate({"x": [4] * 10_000})) is None
+    True
+    """
+    if result.trace.samples > _SHORT:
+        return None
+    try:
+        return band(result)
+    except UsageError:  # a custom operator has no bounds
+        return None
+
+
 def band(result: Result) -> Band:
     """Return the bounds of a result's robustness at the start of its trace, as they were after each sample.
 

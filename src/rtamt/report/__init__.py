@@ -21,6 +21,7 @@ chart.js       one chart: lines, intervals, cursors
 card.js        one card: its charts, and the formula as a tree
 controls.js    legends, tool bar, keys, export
 matrix.js      filter, sort, search, deep links, themes
+frame.js       zoom and cursor, from and to the page around a frame
 =============  =====================================================================
 """
 

@@ -32,7 +32,7 @@ _SIGNS = {"satisfied": "✓", "violated": "✗", "error": "!", "unchecked": "–
 #: Sentences about causes that a card holds.
 _CAUSES = 200
 #: In the order in which they are run.
-_SCRIPTS = ("lines.js", "times.js", "chart.js", "card.js", "controls.js", "matrix.js")
+_SCRIPTS = ("lines.js", "times.js", "chart.js", "card.js", "controls.js", "matrix.js", "frame.js")
 
 
 @dataclass(frozen=True, slots=True)

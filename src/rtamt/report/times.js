@@ -86,6 +86,7 @@ class Timeline {
     const start = Math.min(Math.max(low, first), last - width);
     this.view = [start, start + width];
     this.cards.forEach((card) => card.draw());
+    Timeline.changed();
     if (alone || !Timeline.synchronised) return;
     for (const other of Timeline.all.values()) {
       if (other !== this) other.look(low - this.start + other.start, high - this.start + other.start, true);
@@ -104,6 +105,7 @@ class Timeline {
   point(cursor) {
     this.cursor = cursor;
     this.cards.forEach((card) => card.point());
+    Timeline.changed();
   }
 
   mark(which, position) {
@@ -119,3 +121,4 @@ class Timeline {
 }
 Timeline.all = new Map();
 Timeline.synchronised = true;
+Timeline.changed = () => {}; // what is seen or pointed at

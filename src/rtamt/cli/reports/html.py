@@ -10,9 +10,9 @@ from rtamt.cli.command import CommandError, pack_named, short, write_output
 from rtamt.cli.reading_options import instant, whole_recording
 from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
-from rtamt.errors import StlError, UsageError
+from rtamt.errors import StlError
 from rtamt.lazy_dataclasses import replace
-from rtamt.plot.band import Band, band
+from rtamt.plot.band import short_band
 from rtamt.plot.scene import scene
 from rtamt.readers.sql import shown
 from rtamt.report import File, Formula, Page, Row
@@ -23,13 +23,10 @@ if TYPE_CHECKING:
     from rtamt.cli.outcome import Outcome, Requirement
     from rtamt.cli.reading_options import Reading
     from rtamt.plot.clock import Clock
-    from rtamt.results import Result
     from rtamt.specification import Specification
 
 #: Characters of a specification that a page shows.
 _TEXT = 20_000
-#: Samples up to which a page shows bounds after each of them.
-_SAMPLES = 8192
 
 
 class HtmlReport:
@@ -76,7 +73,7 @@ class HtmlReport:
             try:
                 seen = scene(outcome.result, instant(self._at, outcome.result))
                 self._clock = seen.clock
-                seen = replace(seen, band=_band(outcome.result))
+                seen = replace(seen, band=short_band(outcome.result))
             except StlError as error:
                 if self._at is not None:
                     raise CommandError(f"{outcome.trace}: {error}") from error
@@ -135,16 +132,6 @@ def _facts(path: str) -> str:
     status = os.stat(path)
     changed = datetime.fromtimestamp(status.st_mtime, timezone.utc)
     return f"{status.st_size} bytes, modified {changed:%Y-%m-%d %H:%M} UTC"
-
-
-def _band(result: Result) -> Band | None:
-    """Return what was known after each sample; None for long traces."""
-    if result.trace.samples > _SAMPLES:
-        return None
-    try:
-        return band(result)
-    except UsageError:  # an operator with code of its own has no bounds
-        return None
 
 
 def _row(outcome: Outcome) -> Row:
