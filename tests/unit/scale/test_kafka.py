@@ -298,6 +298,20 @@ def test_samples_that_the_broker_no_longer_has_are_an_error(brokers, tmp_path):
     )
 
 
+def test_a_damaged_checkpoint_stops_the_worker_and_stays(brokers, tmp_path):
+    send(brokers, "damaged", [sample("a", t, 7) for t in range(5)])
+    worker(brokers, "damaged", tmp_path).run()
+    (path,) = (tmp_path / "group-damaged" / "damaged").iterdir()
+    path.write_bytes(path.read_bytes()[:-1])
+    before = path.read_bytes()
+    with pytest.raises(rtamt.UsageError) as caught:
+        worker(brokers, "damaged", tmp_path).run()
+    assert str(caught.value) == (
+        f"'{path}' is no checkpoint of rtamt, or a damaged one: delete it to read the partition from its start"
+    )
+    assert path.read_bytes() == before
+
+
 def test_latest_begins_with_new_messages_and_stays_there(brokers, tmp_path):
     send(brokers, "latest", [sample("a", t, 7) for t in range(5)])
     first = worker(brokers, "latest", tmp_path, beginning=False)
