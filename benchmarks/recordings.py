@@ -21,7 +21,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 import rtamt
-from rtamt.scale.check import ENGINES, checked
+from rtamt.scale.engines import ENGINES, checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 

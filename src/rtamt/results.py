@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from rtamt.explain.report import Explanation
+    from rtamt.explain.explanation import Explanation
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import DomainTrace

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import rtamt
 from rtamt.plot.scene import scene
-from rtamt.report.data import data_of
+from rtamt.report.scene_data import data_of
 from rtamt.report.store import Store
 
 MODES = "enum Mode { MANUAL, AUTO = 4, RTL } input Mode mode output bool p float x "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import rtamt
 from rtamt.compiler.program import Program
-from rtamt.explain.report import Explanation
+from rtamt.explain.explanation import Explanation
 from rtamt.language.formula import Formula
 from rtamt.verdicts.dense_causation import DenseCausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor

@@ -244,7 +244,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         ),
     ),
     "Very many recordings": (
-        "", ("Suite", "VerdictTable", "rtamt.scale", "rtamt.scale.check", "rtamt.scale.spark", "rtamt.scale.ray")
+        "", ("Suite", "VerdictTable", "rtamt.scale", "rtamt.scale.engines", "rtamt.scale.spark", "rtamt.scale.ray")
     ),
     "Live streams on engines": (
         "",
@@ -254,7 +254,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         ),
     ),
     "Metrics": ("", ("rtamt.metrics",)),
-    "Explain": ("", ("Result.explain", "rtamt.explain.report.Explanation")),
+    "Explain": ("", ("Result.explain", "rtamt.explain.explanation.Explanation")),
     "Plot": ("", ("Result.plot", "Result.plot_tree")),
     "Assert in tests": ("", ("assert_satisfied", "rtamt.assertions.UnsatisfiedError")),
     "Notebooks": ("", ("rtamt.notebook", "rtamt.notebook.widget.ResultWidget")),

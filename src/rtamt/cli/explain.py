@@ -10,12 +10,12 @@ from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
-from rtamt.explain.report import SHORT
+from rtamt.explain.explanation import SHORT
 
 if TYPE_CHECKING:
     import argparse
 
-    from rtamt.explain.report import Explanation
+    from rtamt.explain.explanation import Explanation
 
 _DESCRIPTION = """\
 Explain why a trace satisfies or violates a requirement: the first violation, the critical point (the predicate

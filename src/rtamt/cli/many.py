@@ -19,7 +19,7 @@ from rtamt.extras import library
 from rtamt.files import replacing
 from rtamt.fleet.suite import Suite
 from rtamt.fleet.verdict_table import VerdictTable, arrow_fields
-from rtamt.scale.check import checked
+from rtamt.scale.engines import checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from rtamt.fleet.verdict_table import Row
-    from rtamt.scale.check import Progress as Far
+    from rtamt.scale.engines import Progress as Far
 
 #: Errors that are printed; the table has all.
 _PRINTED = 10

@@ -19,7 +19,7 @@ from rtamt.specification import Specification, result_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from rtamt.explain.report import Explanation
+    from rtamt.explain.explanation import Explanation
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics

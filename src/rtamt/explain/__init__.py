@@ -18,8 +18,8 @@ minimise     remove intervals while the verdict is still forced
 readings     the samples that a predicate depends on
 attained     where windows attain their values
 description  intervals of predicates and the samples they read, as data and in words
-report       the explanation as data and text
-sentences    the sentences of an explanation, the same in every output
+explanation  the explanation as data and text
+wording      the sentences of an explanation, the same in every output
 ===========  =======================================================================
 
 Exact properties, which the tests verify by experiment:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rtamt.explain.explanation import Listed, Reading, Stretch
 from rtamt.explain.readings import Readings
-from rtamt.explain.report import Listed, Reading, Stretch
-from rtamt.explain.sentences import predicate_text, reading
+from rtamt.explain.wording import predicate_text, reading
 from rtamt.language.formula import Var, types_of, variables
 from rtamt.language.value_types import value_text
 from rtamt.lazy_dataclasses import replace
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from rtamt.engine import TimeAxis
+    from rtamt.explain.explanation import CriticalPoint
     from rtamt.explain.minimise import Interval
-    from rtamt.explain.report import CriticalPoint
     from rtamt.language.formula import Formula
     from rtamt.rewrite.structure import Structure
     from rtamt.signals.instants import StepFunction

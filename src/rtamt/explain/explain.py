@@ -13,12 +13,12 @@ from rtamt.engine import Evaluators, engine_of
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description
+from rtamt.explain.explanation import CriticalPoint, Explanation, Listed
 from rtamt.explain.minimise import Forcing, intervals_of, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
-from rtamt.explain.report import CriticalPoint, Explanation, Listed
-from rtamt.explain.sentences import cause, predicate_text, summary
 from rtamt.explain.signals import Signals, truths
+from rtamt.explain.wording import cause, predicate_text, summary
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import PAGE
 from rtamt.rewrite.semantics import boolean, no_verdict

@@ -26,7 +26,7 @@ from rtamt.texts import parse
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.explain.report import Explanation, Stretch
+    from rtamt.explain.explanation import Explanation, Stretch
     from rtamt.play.messages import Request
     from rtamt.play.recordings import File, Recordings
     from rtamt.results import Result

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Evaluators
 from rtamt.errors import UsageError
-from rtamt.explain.sentences import predicate_text
+from rtamt.explain.wording import predicate_text
 from rtamt.language.formula import Apply, Var, variables
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
@@ -22,7 +22,7 @@ from rtamt.verdicts.robustness_and_truth import outputs_under
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from rtamt.explain.report import Explanation, Reading, Stretch
+    from rtamt.explain.explanation import Explanation, Reading, Stretch
     from rtamt.language.formula import Formula
     from rtamt.results import Result
     from rtamt.signals.signal import Signal

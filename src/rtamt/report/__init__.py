@@ -3,14 +3,14 @@
 The report needs no network and no server. The template ``page.html``, the scripts, ``report.css`` and uPlot
 (``vendor/``) are embedded in the page; samples are compressed arrays that a card decodes when it is opened.
 
-=======  ====================================================
-module   purpose
-=======  ====================================================
-page     the text of the page, readable without scripts
-data     a scene as compact JSON
-signals  signals that no requirement reads
-store    the arrays of a page, compressed, each once
-=======  ====================================================
+==========  ==============================================
+module      purpose
+==========  ==============================================
+page        the text of the page, readable without scripts
+scene_data  a scene as compact JSON
+signals     signals that no requirement reads
+store       the arrays of a page, compressed, each once
+==========  ==============================================
 
 =============  =====================================================================
 script         purpose

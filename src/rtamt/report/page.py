@@ -15,7 +15,7 @@ import numpy as np
 from rtamt.errors import readable
 from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.report.data import data_of
+from rtamt.report.scene_data import data_of
 from rtamt.report.signals import BUDGET, signals_of
 from rtamt.report.store import Store
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.lines import Line
-from rtamt.report.data import line_data
+from rtamt.report.scene_data import line_data
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -14,7 +14,7 @@ local                 the engine on this machine: a process pool
 spark                 the engine on Apache Spark
 spark_stream          fleets on streams of Spark, whose state is in RocksDB
 ray                   the engine on Ray Data
-check                 all recordings of a job, new ones by an engine and the others from the manifest
+engines               the list of engines, and all recordings of a job: new ones by an engine
 shard                 a fleet that takes any samples, and rejects those that are wrong one by one
 messages              messages of a broker to samples: JSON, Avro, protobuf
 avro                  messages in Avro, whose schemas are bounded

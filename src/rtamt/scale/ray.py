@@ -36,7 +36,7 @@ def check(recordings: Iterable[str], suite: Suite, **options: Unpack[ReaderOptio
 def tables(
     job: Job, recordings: Sequence[Recording], jobs: int | None = None
 ) -> Iterator[tuple[Recording, VerdictTable]]:
-    """Yield the rows of each recording, see :data:`rtamt.scale.check.ENGINES`; ``jobs``: the tasks."""
+    """Yield the rows of each recording, see :data:`rtamt.scale.engines.ENGINES`; ``jobs``: the tasks."""
     select = job.suite.select
     names = VerdictTable([], select).columns
     rows: list[Row] = []

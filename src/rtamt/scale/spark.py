@@ -86,7 +86,7 @@ def check(
 def tables(
     job: Job, recordings: Sequence[Recording], jobs: int | None = None
 ) -> Iterator[tuple[Recording, VerdictTable]]:
-    """Yield the rows of each recording, see :data:`rtamt.scale.check.ENGINES`; ``jobs``: the tasks."""
+    """Yield the rows of each recording, see :data:`rtamt.scale.engines.ENGINES`; ``jobs``: the tasks."""
     library("pyspark", "rtamt.scale.spark", "spark")
     spark, select = _session(), job.suite.select
     tasks = jobs or spark.sparkContext.defaultParallelism

@@ -15,7 +15,7 @@ import numpy as np
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.language.units.library import in_unit, parsed, registry, same_text
+from rtamt.language.units.pint_units import in_unit, parsed, registry, same_text
 from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:

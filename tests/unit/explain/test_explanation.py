@@ -9,7 +9,7 @@ import pytest
 
 import rtamt
 from rtamt.errors import UsageError
-from rtamt.explain.report import Reading
+from rtamt.explain.explanation import Reading
 from rtamt.language.operators import STL
 
 TEXT = "always(req >= 3 -> eventually[0:2](gnt >= 3))"

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.explain.explanation import Listed
 from rtamt.explain.minimise import Forcing
-from rtamt.explain.report import Listed
 from rtamt.explain.shares import sharing
 from rtamt.signals.instants import Cells
 

@@ -15,7 +15,7 @@ import rtamt
 from rtamt.cli import main
 from rtamt.plot.scene import scene
 from rtamt.report import Formula, Page, Row
-from rtamt.report.data import data_of
+from rtamt.report.scene_data import data_of
 from rtamt.report.signals import signals_of
 from rtamt.report.store import Store
 

@@ -15,7 +15,7 @@ import pytest
 
 import rtamt
 from rtamt.cli import main
-from rtamt.scale.check import Progress, checked
+from rtamt.scale.engines import Progress, checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 from tests.unit.scale.recorded import DeadlyJob, expected, suite, write_csv

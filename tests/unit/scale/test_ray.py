@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rtamt.scale.check import checked
+from rtamt.scale.engines import checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 from tests.unit.scale.recorded import suite, write_csv

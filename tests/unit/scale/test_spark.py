@@ -7,7 +7,7 @@ import os
 import pytest
 
 import rtamt
-from rtamt.scale.check import checked
+from rtamt.scale.engines import checked
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 from tests.unit.scale.conftest import SPARK

@@ -22,13 +22,13 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
-from rtamt.language.units.library import UnknownUnitError, is_none, resolved, shortest_text, unit_text
+from rtamt.language.units.pint_units import UnknownUnitError, is_none, resolved, shortest_text, unit_text
 from rtamt.lazy_dataclasses import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.language.units.library import Powers, Resolved
+    from rtamt.language.units.pint_units import Powers, Resolved
 
 #: Kinds of findings.
 DIMENSION, SCALE, UNCHECKED = "dimension", "scale", "unchecked"

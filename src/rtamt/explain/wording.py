@@ -12,7 +12,7 @@ from rtamt.language.printing.writing import PAGE
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rtamt.explain.report import CriticalPoint, Stretch
+    from rtamt.explain.explanation import CriticalPoint, Stretch
     from rtamt.language.formula import Formula
 
 _NO_PREDICATE = {
