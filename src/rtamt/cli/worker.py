@@ -42,9 +42,9 @@ the time is that of the sample minus the horizon. "satisfied" is null at robustn
 with --semantics boolean it is always decided. Infinities are the strings "inf" and "-inf", because JSON has none.
 
 A message that is not a sample, and a sample whose time is not after the one before of its key, or behind by more than
---lateness, go to the topic of
-dead letters unchanged, with the headers rtamt.error, rtamt.reason (rejected or late), rtamt.topic, rtamt.partition
-and rtamt.offset. The other samples of the key are not affected.
+--lateness, go to the topic of dead letters unchanged, with the headers rtamt.error, rtamt.reason (rejected or late),
+rtamt.topic, rtamt.partition and rtamt.offset. One that is too large for that topic goes there without key and value,
+with the header rtamt.omitted. The other samples of the key are not affected.
 
 Checkpoints are written after the broker has confirmed the results: a state and an offset, in one object for each
 partition. After a crash or a kill, the same command continues there, and nothing is lost. Results after the last

@@ -250,7 +250,21 @@ class Worker:
             "rtamt.offset": str(message.offset()),
         }
         coded = [(name, text.encode(errors="replace")) for name, text in headers.items()]
-        self._produce(self._settings.dead_letters, message.value(), message.key(), coded)
+        try:
+            self._produce(self._settings.dead_letters, message.value(), message.key(), coded)
+        except self._kafka.KafkaException as wrong:
+            if not self._is_too_large(wrong.args[0]):
+                raise
+            self._bury_alone(message, coded)
+
+    def _is_too_large(self, error: Any) -> bool:
+        return bool(error.code() == self._kafka.KafkaError.MSG_SIZE_TOO_LARGE)
+
+    def _bury_alone(self, message: Any, headers: Sequence[tuple[str, bytes]]) -> None:
+        """Send a dead letter without key and value, which are too large: a worker would end at it again and again."""
+        size = len(message.value() or b"") + len(message.key() or b"")
+        omitted = ("rtamt.omitted", f"key and value: {size} bytes are too large for the topic".encode())
+        self._produce(self._settings.dead_letters, None, None, [*headers, omitted])
 
     def _produce(self, topic: str, value: bytes | None, key: bytes | None, headers: Any = None) -> None:
         more = {} if headers is None else {"headers": headers}
@@ -269,7 +283,12 @@ class Worker:
         return True
 
     def _undelivered(self, error: Any, message: Any) -> None:
-        if error is not None and self._failure is None:
+        if error is None:
+            return
+        is_letter = message.topic() == self._settings.dead_letters and message.value() is not None
+        if is_letter and self._is_too_large(error):
+            self._bury_alone(message, message.headers() or [])
+        elif self._failure is None:
             self._failure = f"the broker has not taken a message for '{message.topic()}': {error.str()}"
 
     def _fail(self) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from confluent_kafka import Consumer, Producer, TopicPartition
+from confluent_kafka import Consumer, KafkaError, Producer, TopicPartition
 
 import rtamt
 from rtamt.cli import main
@@ -151,6 +151,39 @@ def test_what_is_no_sample_goes_to_the_dead_letters(brokers, tmp_path):
         assert {"rtamt.partition", "rtamt.offset"} <= headers.keys()
         found.append(((letter.key(), letter.value()), headers["rtamt.reason"], headers["rtamt.error"]))
     assert sorted(found, key=repr) == sorted(wrong, key=repr)
+
+
+def test_a_message_too_large_for_the_dead_letters_does_not_end_the_worker(brokers, tmp_path):
+    producer = Producer({"bootstrap.servers": brokers, "message.max.bytes": 3_000_000})
+    for key, value in ((b"a", b"x" * 1_000_100), sample("a", 0, 7)):
+        producer.produce("large", value, key)
+    assert producer.flush(30) == 0
+    working = worker(brokers, "large", tmp_path)
+    working.run()
+    assert working.counts == Counter(samples=1, rejected=1)
+    (letter,) = received(brokers, "large.dead-letters")
+    headers = dict(letter.headers())
+    assert (letter.key(), letter.value()) == (None, None)
+    assert headers["rtamt.omitted"] == b"key and value: 1000101 bytes are too large for the topic"
+    assert {"rtamt.error", "rtamt.partition", "rtamt.offset"} <= headers.keys()
+
+
+def test_a_dead_letter_that_the_broker_finds_too_large_is_sent_without_its_value(brokers, tmp_path):
+    class Returned:
+        """A message with its delivery report."""
+
+        topic = staticmethod(lambda: "returned.dead-letters")
+        key = staticmethod(lambda: b"a")
+        value = staticmethod(lambda: b"x" * 100)
+        headers = staticmethod(lambda: [("rtamt.offset", b"7")])
+
+    send(brokers, "returned", [sample("a", 0, 7)])
+    working = worker(brokers, "returned", tmp_path)
+    working._undelivered(KafkaError(KafkaError.MSG_SIZE_TOO_LARGE), Returned)
+    working.run()
+    (letter,) = received(brokers, "returned.dead-letters")
+    omitted = ("rtamt.omitted", b"key and value: 101 bytes are too large for the topic")
+    assert (letter.value(), letter.headers()) == (None, [("rtamt.offset", b"7"), omitted])
 
 
 def test_late_samples_and_those_that_wait_are_in_the_checkpoint(brokers, tmp_path):
