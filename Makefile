@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak vsix fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -107,6 +107,9 @@ soak: $(VENV)/.core $(VENV)/.group-test ## watch 10^8 samples and hours of dense
 	$(RUN) -m tests.laws.analysis_soak 10000
 	$(RUN) -m pytest tests/laws --hypothesis-profile=soak --timeout=0
 
+vsix: ## build the extension for Visual Studio Code with npm: editors/vscode/rtamt.vsix
+	cd editors/vscode && npm install --no-audit --no-fund && npm run package
+
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input that breaks the core, the parser or the readers: FUZZ_SECONDS, then some minutes
 	@command -v clang++ >/dev/null || { echo "error: make fuzz needs Clang; install it as root: apt-get install clang" >&2; exit 1; }
@@ -136,7 +139,7 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.made
 
 # What readers and adapters need is tested as users install it: with the extras. Installed already, rtamt
 # itself is left as it is.
-EXTRAS := data,falsify,plot,report,ros,cli,completion,units,spark,ray,kafka,metrics,remote,analysis,play,notebook
+EXTRAS := data,falsify,plot,report,ros,cli,completion,units,spark,ray,kafka,metrics,remote,analysis,play,notebook,lsp
 $(VENV)/.group-test: $(VENV)/.extras
 $(VENV)/.extras: $(VENV)/.core
 	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"

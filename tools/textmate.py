@@ -11,9 +11,9 @@ import json
 import re
 from pathlib import Path
 
-from rtamt.highlight import DECLARING, QUANTIFYING, functions, logical, symbols, temporal
 from rtamt.language.parsing.declarations import TYPES
 from rtamt.language.units.durations import UNITS
+from rtamt.language.words import DECLARING, QUANTIFYING, functions, logical, symbols, temporal
 
 FILE = Path(__file__).parents[1] / "editors" / "stl.tmLanguage.json"
 

@@ -2,7 +2,7 @@
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
 ``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``,
-``describe``, ``lint``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``,
+``describe``, ``lint``, ``lsp``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``,
 ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
@@ -32,7 +32,6 @@ robustness_lines  the lines of ``rtamt monitor`` for the robustness of each inst
 live_view         the live view of ``rtamt monitor``
 terminal          output, colours, tables, progress
 numpy_on_use      numpy is imported when a command first uses it
-facts             the properties that ``rtamt info`` prints
 compiled          ``rtamt info`` for compiled programs
 reports           JUnit, SARIF and HTML reports
 ================  =============================================================
@@ -74,6 +73,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("new", "write a specification file from a pattern"),
             ("describe", "print requirements as English sentences"),
             ("lint", "check specification files for errors and suspicious formulas"),
+            ("lsp", "serve editors: errors, completion, renaming, verdicts"),
             ("analyze", "find requirements that never hold, always hold, contradict or repeat others"),
             ("diff", "show a trace on which two versions of a specification disagree"),
             ("compile", "compile a requirement to a program that runs without Python"),

@@ -14,11 +14,11 @@ from rtamt.cli.command import (
     read_specification,
 )
 from rtamt.cli.compiled import after_passes, compiled, listing
-from rtamt.cli.facts import Facts, cut_operator, depth, gather, loose_variable
 from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import UsageError, choices
+from rtamt.facts import Facts, cut_operator, depth, gather, loose_variable
 from rtamt.language.parsing.lexer import quoted
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration

@@ -18,6 +18,7 @@ enumerations     ``enum Mode { MANUAL, AUTO = 4 }``
 shares           the share of a window that an operator needs
 document         the content of a specification file
 quantifiers      ``group cars = "car_*"``, and the quantifiers over its members
+words            the words and symbols by their roles, for highlighting and completion
 tables           ``table name = {(x, y), ...}``, a function of one number
 substitution     formulas with one part replaced
 parameters       values of parameters, set without parsing again

@@ -52,7 +52,7 @@ def mended(
         for found in findings(document, language, period):
             if found.fix is None or found.code in ignored or _key(found) in left_alone:
                 continue
-            new = _applied(document, found.fix, parse, language)
+            new = applied(document, found.fix, parse, language)
             if new is not None:
                 document = new
                 codes.append(found.code)
@@ -67,7 +67,7 @@ def _key(found: LintWarning) -> tuple[str, str]:
     return found.code, found.text[found.span.start :]
 
 
-def _applied(
+def applied(
     document: Document, fix: Fix, parse: Callable[[str], Document], language: Language
 ) -> Document | None:
     """Return the document after a fix; None if the text would lose a comment or mean something else."""

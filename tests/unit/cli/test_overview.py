@@ -59,7 +59,12 @@ def examples():
 
 
 @pytest.mark.parametrize(
-    "line", [line for line in examples() if "log.jsonl" not in line and not line.startswith("rtamt ros2")]
+    "line",
+    [
+        line
+        for line in examples()
+        if "log.jsonl" not in line and not line.startswith(("rtamt ros2", "rtamt lsp"))
+    ],
 )
 def test_examples_in_the_help_can_be_pasted(line):
     command = line.split("     ")[0].replace("rtamt ", f'"{sys.executable}" -m rtamt ')

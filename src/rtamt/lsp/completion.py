@@ -1,0 +1,158 @@
+"""What can stand at a position: declared names, words of the language, patterns, and columns of a recording."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+from rtamt.language.formula import Span
+from rtamt.language.operators import STL
+from rtamt.language.parsing.lexer import NAME, is_word, quoted
+from rtamt.language.words import DECLARED_BY, QUANTIFYING, kind_of, meaning_of
+from rtamt.lint.found import Edit
+from rtamt.patterns import patterns
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rtamt.lsp.document import Analysis
+
+_WORD = re.compile(r'[\w.$/]*$|"(?:[^"\r\n]|"")*$')
+
+
+class Item(NamedTuple):
+    """What can be inserted: its label, its kind, what it replaces and by what, a short and a long description.
+
+    ``more``: further edits, such as an import.
+    """
+
+    label: str
+    kind: str
+    edit: Edit
+    detail: str = ""
+    text: str = ""
+    more: tuple[Edit, ...] = ()
+
+
+def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) -> list[Item]:
+    """Return what can stand at an offset; clients keep what begins with the word before it.
+
+    >>> from rtamt.lsp.document import Analysis
+    >>> found = completions(Analysis("input float speed; always(sp"), 28, ["engine speed"])
+    >>> [each.edit.new for each in found if each.kind in ("variable", "column")]
+    ['speed', '"engine speed"']
+    """
+    if analysis.in_comment(offset):
+        return []
+    inside = next((span for span in analysis.outline.texts if span.start < offset < span.end), None)
+    if inside is not None:
+        kind = analysis.outline.texts[inside]
+        return (
+            [Item(each, "column", Edit(inside, quoted(each))) for each in columns] if kind == "column" else []
+        )
+    match = _WORD.search(analysis.text, analysis.text.rfind("\n", 0, offset) + 1, offset)
+    word = Span(match.start() if match else offset, offset)
+    found: dict[str, Item] = {}
+    for item in (
+        *_declared(analysis, word),
+        *_imported(analysis, word),
+        *_columns(analysis, word, columns),
+        *_words(word),
+        *_patterns(analysis, word),
+    ):
+        found.setdefault(item.label, item)
+    return list(found.values())
+
+
+def _declared(analysis: Analysis, word: Span) -> Iterator[Item]:
+    for symbol in analysis.outline.symbols:
+        if symbol.kind == "requirement" or symbol.span.start <= word.start <= symbol.span.end:
+            continue
+        if not symbol.scope.start <= word.start <= symbol.scope.end:
+            continue
+        declared = " ".join(analysis.text[symbol.whole.start : symbol.whole.end].split())
+        name = symbol.name if NAME.fullmatch(symbol.name) or "/" in symbol.name else quoted(symbol.name)
+        yield Item(symbol.name, symbol.kind, Edit(word, name), symbol.kind, f"```stl\n{declared}\n```")
+
+
+def _imported(analysis: Analysis, word: Span) -> Iterator[Item]:
+    document = analysis.document
+    if document is None:
+        return
+    for name, template in document.templates.items():
+        yield Item(name, "template", Edit(word, name), template.signature, _sentence_of(name))
+    for name in document.definitions:
+        yield Item(name, "formula", Edit(word, name), "formula")
+
+
+def _sentence_of(name: str) -> str:
+    return patterns()[name].sentence if name in patterns() else ""
+
+
+def _columns(analysis: Analysis, word: Span, columns: Sequence[str]) -> Iterator[Item]:
+    """Yield the columns of a recording; where variables are declared, with a declaration."""
+    variables = [each for each in analysis.outline.symbols if each.kind == "variable"]
+    taken = {each.name for each in analysis.outline.symbols}
+    for column in columns:
+        if column in taken:
+            continue
+        name = column if NAME.fullmatch(column) else quoted(column)
+        more: tuple[Edit, ...] = ()
+        if variables and variables[-1].whole.end < word.start:
+            end = variables[-1].whole.end
+            end += analysis.text[end : end + 1] == ";"
+            more = (Edit(Span(end, end), f"\nfloat {name}\n"),)
+        yield Item(column, "column", Edit(word, name), "a column of the recording", more=more)
+
+
+def _patterns(analysis: Analysis, word: Span) -> Iterator[Item]:
+    """Yield the patterns of the library, with the import where it is missing."""
+    document = analysis.document
+    files = set() if document is None else {path for _file, path in document.imported}
+    begin = _behind_header(analysis)
+    for pattern in patterns().values():
+        missing = f'import "{pattern.file}"' not in analysis.text and pattern.file not in files
+        more = (
+            (Edit(Span(begin, begin), f'import "{pattern.file}"\n'),)
+            if missing and begin <= word.start
+            else ()
+        )
+        yield Item(
+            pattern.name, "template", Edit(word, pattern.name), pattern.signature, pattern.sentence, more
+        )
+
+
+def _behind_header(analysis: Analysis) -> int:
+    """Return where an import can be inserted: before the first token, or on the line after the header."""
+    starts, text = analysis.lines.starts, analysis.text
+    comments = analysis.comments
+    at = 0
+    for line, start in enumerate(starts):
+        end = starts[line + 1] if line + 1 < len(starts) else len(text)
+        blank = not text[start:end].strip()
+        if text[start:end].lstrip().startswith("specification "):
+            return end
+        if not blank and not any(each.start <= start < each.end for each in comments):
+            return start
+        at = end
+    return at
+
+
+@cache
+def _vocabulary() -> tuple[tuple[str, str, str, str], ...]:
+    found = {word: (word, "keyword", doc, "") for word, doc in DECLARED_BY.items()}
+    for word in QUANTIFYING:
+        found[word] = (word, "keyword", "over the members of a group", "")
+    for operator in STL:
+        for spelling in operator.spellings:
+            if is_word(spelling):
+                kind = "function" if kind_of(operator) == "function" else "operator"
+                found.setdefault(spelling, (spelling, kind, meaning_of(operator), operator.example))
+    return tuple(found[word] for word in sorted(found))
+
+
+def _words(word: Span) -> Iterator[Item]:
+    for text, kind, doc, example in _vocabulary():
+        shown = f"{doc}\n\n```stl\n{example}\n```" if example else doc
+        yield Item(text, kind, Edit(word, text), example, shown)

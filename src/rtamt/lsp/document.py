@@ -1,0 +1,118 @@
+"""What an editor asks about one text: parsed once for each version, whatever is asked."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from rtamt.errors import SpecificationError, StlError
+from rtamt.language.operators import STL
+from rtamt.language.parsing.imports import Library
+from rtamt.language.parsing.lexer import comments
+from rtamt.language.parsing.specfile import parse_document
+from rtamt.lint.rules import UNUSED
+from rtamt.lsp.outline import outline
+from rtamt.lsp.places import Lines
+from rtamt.texts import parse
+
+if TYPE_CHECKING:
+    from rtamt.language.document import Document
+    from rtamt.language.formula import Span
+    from rtamt.lint.found import LintWarning
+    from rtamt.lsp.symbols import Outline
+    from rtamt.specification import Specification
+
+#: The longest text that is analysed while it is edited.
+MOST_CHARACTERS = 2**20
+
+#: A formula behind a text that only declares what others import.
+ENDING = "\ntrue"
+
+
+class Analysis:
+    """One version of a text.
+
+    ``folder``: that of the file, for its imports. ``period``: the sampling period, as text, if it is known.
+    ``encoding``: of positions.
+
+    >>> Analysis("always(spede > 3) // fast").error is None
+    True
+    """
+
+    def __init__(
+        self, text: str, folder: str | None = None, period: str | None = None, encoding: str = "utf-16"
+    ) -> None:
+        self.text = text
+        self.folder = folder
+        self.period = period or None
+        self.lines = Lines(text, encoding)
+        #: Whether it is a text that only declares what others import.
+        self.library = False
+        self.error: StlError | None = None
+        self.spec: Specification | None = None
+        if len(text) > MOST_CHARACTERS:
+            self.text = text[:0]
+            self.error = StlError(
+                f"the file is too long to be checked while it is edited ({len(text):,} characters, at most "
+                f"{MOST_CHARACTERS:,}); rtamt lint checks it"
+            )
+            return
+        try:
+            self.spec = self._parsed(text)
+        except StlError as error:
+            self.error = error
+            self._read_library()
+
+    def _parsed(self, text: str) -> Specification:
+        return parse(text, folder=self.folder, period=self.period)
+
+    def _read_library(self) -> None:
+        """Read the text as one that others import, if that is possible."""
+        try:
+            spec = self._parsed(self.text + ENDING)
+        except StlError:
+            return
+        found = spec.document
+        if len(found.assertions) == 1 and (
+            found.declarations or found.templates or found.tables or found.enumerations or found.groups
+        ):
+            self.spec, self.error, self.library = spec, None, True
+
+    @property
+    def document(self) -> Document | None:
+        """The parsed text; None where it is wrong."""
+        return None if self.spec is None else self.spec.document
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The names of the text."""
+        document = self.document
+        if document is not None and self.library:
+            return outline(document.text, document)
+        return outline(self.text, document)
+
+    @cached_property
+    def comments(self) -> list[Span]:
+        """Where the comments are."""
+        return comments(self.text, STL) if "/" in self.text else []
+
+    @cached_property
+    def findings(self) -> tuple[LintWarning, ...]:
+        """The warnings of ``rtamt lint``."""
+        if self.spec is None:
+            return ()
+        return tuple(each for each in self.spec.warnings if not (self.library and each.code == UNUSED))
+
+    @property
+    def place_of_error(self) -> Span | None:
+        """Where the error is, if it is in the text."""
+        return self.error.span if isinstance(self.error, SpecificationError) else None
+
+    def read(self, text: str) -> Document:
+        """Parse another version of the text, as this one was parsed."""
+        folder = self.folder
+        return parse_document(text + (ENDING if self.library else ""), library=Library(folder))
+
+    def in_comment(self, offset: int) -> bool:
+        """Return whether an offset is inside a comment."""
+        return any(span.start < offset <= span.end for span in self.comments)
