@@ -265,6 +265,13 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Other tools": ("Requirements of other tools, read and written.", ("rtamt.interchange",)),
     "Mutation": ("", ("rtamt.mutation",)),
     "Mining": ("", ("rtamt.mining",)),
+    "Reinforcement learning": (
+        "",
+        (
+            "rtamt.learning", "rtamt.learning.single.RobustnessReward", "rtamt.learning.vector.VectorRobustnessReward",
+            "rtamt.learning.parallel.ParallelRobustnessReward",
+        ),
+    ),
     "ROS": ("", ("rtamt.ros",)),
     "C and C++": (
         "Compiled requirements run without Python: see [the program](program.md).", ("Specification.compile",)
