@@ -6,7 +6,9 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
+from rtamt.language.printing.printer import excerpt
 from rtamt.results import first_violation
+from rtamt.signals.arrays import is_number
 from rtamt.signals.listing import show_time
 from rtamt.specification import Specification
 from rtamt.texts import load, parse
@@ -53,7 +55,7 @@ def assert_satisfied(
       'gap >= 2' fails at 2 s (-1)
     """
     __tracebackhide__ = True  # pytest shows the line of the test
-    if not margin >= 0:
+    if not is_number(margin) or not margin >= 0:
         raise UsageError(f"margin is {shown(margin)}, expected a number of at least 0")
     if isinstance(spec, os.PathLike):
         spec = load(spec)
@@ -63,11 +65,17 @@ def assert_satisfied(
     failures = {
         name: part
         for name, part in result.requirements.items()
-        if not (part.satisfied and (margin == 0 or part.robustness >= margin))
+        if not (part.satisfied and (margin == 0 or _reaches(part, margin)))
     }
     if failures:
         raise UnsatisfiedError(_message(result, failures, margin), result, failures)
     return result
+
+
+def _reaches(part: Result, margin: float) -> bool:
+    """Return whether the robustness is at least the margin; raise EvaluationError if the samples leave it open."""
+    bounds = part.interval
+    return bounds.lower >= margin or (bounds.upper >= margin and part.robustness >= margin)
 
 
 def facts(result: Result) -> dict[str, str]:
@@ -80,8 +88,8 @@ def facts(result: Result) -> dict[str, str]:
     found = {}
     for name, part in result.requirements.items():
         found[f"{name}.verdict"] = "satisfied" if part.satisfied else "violated"
-        found[f"{name}.robustness"] = f"{part.robustness:.12g}"
-        if not part.satisfied:
+        found[f"{name}.robustness"] = _robustness(part, 12)
+        if not (part.satisfied or is_partly_known(part)):
             found[f"{name}.first_violation"] = show_time(first_violation(part), part.signal.times[0])
     return found
 
@@ -90,8 +98,26 @@ def _message(result: Result, failures: dict[str, Result], margin: float) -> str:
     several = len(result.requirements) > 1
     lines = [f"{len(failures)} of {len(result.requirements)} requirements failed"] if several else []
     for name, part in failures.items():
-        text = str(part.explain())
+        text = _explained(part)
         if part.satisfied:
-            text = f"the robustness is {part.robustness:.6g}, less than the margin of {margin:.6g}\n{text}"
+            text = f"the robustness is {_robustness(part, 6)}, less than the margin of {margin:.6g}\n{text}"
         lines.append(f"{name}: {text}" if several else text)
     return "\n".join(lines)
+
+
+def is_partly_known(part: Result) -> bool:
+    """Return whether samples are missing or uncertain: then there are neither explanations nor plots."""
+    return bool(part.trace.bounds)
+
+
+def _robustness(part: Result, digits: int) -> str:
+    """Return the robustness, or its bounds where samples are missing or uncertain."""
+    lower, upper = part.interval.lower, part.interval.upper
+    return f"{lower:.{digits}g}" if lower == upper else f"{lower:.{digits}g} to {upper:.{digits}g}"
+
+
+def _explained(part: Result) -> str:
+    if not is_partly_known(part):
+        return str(part.explain())
+    verdict = "satisfied" if part.satisfied else "violated"
+    return f"{verdict}, robustness {_robustness(part, 6)}: {excerpt(part.specification.formula)}"

@@ -73,26 +73,30 @@ class Result:
         of = self.specification.name or self.specification.formula
         start = self.signal.times[0]
         at = show_time(start) if isinstance(start, np.timedelta64) else start
-        return f"<result of {of}: robustness {self.robustness} at {at}>"
+        return f"<result of {of}: robustness {_shown(self.interval)} at {at}>"
 
     def _repr_html_(self) -> str:
         from html import escape
 
         rows = []
         for name, part in self.requirements.items():
-            violated = first_violation(part)
-            verdict = (
-                "satisfied"
-                if violated is None
-                else f"violated, first at {show_time(violated, part.signal.times[0])}"
-            )
             formula = escape(excerpt(part.specification.formula))
             rows.append(
-                f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td><td>{part.robustness:.6g}</td>"
-                f"<td>{escape(verdict)}</td></tr>"
+                f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td><td>{_shown(part.interval, '.6g')}</td>"
+                f"<td>{escape(part._verdict)}</td></tr>"
             )
         head = "<tr><th>requirement</th><th>formula</th><th>robustness</th><th>verdict</th></tr>"
         return f"<table>{head}{''.join(rows)}</table>"
+
+    @property
+    def _verdict(self) -> str:
+        if self.trace.bounds:
+            bounds = self.interval
+            return "satisfied" if bounds.lower > 0 else "violated" if bounds.upper < 0 else "open"
+        violated = first_violation(self)
+        if violated is None:
+            return "satisfied"
+        return f"violated, first at {show_time(violated, self.signal.times[0])}"
 
     @cached_property
     def requirements(self) -> Mapping[str, Result]:
@@ -398,3 +402,9 @@ def first_violation(result: Result) -> Any:
     1.0
     """
     return result._first_violation
+
+
+def _shown(bounds: Interval, form: str = "") -> str:
+    """Return the robustness, or its bounds where samples are missing or uncertain."""
+    lower, upper = format(bounds.lower, form), format(bounds.upper, form)
+    return lower if bounds.lower == bounds.upper else f"from {lower} to {upper}"

@@ -102,3 +102,16 @@ def test_a_derived_signal_is_a_signal_of_the_trace_and_the_trace_before_stays():
     assert rtamt.parse("always(kmh >= 18)").evaluate(more).robustness == 0
     with pytest.raises(rtamt.UsageError, match=r"^'w' is 3; give a signal, such as rtamt.Signal"):
         trace.extended({"w": 3})  # type: ignore[dict-item]
+
+
+def test_a_result_of_missing_samples_is_shown_with_the_bounds_that_are_known():
+    spec = rtamt.parse("require A: always(x > 0); require B: eventually(x > 0); require C: eventually(x > 9)")
+    result = spec.evaluate({"x": [1, -1, None]})
+    for name, bounds, verdict in (
+        ("A", "from -inf to -1", "violated"),
+        ("B", "from 1 to inf", "satisfied"),
+        ("C", "from -8 to inf", "open"),
+    ):
+        shown = result.requirements[name]._repr_html_()
+        assert f"<td>{bounds}</td><td>{verdict}</td>" in shown
+    assert repr(result.requirements["A"]) == "<result of A: robustness from -inf to -1.0 at 0.0>"

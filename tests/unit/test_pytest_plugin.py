@@ -63,15 +63,49 @@ def test_a_violation_without_robustness_fails():
         assert_satisfied("always(x > 3)", {"x": [5, 3]})
 
 
-@pytest.mark.parametrize("margin", [-1, float("nan")])
+@pytest.mark.parametrize("margin", [-1, float("nan"), "1"])
 def test_a_margin_below_zero_is_rejected(margin):
-    with pytest.raises(rtamt.UsageError, match=f"^margin is {margin}, expected a number of at least 0$"):
+    with pytest.raises(rtamt.UsageError, match=f"^margin is {margin!r}, expected a number of at least 0$"):
         assert_satisfied("x >= 3", {"x": [5]}, margin=margin)
 
 
 def test_options_reach_the_evaluation():
     with pytest.raises(rtamt.BoundError, match="period"):
         assert_satisfied("always[0:1](x >= 3)", {"x": [5, 5]}, period="300ms")
+
+
+def test_a_violation_that_is_decided_though_samples_are_missing_fails():
+    with pytest.raises(UnsatisfiedError) as failed:
+        assert_satisfied("always(x > 0)", {"x": [1, -1, None]})
+    assert str(failed.value) == "violated, robustness -inf to -1: always(x > 0)"
+
+
+def test_a_margin_is_reached_though_samples_are_missing():
+    data = {"x": [1, 2, None]}
+    assert assert_satisfied("eventually(x > 0)", data, margin=2).interval.lower == 2
+    with pytest.raises(UnsatisfiedError, match=r"^the robustness is 2 to 5, less than the margin of 6\n"):
+        assert_satisfied("eventually(x > 0)", data, margin=6, ranges={"x": (0, 5)})
+    with pytest.raises(rtamt.EvaluationError, match="only known to lie between 2 and inf"):
+        assert_satisfied("eventually(x > 0)", data, margin=3)
+
+
+def test_the_fixture_reports_bounds_where_samples_are_missing(folder):
+    body = """
+def test_satisfied(stl):
+    stl.assert_satisfied("eventually(x > 0)", {"x": [1, -1, None]})
+
+def test_violated(stl):
+    stl.assert_satisfied("always(x > 0)", {"x": [1, -1, None]})
+"""
+    result = run(folder, body, "--junit-xml=report.xml")
+    result.assert_outcomes(passed=1, failed=1)
+    properties = ET.parse(folder.path / "report.xml").iter("property")  # noqa: S314
+    report = {each.get("name"): each.get("value") for each in properties}
+    assert report == {
+        "rtamt.requirement_1.verdict": "violated",
+        "rtamt.requirement_1.robustness": "-inf to -1",
+        "rtamt.plot": "no plot: samples are missing or uncertain",
+    }
 
 
 def test_facts_of_a_requirement_without_a_name():
