@@ -91,7 +91,9 @@ def test_one_value_is_the_hardest_that_holds(text, first, recordings):
     direction = directions(spec)["q"]
     holding = [value for value in VALUES if satisfied(spec, {"q": value}, recordings)]
     if not holding:
-        with pytest.raises(UsageError, match="no values satisfy the specification on all recordings"):
+        with pytest.raises(
+            UsageError, match="no values in their ranges satisfy the specification on all recordings"
+        ):
             mine(spec, recordings, ranges={"q": RANGE}, resolutions={"q": 1})
         return
     (point,) = mine(spec, recordings, ranges={"q": RANGE}, resolutions={"q": 1}).points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, floor
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.language.units.durations import exact
@@ -60,19 +60,27 @@ def checked_resolutions(given: Mapping[str, float], known: Sequence[str]) -> dic
     return found
 
 
+class Clock(NamedTuple):
+    """The time of recordings, in seconds: the common sampling period, None in dense time.
+
+    ``longest``: the duration of the longest recording. ``tick``: how far the next instant is from an excluded bound.
+    """
+
+    period: Fraction | None
+    longest: Fraction
+    tick: Fraction
+
+
 def bound_grid(
     role: Role,
     given: tuple[float, float] | None,
     resolution: Fraction | None,
-    step: Fraction | None,
-    longest: Fraction,
+    clock: Clock,
 ) -> Grid:
-    """Return the values of a parameter that bounds an interval: multiples of the sampling period.
-
-    ``step``: the sampling period in seconds, None in dense time; ``longest``: the duration of the longest recording.
-    """
-    least = role.least or Fraction(0)
-    most = longest / role.seconds if role.most is None else min(role.most, longest / role.seconds)
+    """Return the values of a parameter that bounds an interval: multiples of the sampling period."""
+    step, longest = clock.period, clock.longest / role.seconds
+    shortest, limit = role.least(clock.tick), role.most(clock.tick)
+    least, most = shortest, longest if limit is None else min(limit, longest)
     unit = resolution
     if step is not None:
         period = step / role.seconds
@@ -84,11 +92,11 @@ def bound_grid(
             )
     if given is not None:
         low, high = (exact(str(end)) for end in given)
-        if low < least or (role.most is not None and high > role.most):
+        if low < least or (limit is not None and high > limit):
             raise UsageError(
                 f"the range of '{role.name}' is {number(given[0])} to {number(given[1])}, in which an interval would "
                 f"end before it begins, or begin before 0; begin it at {number(float(least))} or later"
-                + ("" if role.most is None else f" and end it at {number(float(role.most))} or earlier")
+                + ("" if limit is None else f" and end it at {number(float(limit))} or earlier")
             )
         least, most = low, high
     if role.whole:
@@ -96,14 +104,19 @@ def bound_grid(
     if unit is None:
         unit = digits(max(most, Fraction(1, 10**6)), SIGNIFICANT)
     low, high = Fraction(ceil(least / unit)) * unit, Fraction(floor(most / unit)) * unit
+    if (
+        given is None and not role.ends
+    ):  # a window has all samples if it ends at the last one, or next after it
+        after = max((out for _, out in role.begins), default=0) * clock.tick / role.seconds
+        high = Fraction(ceil((longest + after) / unit)) * unit
     if high < low:
         raise UsageError(
             f"no value of '{role.name}' from {number(float(least))} to {number(float(most))} is a multiple of "
             f"{number(float(unit))}; give a wider range"
         )
     if role.direction == 1:
-        return Grid(role.name, high, low, unit, closed=low - unit < (role.least or 0))
-    return Grid(role.name, low, high, unit, closed=role.most is not None and high + unit > role.most)
+        return Grid(role.name, high, low, unit, closed=low - unit < shortest)
+    return Grid(role.name, low, high, unit, closed=limit is not None and high + unit > limit)
 
 
 def _common(unit: Fraction) -> Fraction:
@@ -194,8 +207,8 @@ class Finder:
 def impossible(violator: str | None, values: Mapping[str, float]) -> str:
     """Return the sentence for recordings that violate a template whatever the values."""
     return (
-        f"no values satisfy the specification on all recordings: '{violator}' violates it with the easiest ones, "
-        f"{written(values)}; leave the recording out, or widen a range"
+        f"no values in their ranges satisfy the specification on all recordings: '{violator}' violates it with the "
+        f"easiest ones, {written(values)}; leave the recording out, or widen a range"
     )
 
 

@@ -38,9 +38,9 @@ class Role:
     """What a parameter does in a formula.
 
     ``direction``: 1 if larger values are easier to satisfy, -1 if smaller ones are, None if that is unknown.
-    ``bound``: whether it bounds an interval; then ``seconds`` is how long one unit of it is, and ``least`` and
-    ``most`` are the values, None if there is none, between which no interval is reversed. ``whole``: whether it is
-    declared as a whole number.
+    ``bound``: whether it bounds an interval; then ``seconds`` is how long one unit of it is. ``begins``: of each
+    interval that it ends, the begin and how many of the two bounds are excluded; ``ends``: of each that it begins, the
+    end likewise. ``whole``: whether it is declared as a whole number.
     """
 
     name: str
@@ -48,8 +48,16 @@ class Role:
     bound: bool = False
     whole: bool = False
     seconds: Fraction = Fraction(1)
-    least: Fraction | None = None
-    most: Fraction | None = None
+    begins: tuple[tuple[Fraction, int], ...] = ()
+    ends: tuple[tuple[Fraction, int], ...] = ()
+
+    def least(self, tick: Fraction) -> Fraction:
+        """Return the least value with which no interval is empty; an excluded bound is a tick away."""
+        return max(((begin + tick * out) / self.seconds for begin, out in self.begins), default=Fraction(0))
+
+    def most(self, tick: Fraction) -> Fraction | None:
+        """Return the greatest value with which no interval is empty, None if there is none."""
+        return min(((end - tick * out) / self.seconds for end, out in self.ends), default=None)
 
 
 def directions(
@@ -129,6 +137,11 @@ class _Side:
     def monotone(self) -> bool:
         return self.direction is not None
 
+    @property
+    def excluded(self) -> int:
+        """How many of the two bounds are not part of the interval."""
+        return self.interval.begin_open + self.interval.end_open
+
 
 def _role(name: str, direction: int | None, sides: list[_Side], type_: str) -> Role:
     whole = type_ in WHOLE
@@ -140,17 +153,17 @@ def _role(name: str, direction: int | None, sides: list[_Side], type_: str) -> R
             f"'{name}' bounds intervals in different units; "
             f"declare it with a unit, such as parameter float {name} = 1 [s]"
         )
-    least = [side.interval.begin / seconds for side in sides if side.end]
-    ends = [side.interval.end for side in sides if not side.end]
-    most = [end / seconds for end in ends if end is not None]
+    intervals = [(side.interval, side.end, side.excluded) for side in sides]
     return Role(
         name,
         direction,
         bound=True,
         whole=whole,
         seconds=seconds,
-        least=max(least, default=Fraction(0)),
-        most=min(most, default=None),
+        begins=tuple((interval.begin, out) for interval, end, out in intervals if end),
+        ends=tuple(
+            (interval.end, out) for interval, end, out in intervals if not end and interval.end is not None
+        ),
     )
 
 

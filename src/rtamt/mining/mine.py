@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, shown
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.mining.brackets import (
+    Clock,
     Finder,
     bound_grid,
     checked_ranges,
@@ -275,18 +276,16 @@ class _Work:
         for role in self._roles:
             given, resolution = self._ranges.get(role.name), self._resolutions.get(role.name)
             if clock is not None and role.bound:
-                found[role.name] = bound_grid(role, given, resolution, *clock)
+                found[role.name] = bound_grid(role, given, resolution, clock)
             elif given is not None:
                 found[role.name] = value_grid(role, given, resolution)
         return found
 
-    def _clock(self) -> tuple[Fraction | None, Fraction]:
-        """Return the sampling period, None in dense time, and the duration of the longest recording, in seconds."""
+    def _clock(self) -> Clock:
         traces = [self._region.trace(name) for name in self._recordings]
         longest = max(trace.last * trace.step for trace in traces)
-        if traces[0].domain.continuous:
-            return None, longest
-        return _multiple([trace.step for trace in traces]), longest
+        steps = [trace.step for trace in traces]
+        return Clock(None if traces[0].domain.continuous else _multiple(steps), longest, max(steps))
 
 
 def _multiple(periods: list[Fraction]) -> Fraction:

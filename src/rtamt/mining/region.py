@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, TraceError, UsageError, shown
-from rtamt.language.formula import Const
+from rtamt.language.formula import Const, Var, postorder
+from rtamt.language.operators import STL
+from rtamt.language.value_types import Enumeration
 from rtamt.signals.arrays import is_number
-from rtamt.verdicts.robustness_and_truth import align_inputs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from rtamt.language.formula import Formula
     from rtamt.results import Result
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
@@ -81,8 +84,19 @@ class Region:
 
     def trace(self, name: str) -> DomainTrace:
         """Return a recording as the template reads it."""
-        reading = align_inputs(Const(inf), self.spec.input_names)
-        return self._evaluated(self.spec.with_formula(reading), name, {}).trace
+        return self._evaluated(self._reading_only, name, {}).trace
+
+    @cached_property
+    def _reading_only(self) -> Specification:
+        """The specification of a formula that is true, and reads all variables of the template."""
+        typed = {node.name: node for node in postorder(self.spec.formula) if isinstance(node, Var)}
+        reads = [typed.get(name, Var(name)) for name in self.spec.input_names]
+        true: Formula = Const(inf)
+        for each in reads:
+            # A member of an enumeration is no formula.
+            read = STL["eq"](each, each) if isinstance(each.type, Enumeration) else each
+            true = STL["or"](true, read)
+        return self.spec.with_formula(true)
 
     def alone(self, name: str) -> Region:
         """Return the region of one recording, with the same budget."""

@@ -37,7 +37,7 @@ _PARTS = (Fraction(1, 10), Fraction(1, 4))
 #: Magnitudes of tight values, from the easiest to the hardest, for a direction of 1.
 _SIZES = (*(-(10.0**k) for k in range(15, -10, -1)), 0.0, *(10.0**k for k in range(-9, 16)))
 #: The relative error of a tight value, which stands between two recordings.
-_EXACT = 1e-9
+_EXACT = 1e-15
 
 #: Over one number and a threshold: larger thresholds are easier to satisfy, or smaller ones.
 _LARGER = ("always({x} <= {p})", "eventually({x} <= {p})", "eventually(always({x} <= {p}))")
@@ -121,6 +121,10 @@ def own(given: Iterable[Any]) -> list[Template]:
                 raise UsageError(
                     f"'{role.name}' of the template '{one}' {what}; give a template with a threshold"
                 )
+            if role.whole:  # thresholds lie between the values of two recordings
+                raise UsageError(
+                    f"'{role.name}' of the template '{one}' is declared as a whole number; declare it as float"
+                )
             found.append(Template(str(one), role.direction, (one, role.name)))
     return found
 
@@ -132,11 +136,11 @@ def features(
     table = np.empty((len(recordings), len(templates)))
     plain = [column for column, each in enumerate(templates) if each.own is None]
     if plain:
-        # The robustness is the distance of the threshold from its tight value.
+        # Of the standard semantics, robustness is the distance of the threshold from its tight value.
         suite = Suite(
             {str(column): texts.parse(templates[column].written(0.0)) for column in plain},
             select=["robustness"],
-            **reading,
+            **{**reading, "semantics": "standard"},
         )
         for row, (name, data) in enumerate(recordings.items()):
             budget.take()

@@ -98,6 +98,21 @@ def test_given_templates():
     assert classify(*drives(bad=5, good=5), templates=[never]).templates == 1
 
 
+@pytest.mark.parametrize("semantics", ["boolean", "input_vacuity", "input_robustness", "output_robustness"])
+def test_semantics_do_not_hide_what_tells_recordings_apart(semantics):
+    good, bad = [[{"x": [0, 1, top + k / 10]} for k in range(3)] for top in (2.0, 5.0)]
+    found = classify(good, bad, folds=3, semantics=semantics)
+    assert (found.accuracy, found.training) == (1, 1)
+
+
+def test_a_threshold_in_a_gap_of_the_last_digits_agrees_with_the_engine():
+    near = [1 + k * 1e-12 for k in range(2)]
+    template = rtamt.parse("parameter float p = 1  always(x <= p)")
+    good, bad = [[{"x": [value]} for _ in range(3)] for value in near]
+    found = classify(good, bad, folds=3, templates=[template])
+    assert (found.accuracy, found.training) == (1, 1)
+
+
 def test_signals_are_chosen():
     found = classify(*drives(), signals=["heat"], rules=1)
     assert "speed" not in found.text
@@ -158,6 +173,10 @@ def test_the_first_rule_is_the_best_of_every_threshold():
         (
             {"templates": [rtamt.parse("parameter float a = 1  eventually[0:a](speed > 3)")]},
             "'a' of the template 'eventually[0:1](speed > 3)' bounds an interval; give a template with a threshold",
+        ),
+        (
+            {"templates": [rtamt.parse("parameter int a = 1  always(speed <= a)")]},
+            "'a' of the template 'always(speed <= 1)' is declared as a whole number; declare it as float",
         ),
         (
             {"templates": [rtamt.parse("parameter float a = 1  abs(speed - a) <= 3")]},

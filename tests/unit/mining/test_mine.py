@@ -57,6 +57,52 @@ def test_bounds_are_multiples_of_the_sampling_period():
     )
 
 
+RISE = {"x": [0.0, 0.0, 0.0, 0.0, 2.0]}
+
+
+@pytest.mark.parametrize(
+    ("window", "values", "harder"),
+    [("(0:w]", 4.0, 3.0), ("[0:w)", 5.0, 4.0), ("(0:w)", 5.0, 4.0), ("[0:w]", 4.0, 3.0)],
+)
+def test_a_window_with_an_excluded_bound_is_neither_empty_nor_too_short(window, values, harder):
+    spec = rtamt.parse(f"parameter float w = 2  always(x < 1 -> eventually{window}(x > 1))")
+    (point,) = mine(spec, [RISE]).points
+    assert (point.values, point.harder) == ({"w": values}, {"w": harder})
+    (short,) = mine(spec, [{"x": [2.0, 2.0]}]).points  # no sample needs a window
+    assert (short.values, short.tight) == ({"w": window.count("(") + window.count(")") + 0.0}, True)
+
+
+def test_a_window_that_begins_at_a_parameter_ends_after_it():
+    spec = rtamt.parse("parameter float w = 1  always(eventually(w:5](x >= 0) or x < 9)")
+    (point,) = mine(spec, [{"x": [1.0] * 9}], ranges={"w": (0, 4)}).points
+    assert (point.values, point.tight) == ({"w": 4.0}, True)
+    with pytest.raises(UsageError, match="and end it at 4 or earlier"):
+        mine(spec, [{"x": [1.0] * 9}], ranges={"w": (0, 5)})
+
+
+@pytest.mark.parametrize(
+    ("text", "data", "settings", "value"),
+    [
+        ("float w = 1  always(x > 0 -> eventually[0:w](x <= 0))", [(0, 1.0), (1 / 3, 0.0)], "dense", 0.33334),
+        ("int w = 2 [ms]  always(x < 1 -> eventually[0:w](x > 1))", [0.0] * 13 + [2.0], "100us", 2.0),
+    ],
+)
+def test_the_longest_window_that_is_tried_reaches_the_last_sample(text, data, settings, value):
+    chosen = {"time": "dense"} if settings == "dense" else {"period": settings}
+    (point,) = mine(rtamt.parse(f"parameter {text}", **chosen), [{"x": data}]).points
+    assert point.values == {"w": value}
+    assert point.tight
+
+
+def test_a_bound_beside_a_member_of_an_enumeration_reads_its_text():
+    spec = rtamt.parse(
+        "enum Mode { OFF, ON }\ninput Mode mode\ninput bool b\nparameter float w = 1\n"
+        "always(mode == OFF and b -> eventually[0:w](mode == ON))"
+    )
+    (point,) = mine(spec, [{"mode": ["OFF", "OFF", "ON"], "b": [True] * 3}]).points
+    assert (point.values, point.harder) == ({"w": 2.0}, {"w": 1.0})
+
+
 def test_a_bound_with_a_unit_and_a_window_that_cannot_be_shorter():
     spec = rtamt.parse("parameter float within = 500 [ms]  eventually[0:within](x > 3)")
     (point,) = mine(spec, [{"time": [0, 0.25, 0.5], "x": [1, 1, 5]}]).points
@@ -173,7 +219,8 @@ def test_a_spent_budget_leaves_values_that_hold():
         (
             "parameter float p = 1  always(x <= p) and x > 6",
             {"ranges": {"p": (0, 10)}},
-            "no values satisfy the specification on all recordings: 'low' violates it with the easiest ones, p=10; "
+            "no values in their ranges satisfy the specification on all recordings: 'low' violates it with the easiest "
+            "ones, p=10; "
             "leave the recording out, or widen a range",
         ),
         (
