@@ -32,7 +32,13 @@ from rtamt.notebook.static import StaticView
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 
 #: Pages of docs/how-to, with the plot that the page writes and shows.
-HOW_TO = {"convert": "pump.png", "describe": "described.png", "lint": "ranges.png", "mutate": "matrix.png"}
+HOW_TO = {
+    "convert": "pump.png",
+    "describe": "described.png",
+    "lint": "ranges.png",
+    "mutate": "matrix.png",
+    "simulators": "drive.png",
+}
 
 README = "always((req >= 3) -> eventually[0:2](gnt >= 3))"
 FIVE = {"time": [0, 1, 2, 3, 4], "req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}
@@ -102,6 +108,7 @@ def how_to() -> None:
     for name, plot in HOW_TO.items():
         page = IMAGES.parent / "how-to" / f"{name}.md"
         with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            Path("examples").symlink_to(IMAGES.parents[1] / "examples")
             if (FILES / name).is_dir():
                 shutil.copytree(FILES / name, folder, dirs_exist_ok=True)
             Page(page.name, page.read_text(encoding="utf-8")).run()
