@@ -139,7 +139,7 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.made
 
 # What readers and adapters need is tested as users install it: with the extras. Installed already, rtamt
 # itself is left as it is.
-EXTRAS := data,falsify,plot,report,ros,cli,completion,units,spark,ray,kafka,metrics,remote,analysis,play,notebook,lsp,learning
+EXTRAS := data,falsify,plot,report,ros,cli,completion,units,spark,ray,kafka,metrics,remote,analysis,play,notebook,lsp,learning,telemetry,mlflow
 $(VENV)/.group-test: $(VENV)/.extras
 $(VENV)/.extras: $(VENV)/.core
 	$(RUN) -m pip install --quiet "rtamt[$(EXTRAS)]"

@@ -38,6 +38,7 @@ HOW_TO = {
     "lint": "ranges.png",
     "mutate": "matrix.png",
     "simulators": "drive.png",
+    "telemetry": "verdicts.png",
 }
 
 README = "always((req >= 3) -> eventually[0:2](gnt >= 3))"

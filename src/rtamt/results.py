@@ -217,21 +217,7 @@ class Result:
                 f"the specification has several requirements; ask one of them for its episodes, such as "
                 f"result.requirements['{first}']"
             )
-        spec = self.specification
-        (formula,) = self.trace.domain.ground(spec.formula)
-        begin, end = 0, None
-        if isinstance(formula, Apply) and formula.op is STL["always"]:
-            if formula.interval is not None:
-                begin = int(formula.interval.begin / self.trace.step)
-                end = None if formula.interval.end is None else int(formula.interval.end / self.trace.step)
-            formula = formula.args[0]
-        applied = spec._apply_semantics(formula, self.semantics)
-        (signal,) = spec._signals_of((applied,), self.trace.in_steps())
-        positions = self.trace.positions(signal)
-        tracker = WindowTracker(begin, end, continuous=self.trace.domain.continuous)
-        tracker.take(positions, signal.values)
-        tracker.finish(int(positions[-1]))
-        return [episode.with_times(self.trace.time) for episode in tracker.episodes()]
+        return [episode.with_times(self.trace.time) for episode in episodes_in_steps(self)]
 
     def explain(self, at: Any = None) -> Explanation:
         """Explain why the formula is satisfied or violated: which signals are responsible, and when.
@@ -389,6 +375,29 @@ def signals_of(result: Result, formula: Formula | None = None) -> tuple[Signal, 
     spec = result.specification
     robustness, truth = spec._signals_of(spec._outputs(result.semantics, formula), result.trace)
     return robustness, truth
+
+
+def episodes_in_steps(result: Result, *, certain: bool = False) -> list[Episode]:
+    """Return the episodes of violation of one requirement; their times are positions of the trace.
+
+    ``certain``: of partly known samples the episodes that any values have, with upper bounds of their worst robustness.
+    """
+    spec, trace = result.specification, result.trace
+    (formula,) = trace.domain.ground(spec.formula)
+    begin, end = 0, None
+    if isinstance(formula, Apply) and formula.op is STL["always"]:
+        if formula.interval is not None:
+            begin = int(formula.interval.begin / trace.step)
+            end = None if formula.interval.end is None else int(formula.interval.end / trace.step)
+        formula = formula.args[0]
+    applied = spec._apply_semantics(formula, result.semantics)
+    (signal,) = spec._signals_of((applied,), trace.in_steps())
+    values = signal.upper if certain and isinstance(signal, BoundedSignal) else signal.values
+    positions = trace.positions(signal)
+    tracker = WindowTracker(begin, end, continuous=trace.domain.continuous)
+    tracker.take(positions, values)
+    tracker.finish(int(positions[-1]))
+    return tracker.episodes()
 
 
 def first_violation(result: Result) -> Any:

@@ -254,6 +254,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         ),
     ),
     "Metrics": ("", ("rtamt.metrics",)),
+    "Robotics and telemetry tools": ("", ("rtamt.telemetry",)),
     "Explain": ("", ("Result.explain", "rtamt.explain.explanation.Explanation")),
     "Plot": ("", ("Result.plot", "Result.plot_tree")),
     "Assert in tests": ("", ("assert_satisfied", "rtamt.assertions.UnsatisfiedError")),

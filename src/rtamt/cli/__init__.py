@@ -1,6 +1,6 @@
 """The command line ``rtamt``: every error is one sentence on stderr, never a traceback.
 
-Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``,
+Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``, ``export``,
 ``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``,
 ``describe``, ``lint``, ``lsp``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``,
 ``completion``.
@@ -61,6 +61,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("explain", "report which instants of which signals decide the verdict"),
             ("plot", "plot signals, robustness and the cause of the verdict"),
             ("report", "write an interactive page: signals, robustness, explanations"),
+            ("export", "write signals and verdicts for Foxglove (MCAP) and Rerun"),
             ("play", "edit requirements and signals in a local web page, evaluated while typing"),
             ("monitor", "monitor a stream: samples on stdin, robustness on stdout"),
             ("worker", "monitor the samples of a Kafka topic, for many vehicles"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense import DenseTrace
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
 class Band:
     """What was known after each sample, at ``positions``: ``lower`` and ``upper``.
 
-    ``decided``: the position of the sample that decided the verdict; None if only the end did. ``robustness``: what it
-    was in the end.
+    ``steps``: the same positions in steps of the trace, which are exact. ``decided``: the position of the sample
+    that decided the verdict; None if only the end did. ``robustness``: what it was in the end.
     """
 
     positions: FloatArray
@@ -34,6 +36,7 @@ class Band:
     upper: FloatArray
     decided: float | None
     robustness: float
+    steps: NDArray[np.int64]
 
 
 #: Samples up to which reports and notebooks show bounds after each of them.
@@ -73,36 +76,37 @@ def band(result: Result) -> Band:
     spec = result.specification
     # Evaluations do not check declared ranges, so that a sample may lie outside.
     monitor = StartMonitor(spec, time=trace.domain, semantics=result.semantics, ranges=spec._unlimited)
-    times, lower, upper = [], [], []
+    steps, lower, upper = [], [], []
     decided = None
-    for time in replay(trace, monitor):
+    for step in replay(trace, monitor):
         known = monitor.interval()
-        times.append(time)
+        steps.append(step)
         lower.append(known.lower)
         upper.append(known.upper)
         if decided is None and monitor.satisfied is not None:
-            decided = len(times) - 1
-    positions = Clock.of(trace).positions(np.array(times))
+            decided = len(steps) - 1
+    positions = Clock.of(trace).positions(np.array([trace.time(step) for step in steps]))
     return Band(
         positions,
         np.array(lower),
         np.array(upper),
         None if decided is None else float(positions[decided]),
         result.robustness,
+        np.array(steps, np.int64),
     )
 
 
-def replay_samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[Any]:
-    """Bring the samples of a recording to a monitor; yield the time of each."""
+def replay_samples(trace: DomainTrace, monitor: StartMonitor) -> Iterator[int]:
+    """Bring the samples of a recording to a monitor; yield the position of each."""
     columns = {name: trace.columns[name].tolist() for name in monitor.input_names}
     step = float(trace.step)
     for i in range(trace.samples):
         monitor.update(i * step, **{name: column[i] for name, column in columns.items()})
-        yield trace.time(i)
+        yield i
 
 
-def replay_ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
-    """Bring the samples of a recording in dense time to a monitor; yield their times once the trace has started."""
+def replay_ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[int]:
+    """Bring the samples of a recording in dense time to a monitor; yield positions from its start on."""
     rows: dict[int, dict[str, float]] = {}
     for name in monitor.input_names:
         ticks, values = trace.columns[name]
@@ -114,4 +118,4 @@ def replay_ticks(trace: DenseTrace, monitor: StartMonitor) -> Iterator[Any]:
             push_tick(each, tick, rows[tick])
         monitor.refresh(tick)
         if tick >= trace.start:
-            yield trace.time(tick - trace.start)
+            yield tick - trace.start

@@ -12,6 +12,7 @@ from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES
+from rtamt.signals.counting import rescaled
 from rtamt.signals.data_errors import missing_variable
 from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 from rtamt.signals.regular import merged
@@ -230,6 +231,19 @@ class DenseTrace(DomainTrace):
     def time(self, position: int) -> Any:
         """See :class:`DomainTrace`."""
         return self.scale.time(self.start + position)
+
+    def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
+        """See :class:`DomainTrace`."""
+        ticks = np.asarray(positions, np.int64) + self.start
+        try:
+            return rescaled(ticks, self.scale.tick / NANOSECOND)
+        except OverflowError:
+            raise TimeScale(NANOSECOND, self.scale.kind).too_far(arrays.TIME) from None
+
+    def sampled(self, name: str) -> NDArray[np.int64]:
+        """See :class:`DomainTrace`."""
+        ticks: NDArray[np.int64] = self.columns[name][0] - self.start
+        return ticks
 
     def show(self, position: int) -> str:
         """See :class:`DomainTrace`."""

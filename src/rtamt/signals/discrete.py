@@ -12,7 +12,16 @@ from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import UNITS, decimal, positive_period
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import PERIODS, check_bounds
-from rtamt.signals.arrays import Timestamps, check_numbers, columns_of, is_number, plain, timestamps, units_of
+from rtamt.signals.arrays import (
+    TIME,
+    Timestamps,
+    check_numbers,
+    columns_of,
+    is_number,
+    plain,
+    timestamps,
+    units_of,
+)
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
@@ -26,6 +35,7 @@ from rtamt.signals.regular import (
     infer_period,
 )
 from rtamt.signals.signal import Signal
+from rtamt.signals.ticks import NANOSECOND, TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -254,6 +264,15 @@ class DiscreteTrace(DomainTrace):
     def time(self, position: int) -> Any:
         """See :class:`DomainTrace`: a number of Python, or a date or duration of numpy."""
         return plain(self.timestamps[position])
+
+    def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
+        """See :class:`DomainTrace`."""
+        scale = TimeScale.of(NANOSECOND, [self.timestamps], self.unit)
+        return scale.ticks(self.timestamps[np.asarray(positions, np.int64)], TIME)
+
+    def sampled(self, name: str) -> NDArray[np.int64]:  # noqa: ARG002
+        """See :class:`DomainTrace`: all variables have the same samples."""
+        return np.arange(len(self))
 
     def show(self, position: int) -> str:
         """See :class:`DomainTrace`."""

@@ -241,6 +241,17 @@ class DomainTrace(ABC):
         """Return the time of a position in the caller's format."""
 
     @abstractmethod
+    def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
+        """Return the times of positions in nanoseconds, without a double in between; dates count from 1970.
+
+        Raises :class:`TraceError` for times that 64 bits cannot hold.
+        """
+
+    @abstractmethod
+    def sampled(self, name: str) -> NDArray[np.int64]:
+        """Return the positions of the samples of a variable; those before the first instant are negative."""
+
+    @abstractmethod
     def show(self, position: int) -> str:
         """Return the time of a position for a sentence."""
 

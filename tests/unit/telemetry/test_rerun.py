@@ -1,0 +1,133 @@
+"""What is sent to Rerun, received by functions with the signatures of rerun-sdk 0.41, whose wheel has 170 MB."""
+
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import rtamt
+from rtamt.telemetry import log_rerun
+from tests.unit.telemetry.results import EPOCH, drive
+
+SPEED = "/rtamt/requirements/SPEED"
+
+
+class Rerun:
+    """Keeps the columns of each entity; a recording that is saved writes a file."""
+
+    def __init__(self):
+        self.sent = {}
+        self.recordings = []
+
+        class Scalars:
+            @staticmethod
+            def columns(*, scalars=None):
+                return np.asarray(scalars).tolist()
+
+        class TextLog:
+            @staticmethod
+            def columns(*, text=None, level=None, color=None):
+                assert color is None
+                return list(zip(text, level, strict=True))
+
+        class RecordingStream:
+            def __init__(self, application_id, *, recording_id=None, make_default=False):
+                assert (application_id, recording_id, make_default) == ("rtamt", None, False)
+                self.path = None
+
+            def save(self, path, default_blueprint=None, *, write_footer=True):
+                assert (default_blueprint, write_footer) == (None, True)
+                self.path = path
+
+            def disconnect(self):
+                Path(self.path).write_text("recording")
+
+        self.Scalars, self.TextLog, self.RecordingStream = Scalars, TextLog, RecordingStream
+
+    def TimeColumn(self, timeline, *, sequence=None, duration=None, timestamp=None):  # noqa: N802
+        assert (timeline, sequence) == ("time", None)
+        return duration if timestamp is None else timestamp
+
+    def send_columns(self, entity_path, indexes, columns, *, recording=None, strict=None):
+        assert strict is None
+        (times,) = indexes
+        assert len(times) == len(columns)
+        self.recordings.append(recording)
+        self.sent[entity_path] = (times.dtype.str[1:], times.astype(np.int64).tolist(), columns)
+
+
+@pytest.fixture
+def rerun(monkeypatch):
+    fake = Rerun()
+    monkeypatch.setitem(sys.modules, "rerun", fake)
+    return fake
+
+
+def test_signals_and_robustness_are_scalars_and_verdicts_and_violations_are_text(rerun):
+    log_rerun(drive(), bounds=True)
+    second = 10**9
+    every = [0, second, 2 * second, 3 * second, 4 * second]
+    assert rerun.sent["/rtamt/signals/speed"] == ("m8[ns]", every, [20, 32, 31, 20, 33])
+    assert rerun.sent[f"{SPEED}/robustness"] == ("m8[ns]", every, [-3, -3, -3, -3, -3])
+    assert rerun.sent[f"{SPEED}/interval/lower"] == rerun.sent[f"{SPEED}/robustness"]
+    assert rerun.sent[f"{SPEED}/known/upper"] == ("m8[ns]", every, [10, -2, -2, -2, -3])
+    assert rerun.sent[f"{SPEED}/verdict"] == ("m8[ns]", [0], [("SPEED: violated", "ERROR")])
+    assert rerun.sent[f"{SPEED}/violations"] == (
+        "m8[ns]",
+        [second, 2 * second, 4 * second, 4 * second],
+        [
+            ("SPEED: violation begins, worst robustness -2", "ERROR"),
+            ("SPEED: violation ends, worst robustness -2", "INFO"),
+            ("SPEED: violation begins, worst robustness -3", "ERROR"),
+            ("SPEED: violation ends, worst robustness -3", "INFO"),
+        ],
+    )
+    assert "/rtamt/requirements/BRAKE/violations" not in rerun.sent
+    assert set(rerun.recordings) == {None}  # the current one
+
+
+def test_dates_are_timestamps(rerun):
+    for times, options in (
+        (np.array([EPOCH, EPOCH + 10**9], "M8[ns]"), {}),
+        ([EPOCH, EPOCH + 10**9], {"time_unit": "ns"}),
+    ):
+        log_rerun(rtamt.parse("x >= 3").evaluate({"time": times, "x": [5, 1]}, **options))
+        assert rerun.sent["/rtamt/signals/x"] == ("M8[ns]", [EPOCH, EPOCH + 10**9], [5, 1])
+
+
+def test_uncertain_samples_are_two_lines(rerun):
+    log_rerun(rtamt.parse("x >= 3").evaluate({"x": [1, 2]}, uncertainty={"x": 0.5}))
+    assert rerun.sent["/rtamt/signals/x/lower"][2] == [0.5, 1.5]
+    assert rerun.sent["/rtamt/signals/x/upper"][2] == [1.5, 2.5]
+    assert "/rtamt/signals/x" not in rerun.sent
+
+
+def test_a_recording_is_given(rerun):
+    mine = SimpleNamespace()
+    log_rerun(drive(), recording=mine)
+    assert all(each is mine for each in rerun.recordings)
+
+
+def test_a_file_is_written_as_a_whole(rerun, tmp_path):
+    log_rerun(drive(), tmp_path / "drive.rrd")
+    assert [path.name for path in tmp_path.iterdir()] == ["drive.rrd"]
+    assert (tmp_path / "drive.rrd").read_text() == "recording"
+    assert len({id(each) for each in rerun.recordings}) == 1
+
+
+@pytest.mark.usefixtures("rerun")
+def test_a_file_that_cannot_be_written(tmp_path):
+    with pytest.raises(rtamt.TraceError) as error:
+        log_rerun(drive(), tmp_path / "none" / "x.rrd")
+    assert str(error.value) == f"cannot write '{tmp_path}/none/x.rrd': No such file or directory"
+
+
+def test_without_the_package(monkeypatch):
+    monkeypatch.setitem(sys.modules, "rerun", None)
+    with pytest.raises(rtamt.UsageError) as error:
+        log_rerun(drive())
+    assert str(error.value) == (
+        "logging to Rerun needs the package 'rerun', which is not installed: pip install 'rtamt[rerun]'"
+    )
