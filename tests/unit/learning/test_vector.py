@@ -25,11 +25,11 @@ def vector(episodes, mode, *, truncates=False):
     return SyncVectorEnv([lambda e=e: Replay(*e, truncates=truncates) for e in episodes], autoreset_mode=mode)
 
 
-def one_by_one(episodes, mode, spec, signals, count, **more):
+def one_by_one(episodes, mode, spec, signals, count, *, truncates=False, **more):
     """Return the rewards and ends of each environment, wrapped by itself."""
     columns = []
     for each in episodes:
-        env = RobustnessReward(Replay(*each, truncates=more.pop("truncates", False)), spec, signals, **more)
+        env = RobustnessReward(Replay(*each, truncates=truncates), spec, signals, **more)
         env.reset()
         found, ended = [], False
         for step in range(count):
@@ -54,12 +54,17 @@ def one_by_one(episodes, mode, spec, signals, count, **more):
     st.sampled_from(list(AutoresetMode)),
     st.sampled_from([{"reward": "robustness"}, {"reward": "shaping", "gamma": 0.5}]),
     st.sampled_from([SIGNALS, ACTION]),
+    st.booleans(),
 )
-def test_each_environment_has_the_rewards_that_it_has_alone(formula, episodes, mode, reward, signals):
+def test_each_environment_has_the_rewards_that_it_has_alone(
+    formula, episodes, mode, reward, signals, truncates
+):
     spec = rtamt.parse(str(formula), period=1)
     try:
-        expected = one_by_one(episodes, mode, spec, signals, 9, terminate=False, **reward)
-        envs = VectorRobustnessReward(vector(episodes, mode), spec, signals, **reward)
+        expected = one_by_one(
+            episodes, mode, spec, signals, 9, terminate=False, truncates=truncates, **reward
+        )
+        envs = VectorRobustnessReward(vector(episodes, mode, truncates=truncates), spec, signals, **reward)
         envs.reset()
         found = []
         for step in range(9):
