@@ -2,8 +2,8 @@
 
 Each command is a module with the name of the command: ``check``, ``explain``, ``plot``, ``report``, ``export``,
 ``play``, ``monitor``, ``worker``, ``ros2``, ``falsify``, ``mutate``, ``mine``, ``classify``, ``info``, ``new``,
-``describe``, ``lint``, ``lsp``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``, ``operators``,
-``completion``.
+``describe``, ``lint``, ``format``, ``lsp``, ``analyze``, ``diff``, ``compile``, ``fmu``, ``convert``, ``packs``,
+``operators``, ``completion``.
 It has the functions ``configure`` and ``run``, and is imported when the command is used. The other modules are shared:
 
 ================  =============================================================
@@ -74,6 +74,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ("new", "write a specification file from a pattern"),
             ("describe", "print requirements as English sentences"),
             ("lint", "check specification files for errors and suspicious formulas"),
+            ("format", "rewrite specification files in the common layout"),
             ("lsp", "serve editors: errors, completion, renaming, verdicts"),
             ("analyze", "find requirements that never hold, always hold, contradict or repeat others"),
             ("diff", "show a trace on which two versions of a specification disagree"),

@@ -11,6 +11,8 @@ from pygls.uris import from_fs_path, to_fs_path
 
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
+from rtamt.language.operators import STL
+from rtamt.layout import laid_out
 from rtamt.lsp.colors import MODIFIERS, TYPES, colored
 from rtamt.lsp.completion import completions
 from rtamt.lsp.hover import hover
@@ -227,6 +229,14 @@ def _add_changing(server: Server) -> None:
         except UsageError as error:
             raise JsonRpcInvalidParams(str(error)) from None
         return lsp.WorkspaceEdit({uri: edits_of(analysis.lines, edits)})
+
+    @server.feature(lsp.TEXT_DOCUMENT_FORMATTING)
+    def laid(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
+        analysis = server.analysis(params.text_document.uri)
+        if analysis.spec is None:
+            return []  # its error is shown already
+        new = laid_out(analysis.text, analysis.folder, STL)
+        return [] if new == analysis.text else whole_of(analysis, new)
 
     kinds = [lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll]
 

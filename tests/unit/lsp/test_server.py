@@ -185,6 +185,18 @@ def test_lenses_show_verdicts_on_the_recording(editor, path):
     assert editor.refreshed > 0
 
 
+def test_formatting_changes_white_space_only(editor, folder):
+    path, text = folder / "layout.stl", "float x ;\n\n\nalways [0 : 5]( x>=3 )  // fast\n"
+    options = lsp.FormattingOptions(tab_size=4, insert_spaces=True)
+    editor.open(path, text)
+    new = edited(text, editor.ask("formatting", path, options=options))
+    assert new == "float x;\n\nalways[0:5](x >= 3)  // fast\n"
+    editor.change(path, new)
+    assert not editor.ask("formatting", path, options=options)
+    editor.change(path, "always(x >= )")
+    assert not editor.ask("formatting", path, options=options)
+
+
 def test_the_server_survives_hostile_texts(editor, folder):
     path = folder / "hostile.stl"
     editor.open(path, "(" * 5000)
