@@ -3,19 +3,22 @@
 // A window of the greatest or least value needs no ring: whether it contains the deciding value
 // depends on the slots since the last one. Until is decided by the first slot of its window where
 // psi holds or phi does not; when such a slot comes, all slots before it that are still open get
-// its value, so that a bit a slot is left. Narrow windows keep numbers, whose loops are faster.
+// its value, so that a bit a slot is left. All compute 64 slots at a time. Narrow windows keep
+// numbers, which then need little memory.
 //
-// Cost: a few operations a sample; of until, one a word of 64 open slots when these are decided.
+// Cost: one or two operations a sample; of until, one more for every 64 open slots when these are
+// decided.
 // Memory: w / 8 bytes for a delay of w slots or until over w slots, touched as far as the trace has
 // come; one number for a window.
 #pragma once
 
-#include "../values/algebra.hpp"
 #include "copy.hpp"
 #include "journal.hpp"
 #include "kernel.hpp"
+#include "truth_words.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,8 +30,8 @@ inline constexpr std::int64_t least_packed = 1024;
 // A ring of bits: 1 where a value is +inf. Ranges do not wrap round.
 class TruthBits {
   public:
-    using Word = std::uint64_t;
-    static constexpr std::size_t width = 64;
+    using Word = TruthWord;
+    static constexpr std::size_t width = truth_word_bits;
 
     explicit TruthBits(Word* words) noexcept : words_(words) {}
 
@@ -42,19 +45,14 @@ class TruthBits {
 
     void read(std::size_t begin, std::size_t count, double* out) const noexcept {
         for_words(begin, count, [&](std::size_t word, std::size_t shift, std::size_t bits) {
-            const Word here = words_[word] >> shift;
-            for (std::size_t i = 0; i < bits; ++i)
-                out[i] = number(((here >> i) & 1U) != 0);
+            unpack_truth(words_[word] >> shift, bits, out);
             out += bits;
         });
     }
 
     void write(std::size_t begin, std::size_t count, const double* values) noexcept {
         for_words(begin, count, [&](std::size_t word, std::size_t shift, std::size_t bits) {
-            Word here = 0;
-            for (std::size_t i = 0; i < bits; ++i)
-                here |= Word{values[i] > 0} << i;
-            replace(word, shift, bits, here);
+            replace(word, shift, bits, pack_truth(values, bits));
             values += bits;
         });
     }
@@ -65,6 +63,15 @@ class TruthBits {
         });
     }
 
+    // The cells from one on to the end of its word, the first lowest; 0 above.
+    [[nodiscard]] Word rest(std::size_t cell) const noexcept {
+        return words_[cell / width] >> (cell % width);
+    }
+    // Writes at most as many.
+    void write_rest(std::size_t cell, std::size_t count, Word values) noexcept {
+        replace(cell / width, cell % width, count, values);
+    }
+
     // Keeps the words of a range of cells.
     void save(Journal<Word>& journal, std::size_t begin, std::size_t count) const noexcept {
         const std::size_t first = begin / width;
@@ -73,10 +80,6 @@ class TruthBits {
     void restore(const Journal<Word>& journal) noexcept { journal.restore(words_); }
 
     void transfer(Snapshot& snapshot, std::size_t count) { snapshot.values(words_, words(count)); }
-
-    [[nodiscard]] static constexpr double number(bool holds) noexcept {
-        return holds ? Real::top : Real::bottom;
-    }
 
   private:
     Word* words_;
@@ -92,7 +95,7 @@ class TruthBits {
     }
 
     void replace(std::size_t word, std::size_t shift, std::size_t bits, Word value) noexcept {
-        const Word mask = (~Word{0} >> (width - bits)) << shift;
+        const Word mask = lowest_bits(bits) << shift;
         words_[word] = (words_[word] & ~mask) | ((value << shift) & mask);
     }
 };
@@ -211,7 +214,7 @@ class TruthShift final : public TruthRing {
     }
 };
 
-// Until over the last `width` slots (until.hpp).
+// Until over the last `width` slots, which are more than a word has (until.hpp).
 class TruthUntil final : public TruthRing {
   public:
     using TruthRing::TruthRing;
@@ -222,28 +225,75 @@ class TruthUntil final : public TruthRing {
         const auto* psi = b<double>();
         auto* out = this->out<double>();
         fill_values(out, present.begin, Real::bottom);
-        for (std::size_t i = present.begin; i < present.end; ++i)
-            out[i] = next(phi[i] > 0, psi[i] > 0);
-        for (std::size_t i = present.end; i < block.count; ++i)
-            out[i] = next(true, false); // leaves all open
+        each_part(present.begin, present.end, [&](std::size_t i, std::size_t count) {
+            push(pack_truth(phi + i, count), pack_truth(psi + i, count), count, out + i);
+        });
+        each_part(present.end, block.count, [&](std::size_t i, std::size_t count) {
+            push(lowest_bits(count), 0, count, out + i); // leaves all open
+        });
         return defined;
     }
 
   private:
-    [[nodiscard]] double next(bool phi, bool psi) noexcept {
-        State& now = state();
-        const bool open = phi && !psi;
-        if (open) {
-            now.open = std::min(now.open + 1, width());
-            advance(1);
-        } else {
-            const std::size_t before = std::min(now.open, width() - 1);
-            advance(1);
-            decide(before + 1, psi);
-            now.open = 0;
+    using Word = TruthWord;
+
+    // Parts whose cells lie in one word.
+    template <class Visit>
+    void each_part(std::size_t begin, std::size_t end, Visit&& visit) noexcept {
+        while (begin < end) {
+            const std::size_t next = state().next;
+            const std::size_t count =
+                std::min({end - begin, width() - next, TruthBits::width - next % TruthBits::width});
+            visit(begin, count);
+            begin += count;
         }
-        const std::size_t oldest = now.full ? now.next : 0;
-        return TruthBits::number(now.open < filled() && bits().at(oldest));
+    }
+
+    // The slots of a part.
+    void push(Word phi, Word psi, std::size_t count, double* out) noexcept {
+        State& now = state();
+        const Word part = lowest_bits(count);
+        const Word open = phi & ~psi;
+        const Word decided = part & ~open;
+        const auto first = static_cast<std::size_t>(std::countr_zero(decided));
+        const bool value = decided != 0 && ((psi >> first) & 1U) != 0;
+        unpack_truth(oldest(count, first, value) & part, count, out);
+        if (decided == 0) {
+            now.open = std::min(now.open + count, width());
+        } else {
+            decide(now.open, value);
+            bits().write_rest(now.next, count, settled(psi, open));
+            now.open = count - static_cast<std::size_t>(std::bit_width(decided));
+        }
+        advance(count);
+    }
+
+    // What the window of each slot of a part begins with; the slots that are open before the part
+    // get a value by its slot `first`.
+    [[nodiscard]] Word oldest(std::size_t count, std::size_t first, bool value) noexcept {
+        const State& now = state();
+        const Word later = value && first < count ? ~Word{0} << first : 0;
+        if (!now.full) {
+            if (now.open == now.next) return later;
+            return bits().at(0) ? ~Word{0} : 0;
+        }
+        // The cell after that of each slot: the last one may lie in another word.
+        const std::size_t last = now.next + count == width() ? 0 : now.next + count;
+        Word word = (bits().rest(now.next) >> 1U) & ~(Word{1} << (count - 1));
+        word |= Word{bits().at(last)} << (count - 1);
+        const std::size_t closed = width() - 1 - std::min(now.open, width() - 1);
+        if (closed >= count) return word;
+        const Word undecided = ~Word{0} << closed;
+        return (word & ~undecided) | (later & undecided);
+    }
+
+    // Gives open slots the value of the next one that is not.
+    [[nodiscard]] static Word settled(Word values, Word open) noexcept {
+        for (unsigned distance = 1; distance < TruthBits::width; distance *= 2) {
+            values |= open & (values >> distance);
+            open &= open >> distance;
+        }
+        return values;
     }
 };
 
@@ -252,22 +302,21 @@ template <class Algebra>
 class TruthWindow final : public Kernel {
   public:
     TruthWindow(std::int64_t operand_lag, std::size_t width) noexcept
-        : Kernel(operand_lag), width_(static_cast<std::int64_t>(width)), since_(width_),
-          saved_(width_) {}
+        : Kernel(operand_lag), width_(width), since_(width), saved_(width) {}
 
     std::size_t run(const Block& block) noexcept override {
         const Range present = block.present(lag());
         const auto* __restrict in = a<double>();
         auto* __restrict out = this->out<double>();
         fill_values(out, present.begin, Algebra::identity);
-        std::int64_t since = since_;
-        for (std::size_t i = present.begin; i < present.end; ++i) {
-            since = in[i] == deciding ? 0 : since + 1;
-            out[i] = since < width_ ? deciding : Algebra::identity;
+        // No window leaves a deciding value of the same part.
+        const std::size_t most = std::min(width_, truth_word_bits);
+        for (std::size_t i = present.begin; i < present.end;) {
+            const std::size_t count = std::min(most, present.end - i);
+            push(pack_truth(in + i, count), count, out + i);
+            i += count;
         }
-        for (std::size_t i = present.end; i < block.count; ++i)
-            out[i] = ++since < width_ ? deciding : Algebra::identity;
-        since_ = std::min(since, width_);
+        expire(block.count - present.end, out + present.end);
         return defined;
     }
 
@@ -276,15 +325,37 @@ class TruthWindow final : public Kernel {
     void rollback() noexcept override { since_ = saved_; }
     void transfer(Snapshot& snapshot) override {
         snapshot.item(since_);
-        snapshot.require(since_ >= 0 && since_ <= width_);
+        snapshot.require(since_ <= width_);
     }
 
   private:
     static constexpr double deciding = -Algebra::identity;
 
-    std::int64_t width_;
-    std::int64_t since_; // slots since the deciding value, at most `width_`
-    std::int64_t saved_;
+    std::size_t width_;
+    std::size_t since_; // slots since the deciding value, at most `width_`
+    std::size_t saved_;
+
+    // The slots of a part.
+    void push(TruthWord values, std::size_t count, double* out) noexcept {
+        const TruthWord decisive = (deciding > 0 ? values : ~values) & lowest_bits(count);
+        if (decisive == 0) {
+            expire(count, out);
+            return;
+        }
+        const auto first = static_cast<std::size_t>(std::countr_zero(decisive));
+        expire(first, out);
+        fill_values(out + first, count - first, deciding);
+        since_ = count - static_cast<std::size_t>(std::bit_width(decisive));
+    }
+
+    // Slots without the deciding value.
+    void expire(std::size_t count, double* out) noexcept {
+        const std::size_t left = width_ - since_; // slots whose windows contain it, and one
+        const std::size_t held = std::min(count, left == 0 ? 0 : left - 1);
+        fill_values(out, held, deciding);
+        fill_values(out + held, count - held, Algebra::identity);
+        since_ = std::min(since_ + count, width_);
+    }
 };
 
 } // namespace rtamt::discrete
