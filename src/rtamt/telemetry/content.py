@@ -13,6 +13,7 @@ from rtamt.language.value_types import value_names
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.band import band
 from rtamt.results import episodes_in_steps, first_violation
+from rtamt.rewrite.presence import channel_of
 from rtamt.signals.epoch import is_epoch
 from rtamt.signals.outcomes import BoundedSignal
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.episodes import Episode
     from rtamt.signals.signal import Signal
 
@@ -162,11 +164,24 @@ def _variable(name: str, key: str, result: Result) -> Variable:
     values = np.asarray(trace.values(name), np.float64)
     times = trace.nanoseconds(trace.sampled(name))
     lower, upper = (np.asarray(ends, np.float64) for ends in trace.bounds.get(name, (values, values)))
-    missing = trace.missing.get(name)
-    present = np.ones(len(times), bool) if missing is None else ~missing
+    present = _present(name, trace)
     samples = Bounded(times[present], lower[present], upper[present])
     names = value_names(result.specification.types.get(name))
     return Variable(name, key, samples, trace.units.get(name, ""), names)
+
+
+def _present(name: str, trace: DomainTrace) -> NDArray[np.bool_]:
+    """Return which samples of a variable were recorded: not those where it, or its member of a group, is absent."""
+    places = trace.sampled(name)
+    missing = trace.missing.get(name)
+    present: NDArray[np.bool_] = np.ones(len(places), bool) if missing is None else ~missing
+    parts = name.split(".")
+    for end in range(1, len(parts)):
+        channel = channel_of(".".join(parts[:end]))
+        if channel in trace.columns:
+            last = trace.sampled(channel).searchsorted(places, "right") - 1
+            present = present & (last >= 0) & (trace.values(channel)[last] > 0)
+    return present
 
 
 def _finding(name: str, key: str, result: Result, variable_keys: Mapping[str, str], bounds: bool) -> Finding:

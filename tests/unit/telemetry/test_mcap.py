@@ -200,6 +200,17 @@ def test_missing_and_uncertain_samples_have_bounds_and_an_unknown_verdict(tmp_pa
     assert plain["/rtamt/summary"][0]["requirements"][0]["verdict"] == "violated"
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_member_of_a_group_has_no_samples_where_it_is_absent(tmp_path, time):
+    spec = rtamt.parse('group cars = "car_*" { float x }\nalways(forall v in cars: v.x > 5)', time=time)
+    data = {"time": [0, 1, 2], "car_1.x": [30.0, 31.0, 32.0], "car_7.x": [None, 14.0, None]}
+    write_mcap(spec.evaluate(data), tmp_path / "x.mcap")
+    rows = messages(tmp_path / "x.mcap")
+    assert [row["value"] for _, row in rows["/rtamt/signals/car_1_x"]] == [30, 31, 32]
+    assert [(at, row["value"]) for at, row in rows["/rtamt/signals/car_7_x"]] == [(10**9, 14.0)]
+    assert [row["name"] for _, row in rows["/rtamt/signals/valid_car_7"]] == ["false", "true", "false"]
+
+
 def test_bounds_over_time_need_exact_samples(tmp_path):
     result = rtamt.parse("x >= 3").evaluate({"x": [1, 5]}, uncertainty={"x": 0.5})
     with pytest.raises(rtamt.UsageError) as error:
