@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import requirements_and_traces
@@ -140,7 +141,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         say(json_text(found.to_dict()))
     else:
-        _print(found)
+        _print(found, args.set)
     if args.output is not None:
         save_plot(found.plot(), args.output)
     return OK if found.tight else VIOLATED
@@ -170,7 +171,8 @@ def _number(text: str, option: str, example: str) -> float:
         ) from None
 
 
-def _print(found: Mined) -> None:
+def _print(found: Mined, given: Sequence[str]) -> None:
+    """Print what was found; ``given``: values of parameters, of which those that were not mined are needed, too."""
     from rtamt.mining.region import number
 
     named = {1: "larger values are easier", -1: "smaller values are easier", None: "no known direction"}
@@ -188,9 +190,9 @@ def _print(found: Mined) -> None:
             rows.append((name, number(point.values[name]), beyond, by, named[role.direction]))
         say(table(rows, right=[1, 2], width=width_of(sys.stdout)))
         say()
-        say(
-            f"rtamt check: {' '.join(f'--set {name}={number(value)}' for name, value in point.values.items())}"
-        )
+        others = [text for text in given if text.partition("=")[0].strip() not in point.values]
+        sets = [*(f"{name}={number(value)}" for name, value in point.values.items()), *map(quote, others)]
+        say(f"rtamt check: {' '.join(f'--set {each}' for each in sets)}")
         if len(found.alone) > 1:
             say()
             each = sorted(found.alone.items(), key=lambda pair: pair[1])

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 FARTHEST = 1e15
 #: Significant digits of values where no resolution is given.
 SIGNIFICANT = 5
+#: How often a bracket is divided to find the size of a value.
+_ROUNDS = 3
 
 
 def checked_ranges(
@@ -170,17 +172,28 @@ class Finder:
         return found
 
     def _step(self, role: Role, easy: float, hard: float, others: float) -> Fraction:
-        """Return the last significant digit of the tight value, from a bracket that is 2^-14 of the range."""
+        """Return the last significant digit of the tight value, from a bracket that is 2^-14 of the range.
+
+        Where the value is far smaller than the range, the bracket is divided in the same way; a value that is then
+        still no larger than its bracket counts as 0.
+        """
         ends, parts = (Fraction(self._moved(role, easy)), Fraction(self._moved(role, -hard))), 2**14
         values = self._at(role, easy, others)
 
-        def holds(k: int) -> bool:
+        def value(k: int) -> float:
             near = _between(*ends, k, parts)
-            return self._region.holds({**values, role.name: float(round(near)) if role.whole else near})
+            return float(round(near)) if role.whole else near
 
-        k = hardest(holds, parts)
-        near = max(abs(_between(*ends, k, parts)), abs(_between(*ends, min(k + 1, parts), parts)))
-        return digits(Fraction(near) if near else abs(ends[0] - ends[1]) / parts, SIGNIFICANT)
+        sizes = []
+        for _ in range(_ROUNDS):
+            k = hardest(lambda k: self._region.holds({**values, role.name: value(k)}), parts)
+            low, high = _between(*ends, k, parts), _between(*ends, min(k + 1, parts), parts)
+            size = max(abs(low), abs(high))
+            sizes.append(digits(Fraction(size) if size else abs(ends[0] - ends[1]) / parts, SIGNIFICANT))
+            if role.whole or abs(high - low) < size / 4:
+                return sizes[-1]
+            ends = Fraction(low), Fraction(high)
+        return sizes[0]
 
     def _grid(self, role: Role, easy: float, hard: float, step: Fraction) -> Grid:
         ends = Fraction(self._moved(role, easy)), Fraction(self._moved(role, -hard))

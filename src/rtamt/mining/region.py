@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from functools import cached_property
 from math import inf
 from time import monotonic
@@ -14,7 +15,7 @@ from rtamt.language.value_types import Enumeration
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from rtamt.language.formula import Formula
     from rtamt.results import Result
@@ -79,8 +80,12 @@ class Region:
     def margin(self, values: Mapping[str, float]) -> tuple[float, bool]:
         """Return the least robustness over the recordings, and whether all of them satisfy the template."""
         spec = self.spec.with_parameters(**values)
-        results = [self._evaluated(spec, name, values) for name in self._order]
-        return min(result.robustness for result in results), all(result.satisfied for result in results)
+        results = []
+        for name in self._order:
+            result = self._evaluated(spec, name, values)
+            with _named(name, values):  # missing samples may leave both open
+                results.append((result.robustness, result.satisfied))
+        return min(robustness for robustness, _ in results), all(satisfied for _, satisfied in results)
 
     def trace(self, name: str) -> DomainTrace:
         """Return a recording as the template reads it."""
@@ -105,7 +110,10 @@ class Region:
     def _first_violator(self, values: Mapping[str, float]) -> str | None:
         spec = self.spec.with_parameters(**values)
         for name in self._order:
-            if not self._evaluated(spec, name, values).satisfied:
+            result = self._evaluated(spec, name, values)
+            with _named(name, values):
+                satisfied = result.satisfied
+            if not satisfied:
                 # The recording that decides one value mostly decides the next, too.
                 self._order.remove(name)
                 self._order.insert(0, name)
@@ -114,11 +122,18 @@ class Region:
 
     def _evaluated(self, spec: Specification, name: str, values: Mapping[str, float]) -> Result:
         self.budget.take()
-        try:
+        with _named(name, values):
             return spec.evaluate(self._recordings[name], **self._reading)
-        except StlError as error:
-            given = f", with {written(values)}" if values else ""
-            raise TraceError(f"{name}{given}: {error}") from error
+
+
+@contextmanager
+def _named(name: str, values: Mapping[str, float]) -> Iterator[None]:
+    """Put the name of a recording, and the values, before an error."""
+    try:
+        yield
+    except StlError as error:
+        given = f", with {written(values)}" if values else ""
+        raise TraceError(f"{name}{given}: {error}") from error
 
 
 def written(values: Mapping[str, float]) -> str:

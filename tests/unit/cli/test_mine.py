@@ -35,6 +35,15 @@ def test_the_tight_value(run, write):
     assert "limit          8            -  end of the range  larger values are easier" in end.out
 
 
+def test_the_values_that_were_given_are_among_those_to_check_with(run, write):
+    drives(write)
+    write("two.stl", "input float x\nparameter float a = 0\nparameter float b = 0\nalways(x <= a + b)\n")
+    found = run("mine", "two.stl", "a.csv", "b.csv", "--param", "a", "--set", "b=2", "--set", "a=1")
+    (line,) = [line for line in found.out.splitlines() if line.startswith("rtamt check: ")]
+    assert line == "rtamt check: --set a=5.5 --set b=2"
+    assert run("check", "two.stl", "a.csv", "b.csv", *line.split()[2:]).code == 0
+
+
 def test_a_front(run, write):
     drives(write)
     write(

@@ -35,6 +35,29 @@ def test_the_value_does_not_depend_on_the_default(start, scale, tight):
     assert point.tight
 
 
+@pytest.mark.parametrize("start", [0.0, 1e6])
+@pytest.mark.parametrize("tight", [1.2345e-6, -0.012345, 123450.0])
+def test_a_value_far_smaller_than_the_default_has_five_significant_digits(start, tight):
+    spec = rtamt.parse(f"parameter float limit = {start}  always(x <= limit)")
+    (point,) = mine(spec, [{"x": [tight]}]).points
+    assert (point.values, point.tight) == ({"limit": tight}, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "ranges", "start"),
+    [
+        ("always(x <= limit)", {}, "limit=0: "),
+        ("always(abs(x - limit) <= 9)", {"limit": (2, 3)}, "limit=2: "),
+    ],
+)
+def test_a_recording_whose_missing_samples_leave_the_verdict_open_is_named(text, ranges, start):
+    spec = rtamt.parse(f"parameter float limit = 0  {text}")
+    with pytest.raises(TraceError) as failure:
+        mine(spec, {"gaps": {"x": [0, None]}}, ranges=ranges)
+    assert str(failure.value).startswith(f"gaps, with {start}")
+    assert "missing or uncertain; read result.interval" in str(failure.value)
+
+
 def test_a_strict_comparison_needs_the_next_value():
     spec = rtamt.parse("parameter float limit = 9  always(x < limit)")
     (point,) = mine(spec, DRIVES, resolutions={"limit": 0.5}).points
