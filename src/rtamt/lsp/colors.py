@@ -50,7 +50,11 @@ def colored(analysis: Analysis) -> list[Colored]:
     ['keyword', 'number', 'number', 'variable', 'operator', 'number', 'comment']
     """
     found = [*_of_tokens(analysis), *(Colored(span, "comment") for span in analysis.comments)]
-    return sorted(piece for each in found for piece in _on_lines(analysis, each))
+    long = [each for each in found if each.type in ("comment", "string")]
+    if long:  # only these may be on several lines
+        found = [each for each in found if each.type not in ("comment", "string")]
+        found += [piece for each in long for piece in _on_lines(analysis, each)]
+    return sorted(found)
 
 
 def _of_tokens(analysis: Analysis) -> Iterator[Colored]:
