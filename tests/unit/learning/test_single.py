@@ -54,7 +54,7 @@ def finite(spec, rows):
     return values
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(formulas(max_depth=3), ROWS)
 def test_rewards_are_those_of_a_plain_monitor(formula, rows):
     spec = rtamt.parse(str(formula), period=1)
@@ -64,7 +64,7 @@ def test_rewards_are_those_of_a_plain_monitor(formula, rows):
         assert rewards(env) == expected[1:]
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(formulas(max_depth=3), ROWS, st.booleans(), st.sampled_from([0.0, 0.5, 0.99, 1.0]))
 def test_shaping_changes_the_return_by_a_number_that_no_policy_changes(formula, rows, truncates, gamma):
     spec = rtamt.parse(str(formula), period=1)
@@ -80,7 +80,7 @@ def test_shaping_changes_the_return_by_a_number_that_no_policy_changes(formula, 
     assert found == pytest.approx(own + gamma ** (len(rows) - 1) * last - first)
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(formulas(max_depth=3, unbounded_future=True), ROWS)
 def test_interval_rewards_of_a_terminated_episode_add_up_to_its_robustness(formula, rows):
     spec = rtamt.parse(str(formula), period=1)
@@ -104,7 +104,7 @@ def test_interval_rewards_of_a_terminated_episode_add_up_to_its_robustness(formu
     assert sum(found) == pytest.approx(expected - (first.lower + first.upper) / 2)
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(formulas(max_depth=3, unbounded_future=True), ROWS)
 def test_an_episode_terminates_with_the_earliest_verdict(formula, rows):
     spec = rtamt.parse(str(formula), period=1)

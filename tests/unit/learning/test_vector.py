@@ -47,7 +47,7 @@ def one_by_one(episodes, mode, spec, signals, count, *, truncates=False, **more)
     return columns
 
 
-@settings(max_examples=80)
+@settings(max_examples=50)
 @given(
     formulas(max_depth=3),
     EPISODES,
