@@ -313,6 +313,22 @@ std::optional<std::size_t> Reorder::drop(const KeySpan& keys) {
     return std::nullopt;
 }
 
+bool Reorder::discard(const KeySpan& keys, double time) {
+    const auto place = place_of(keys, 0);
+    if (!place) return false;
+    Line& line = lines_[*place];
+    std::uint32_t before = nothing;
+    for (std::uint32_t at = line.first; at != nothing; before = at, at = next_[at]) {
+        if (times_[at] != time) continue;
+        std::uint32_t& link = before == nothing ? line.first : next_[before];
+        link = next_[at];
+        if (line.last == at) line.last = before;
+        free_.push_back(at); // there is room for all
+        return true;
+    }
+    return false;
+}
+
 std::vector<std::uint32_t> Reorder::stale(double before) const {
     std::vector<std::uint32_t> found;
     for (std::uint32_t place = 0; place < size(); ++place) {

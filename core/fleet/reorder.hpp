@@ -68,6 +68,10 @@ class Reorder {
     // forgets none then.
     [[nodiscard]] std::optional<std::size_t> drop(const KeySpan& keys);
 
+    // Forgets the sample of a time that waits, of the first of some keys; returns whether there was
+    // one. The watermark stays.
+    [[nodiscard]] bool discard(const KeySpan& keys, double time);
+
     // Whether a sample of a key has left.
     [[nodiscard]] bool has_left(std::uint32_t place) const noexcept {
         return lines_[place].left != never;

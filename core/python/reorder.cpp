@@ -106,6 +106,13 @@ void add_reorder(const nb::module_& m) {
             nb::arg("keys"),
             "Forget keys; return the index of the first that is not there, and forget none then.")
         .def(
+            "discard",
+            [](Reorder& self, const nb::object& key, double time) {
+                return self.discard(GivenKeys(key).span(), time);
+            },
+            nb::arg("key"), nb::arg("time"),
+            "Forget the sample of a key and a time that waits; return whether there was one.")
+        .def(
             "stale",
             [](const Reorder& self, double before) {
                 nb::list list;

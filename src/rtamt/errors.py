@@ -22,7 +22,7 @@ from __future__ import annotations
 import copy
 import re
 import reprlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -103,6 +103,14 @@ class TraceError(StlError):
 
 class EvaluationError(StlError):
     """A sub-formula is undefined at an instant; the message names both."""
+
+
+class WaitedError(EvaluationError):
+    """A sample that waited in a fleet has no value; ``key`` and ``time``: which one."""
+
+    def __init__(self, message: str, key: Any, time: float) -> None:
+        super().__init__(message)
+        self.key, self.time = key, time
 
 
 class UsageError(StlError):

@@ -44,7 +44,8 @@ with --semantics boolean it is always decided. Infinities are the strings "inf" 
 A message that is not a sample, and a sample whose time is not after the one before of its key, or behind by more than
 --lateness, go to the topic of dead letters unchanged, with the headers rtamt.error, rtamt.reason (rejected or late),
 rtamt.topic, rtamt.partition and rtamt.offset. One that is too large for that topic goes there without key and value,
-with the header rtamt.omitted. The other samples of the key are not affected.
+with the header rtamt.omitted. With --lateness, a sample that has waited and then has no value is discarded: its key
+and the error go there. The other samples of the key are not affected.
 
 Checkpoints are written after the broker has confirmed the results: a state and an offset, in one object for each
 partition. After a crash or a kill, the same command continues there, and nothing is lost. Results after the last

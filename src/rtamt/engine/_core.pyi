@@ -207,6 +207,9 @@ class Reorder:
     def drop(self, keys: NDArray[Any]) -> int | None:
         """Forget keys; return the index of the first that is not there, and forget none then."""
 
+    def discard(self, key: NDArray[Any], time: float) -> bool:
+        """Forget the sample of a key and a time that waits; return whether there was one."""
+
     def stale(self, before: float) -> list[int] | list[str] | list[bytes]:
         """The keys whose newest sample is before a time."""
 

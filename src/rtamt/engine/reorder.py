@@ -183,6 +183,10 @@ class Reordering:
         missing: int | None = self._core.drop(rows_of(keys))
         return missing
 
+    def discard(self, key: NDArray[Any], time: float) -> bool:
+        """Forget the sample of a time that waits, of the key of an array of one; return whether there was one."""
+        return bool(self._core.discard(rows_of(key), time))
+
     def stale(self, before: float) -> list[Any]:
         """Return the keys whose newest sample is before a time."""
         return list(self._core.stale(before))

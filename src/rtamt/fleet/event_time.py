@@ -202,6 +202,10 @@ class EventTime(InOrder):
             assert absent is None, "what has left the buffer is monitored"
         return missing
 
+    def discard(self, key: NDArray[Any], time: float) -> bool:
+        """Forget the sample of a time that waits, of the key of an array of one; return whether there was one."""
+        return bool(self._buffer.discard(key, time))
+
     def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:
         """See :class:`InOrder`."""
         stale = self._buffer.stale(before)

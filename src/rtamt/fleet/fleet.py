@@ -214,6 +214,11 @@ class Fleet:
             )
 
     @exclusive
+    def _discard(self, key: Any, time: float) -> bool:
+        """Forget a sample that waits; return whether there was one. The watermark of the key stays."""
+        return isinstance(self._samples, EventTime) and self._samples.discard(keys_of([key]), time)
+
+    @exclusive
     def expire(self, *, before: float) -> int:
         """Forget the keys whose last sample is before a time in seconds; return how many.
 

@@ -13,6 +13,7 @@ import json
 import time
 from collections import Counter
 from math import isfinite
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
@@ -203,6 +204,10 @@ class Worker:
             self._note(samples, taken)
             for rejected in taken.rejected:
                 self._divert(origins[rejected.position], rejected)
+            for discarded in taken.discarded:
+                self._note_wrong("rejected")
+                headers = self._headers(discarded.error, "rejected")
+                self._produce(self._settings.dead_letters, None, discarded.key.encode(), headers)
             partition.offset = some[-1].offset() + 1
             self.counts["samples"] += len(samples) - len(taken.rejected)
 
@@ -239,23 +244,31 @@ class Worker:
 
     def _bury(self, message: Any, error: str, reason: str) -> None:
         """Send a message to the dead letters, as it came, with the error and its origin."""
-        self.counts[reason] += 1
-        if self._metrics is not None:
-            self._metrics.count(f"rtamt_{reason}_total")
-        headers = {
-            "rtamt.error": error[:_LONGEST_ERROR],
-            "rtamt.reason": reason,
-            "rtamt.topic": self._settings.topic,
-            "rtamt.partition": str(message.partition()),
-            "rtamt.offset": str(message.offset()),
-        }
-        coded = [(name, text.encode(errors="replace")) for name, text in headers.items()]
+        self._note_wrong(reason)
+        origin = {"rtamt.partition": str(message.partition()), "rtamt.offset": str(message.offset())}
+        coded = self._headers(error, reason, origin)
         try:
             self._produce(self._settings.dead_letters, message.value(), message.key(), coded)
         except self._kafka.KafkaException as wrong:
             if not self._is_too_large(wrong.args[0]):
                 raise
             self._bury_alone(message, coded)
+
+    def _note_wrong(self, reason: str) -> None:
+        self.counts[reason] += 1
+        if self._metrics is not None:
+            self._metrics.count(f"rtamt_{reason}_total")
+
+    def _headers(
+        self, error: str, reason: str, origin: Mapping[str, str] = MappingProxyType({})
+    ) -> list[tuple[str, bytes]]:
+        headers = {
+            "rtamt.error": error[:_LONGEST_ERROR],
+            "rtamt.reason": reason,
+            "rtamt.topic": self._settings.topic,
+            **origin,
+        }
+        return [(name, text.encode(errors="replace")) for name, text in headers.items()]
 
     def _is_too_large(self, error: Any) -> bool:
         return bool(error.code() == self._kafka.KafkaError.MSG_SIZE_TOO_LARGE)

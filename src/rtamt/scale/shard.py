@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.errors import EvaluationError, StlError, TraceError, UsageError
+from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, WaitedError
 from rtamt.fleet.fleet import Fleet
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.signals.counting import is_implausible
@@ -73,12 +73,21 @@ class Rejected(NamedTuple):
     late: bool
 
 
+class Discarded(NamedTuple):
+    """A sample of an earlier batch that waited, has no value, and changes nothing."""
+
+    key: str
+    time: float
+    error: str
+
+
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """What a batch has led to: results and rejected samples, each in the order of the batch."""
+    """What a batch has led to: results and rejected samples, each in the order of the batch, and discarded ones."""
 
     results: list[Result] = field(default_factory=list)
     rejected: list[Rejected] = field(default_factory=list)
+    discarded: list[Discarded] = field(default_factory=list)
 
 
 class Shard:
@@ -86,7 +95,8 @@ class Shard:
 
     ``state``: what :meth:`snapshot` returned, perhaps for another specification. A gap between two samples of a key
     restarts its trace. ``lateness``: how late a sample may arrive (:class:`rtamt.Fleet`); by default those of a key
-    come in the order of their times. Where a sample that has waited has no value, the trace of its key starts again.
+    come in the order of their times. A sample that has waited and turns out to have no value is discarded, as if it had
+    not come.
     ``settings``: those of ``Specification.monitor``.
 
     >>> import rtamt
@@ -145,12 +155,12 @@ class Shard:
             if end - first == 1:
                 time = samples[first].time
                 plausible = isfinite(time) and not is_implausible(time)
+                if isinstance(error, WaitedError) and self._fleet._discard(error.key, error.time):
+                    taken.discarded.append(Discarded(error.key, error.time, str(error)))
+                    waiting.append((first, end))  # what has released it may be right
+                    continue
                 late = isinstance(error, TraceError) and error.variable == "time" and plausible
                 text = str(error).replace(" at index 0 of the batch", "", 1)
-                key = samples[first].key
-                if self._waits and isinstance(error, EvaluationError) and key in self._fleet:
-                    self._fleet.drop([key])  # or the sample that has no value would be taken again and again
-                    text += "; the trace of the key starts again"
                 taken.rejected.append(Rejected(first, text, late))
                 continue
             index = getattr(error, "index", None)

@@ -166,6 +166,7 @@ def _rows(shard: Shard, samples: list[Sample]) -> list[tuple[Any, ...]]:
     rows += [(*result, result.satisfied, None, False) for result in taken.results]
     for position, error, late in taken.rejected:
         rows.append((*good[position][:2], None, None, error, late))
+    rows += [(key, time, None, None, error, False) for key, time, error in taken.discarded]
     return rows
 
 

@@ -33,6 +33,7 @@ def taken_in(batches, lateness=None):
         taken = shard.take(batch)
         results += taken.results
         rejected += [(at + each.position, each.error, each.late) for each in taken.rejected]
+        rejected += [(-1, each.error, False) for each in taken.discarded]
         at += len(batch)
         shard = Shard(SPEC, state=shard.snapshot(), lateness=lateness)
     return results, rejected
@@ -75,15 +76,29 @@ def test_what_is_left_equals_offline_robustness():
 def test_samples_that_wait_do_not_depend_on_batches():
     given = samples()
     results, rejected = taken_in(([each] for each in given), "4s")
+    rejected.sort()
     assert len(results) > 50
-    assert {"late" if late else error.rpartition("; ")[2] for _, error, late in rejected} > {
-        "late",
-        "the trace of the key starts again",
-    }
+    assert {position < 0 for position, _, _ in rejected} == {True, False}
     for batches in ([given], [given[:7], given[7:300], [], given[300:]]):
         found = taken_in(batches, "4s")
         assert sorted(found[0]) == sorted(results)
         assert sorted(found[1]) == rejected
+
+
+def test_a_sample_without_a_value_neither_loses_those_that_wait_nor_doubles_results():
+    shard = Shard(rtamt.parse("sqrt(x) <= 3"), lateness="3s")
+    values = [4.0, 1.0, -1.0, 9.0, 16.0, 4.0, 4.0, 4.0, 4.0]
+    given = [Sample("a", float(t), (x,)) for t, x in enumerate(values)]
+    taken = [shard.take([each]) for each in [*given[:6], *given]]
+    results = [(each.time, each.robustness) for one in taken for each in one.results]
+    assert results == [(0.0, 1.0), (1.0, 2.0), (3.0, 0.0), (4.0, -1.0), (5.0, 1.0)]
+    assert [(each.key, each.time) for one in taken for each in one.discarded] == [("a", 2.0)]
+    (error,) = (each.error for one in taken for each in one.discarded)
+    assert error.startswith("key 'a', a sample that waited: 'sqrt(x)' has no value")
+    again = [one.rejected for one in taken[6:]]
+    assert [[each.late for each in some] for some in again] == [[True]] * 2 + [[False]] + [[True]] * 3 + [
+        []
+    ] * 3
 
 
 def test_samples_in_any_order_have_the_results_of_those_in_order():

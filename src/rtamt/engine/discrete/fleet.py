@@ -13,7 +13,7 @@ import numpy as np
 from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.native import core
 from rtamt.engine.reorder import Reordering, full, place_of, rows_of, sentence
-from rtamt.errors import EvaluationError, TraceError, UsageError
+from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.signals.arrays import TIME, columns_of
 from rtamt.signals.coding import require_truths
@@ -145,7 +145,8 @@ class DiscreteFleet:
         if reason == "undefined":
             failure = core().Undefined(instruction, sample)
             culprit = undefined(self._session.culprit(failure), at_sample(sample, moment))
-            return EvaluationError(f"{where}: {culprit}")
+            text = f"{where}: {culprit}"
+            return EvaluationError(text) if place is not None else WaitedError(text, keys[index].item(), time)
         monitor = self._monitor
         error: Exception
         if reason == "value":
