@@ -1,9 +1,11 @@
 """The page of ``rtamt play`` in a real browser: typing, dragging, loading, errors."""
 
+import base64
 import signal
 import subprocess
 import sys
 import time
+import zlib
 
 import pytest
 
@@ -336,6 +338,33 @@ def test_a_damaged_link_is_a_sentence(browser, address):
         browser.run("document.getElementById('toast').textContent")
         == "The link is damaged: the page starts without it."
     )
+
+
+def link_of(text):
+    packed = zlib.compressobj(wbits=-15)
+    data = packed.compress(text.encode()) + packed.flush()
+    return "#1" + base64.urlsafe_b64encode(data).decode().rstrip("=")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "5",
+        '{"text": 5}',
+        '{"signals": {"x": {"hold": true, "points": []}}}',
+        '{"signals": {"x": {"hold": true, "points": [[1, 0], [0, 0]]}}}',
+        '{"recording": {"name": "a.csv", "bytes": "!"}}',
+        f'{{"text": "{" " * 100_000_000}"}}',
+    ],
+    ids=["number", "text", "no points", "disorder", "bytes", "bomb"],
+)
+def test_a_link_with_other_data_leaves_no_broken_page(browser, address, text):
+    opened(browser, f"{address}{link_of(text)}")
+    assert (
+        browser.run("document.getElementById('toast').textContent")
+        == "The link is damaged: the page starts without it."
+    )
+    assert browser.errors == []
 
 
 def test_everything_that_is_operated_has_a_name_and_the_verdict_is_announced(page):
