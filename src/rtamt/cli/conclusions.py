@@ -59,7 +59,8 @@ def show(name: str, analysis: Analysis, args: argparse.Namespace) -> int:
 
 def _print(name: str, analysis: Analysis, plots: dict[Conclusion, str], color: bool) -> None:
     step = format_duration(analysis.period)
-    say(f"{name}: traces up to {analysis.samples} samples of {step}, {len(analysis.conclusions)} answers")
+    samples, answers = _counted(analysis.samples, "sample"), _counted(len(analysis.conclusions), "answer")
+    say(f"{name}: traces up to {samples} of {step}, {answers}")
     for mark, kind, found in (
         ("finding", "violated", analysis.findings),
         ("open", "warning", analysis.unanswered),
@@ -70,6 +71,10 @@ def _print(name: str, analysis: Analysis, plots: dict[Conclusion, str], color: b
                 say(f"    {plots[each]}")
     for note in analysis.notes:
         say(f"  note: {note}")
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _row(name: str, conclusion: Conclusion, plot: str | None) -> dict[str, object]:

@@ -32,6 +32,12 @@ def test_files_and_folders_are_analysed_and_a_finding_is_exit_code_one(run, writ
     )
 
 
+def test_one_sample_and_one_answer_are_not_plural(run, write):
+    write("old.stl", "require A: always(x <= 1)\n")
+    found = run("diff", "old.stl", "old.stl", "--samples", "1")
+    assert found.out.splitlines()[0] == "old.stl -> old.stl: traces up to 1 sample of 1 s, 1 answer"
+
+
 def test_json_has_every_answer_with_its_trace(run, write):
     write("spec.stl", SPEC)
     rows = [
