@@ -75,8 +75,9 @@ def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
             named = dict(zip(here.input_names, row, strict=True))
             holds = truth.step(*(named[name] for name in truth.input_names))
         except EvaluationError as error:
-            sentence = re.escape(f"{error}.")
-            with pytest.raises(c_api.RefusedError, match=sentence):
+            # Why an operator has no value is in the operator table, which a program leaves behind.
+            where = str(error).rpartition(": ")[0]
+            with pytest.raises(c_api.RefusedError, match=re.escape(where)):
                 there.step(row)
             return
         got = there.step(row)
