@@ -36,8 +36,8 @@ def view(result: Result, *, at: Any = None, height: int = _HEIGHT) -> ResultWidg
     >>> shown.height
     400
     """
-    if not height > 0:
-        raise UsageError(f"height is {shown(height)}, expected a number of pixels")
+    if not (isinstance(height, int) and height > 0):
+        raise UsageError(f"height is {shown(height)}, expected a whole number of pixels")
     static = StaticView(_page(result, at), result._repr_html_(), height)
     try:
         from rtamt.notebook.widget import ResultWidget

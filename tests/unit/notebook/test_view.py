@@ -158,9 +158,11 @@ def test_a_page_has_a_card_for_each_requirement(result):
     assert "&#39;x &lt;= 3&#39; fails at 1 s (-2)" in page
 
 
-@pytest.mark.parametrize("height", [0, -1])
-def test_a_height_is_positive(result, height):
-    with pytest.raises(rtamt.UsageError, match=f"^height is {height}, expected a number of pixels$"):
+@pytest.mark.parametrize(
+    ("height", "shown"), [(0, "0"), (-1, "-1"), (2.5, "2.5"), ("big", "'big'"), (None, "None")]
+)
+def test_a_height_is_a_positive_whole_number(result, height, shown):
+    with pytest.raises(rtamt.UsageError, match=f"^height is {shown}, expected a whole number of pixels$"):
         view(result, height=height)
 
 
