@@ -9,7 +9,7 @@ from __future__ import annotations
 import statistics
 import time
 from itertools import count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -68,6 +68,21 @@ def of_stream(text: str, rounds: int = 6) -> float:
         fleet.update_many(keys, swapped, columns)
         spent.append((time.process_time_ns() - start) / KEYS)
     return statistics.median(spent[8:])
+
+
+def of_verdicts(text: str, samples: int, rounds: int = 3, keys: int = 10_000, **settings: Any) -> float:
+    """Return nanoseconds a sample of a fleet with a monitor for each key, in batches of some samples of each key."""
+    spec, random = rtamt.parse(text), np.random.default_rng(1)
+    fleet = rtamt.Fleet(spec, keys, **settings)
+    columns = {name: random.normal(size=keys * samples) for name in spec.input_names}
+    spent = []
+    for number in range(1 + rounds):
+        order = random.permutation(keys)
+        times = np.repeat(np.arange(samples) + float(number * samples), keys)
+        start = time.process_time_ns()
+        fleet.update_many(np.tile(order, samples), times, columns)
+        spent.append((time.process_time_ns() - start) / (keys * samples))
+    return statistics.median(spent[1:])
 
 
 def of_monitors(text: str) -> Callable[[], float]:

@@ -87,6 +87,10 @@ from rtamt.errors import STLParseException as STLParseException
 from rtamt.errors import TraceError as TraceError
 from rtamt.errors import UsageError as UsageError
 from rtamt.fleet.fleet import Fleet as Fleet
+from rtamt.fleet.reports import FleetBounds as FleetBounds
+from rtamt.fleet.reports import FleetCausation as FleetCausation
+from rtamt.fleet.reports import FleetPoints as FleetPoints
+from rtamt.fleet.reports import FleetVerdicts as FleetVerdicts
 from rtamt.fleet.suite import Suite as Suite
 from rtamt.fleet.updates import FleetUpdate as FleetUpdate
 from rtamt.fleet.verdict_table import VerdictTable as VerdictTable

@@ -232,7 +232,10 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         ),
     ),
     "Monitor": ("", ("Specification.monitor", "Monitor", "DenseMonitor")),
-    "Monitor many keys": ("", ("Fleet", "FleetUpdate")),
+    "Monitor many keys": ("", (
+            "Fleet", "FleetUpdate", "FleetPoints", "FleetVerdicts", "FleetBounds", "rtamt.fleet.reports.FleetChanges",
+            "FleetCausation",
+        )),
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (

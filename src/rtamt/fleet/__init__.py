@@ -6,6 +6,9 @@ module                purpose
 fleet                 ``Fleet``: an array of monitors by key: vehicles, machines, sessions
 updates               what a batch has made known
 keys                  keys as arrays
+per_key               a monitor for each key: dense time, and the other verdict modes
+collectors            collects what these monitors report
+reports               what they report, as arrays
 event_time            late samples, gaps, and what a snapshot has of them
 suite                 ``Suite``: many requirements compiled once into few programs
 groups                requirements that read a recording in the same way

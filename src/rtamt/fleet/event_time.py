@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rtamt.errors import UsageError
+from rtamt.errors import TraceError, UsageError
+from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.signals.arrays import timestamps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from rtamt.engine import OnlineMonitor
     from rtamt.signals.arrays import FloatArray
 
 
@@ -85,9 +88,50 @@ class InOrder:
 
     #: How many samples were late, and how many wait for earlier ones.
     late = waiting = 0
+    _lateness: float | None = None
 
-    def __init__(self, records: Any) -> None:
-        self.records = records
+    def __init__(self, records: Any, requirements: tuple[str, ...]) -> None:
+        self.records, self._requirements = records, requirements
+
+    def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
+        """Take a batch as a user gives it; return what it made known."""
+        seconds, found = self.records.columns(times, columns)
+        if len(keys) != len(seconds):
+            raise TraceError(
+                f"there are {len(keys)} keys and {len(seconds)} times: give one of each for every sample"
+            )
+        return self._updated(self.update(keys, seconds, found))
+
+    def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
+        """Release what waits up to a time; ``arrays``: makes an array of keys."""
+        return self._updated(self.release(_seconds(time), arrays))
+
+    def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
+        """Set the current time: release what waits up to the lateness before it."""
+        return self._updated(self.release(_seconds(now) - (self._lateness or 0.0), arrays))
+
+    def _updated(self, taken: Taken) -> FleetUpdate:
+        outputs = taken.outputs
+        released = Released(
+            np.concatenate([each.keys for each in outputs]),
+            np.concatenate([each.at for each in outputs]),
+            np.concatenate([each.found for each in outputs]),
+            np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
+        )
+        if not self._requirements:
+            (one,) = outputs
+            return FleetUpdate(one.values, one.known, one.times, one.warming, taken.late, released)
+        values = np.stack([each.values for each in outputs], axis=1)
+        known = np.stack([each.known for each in outputs], axis=1)
+        times = np.stack([each.times for each in outputs], axis=1)
+        warming = np.stack([each.warming for each in outputs], axis=1)
+        return FleetUpdate(values, known, times, warming, taken.late, released, self._requirements)
+
+    def monitor(self, key: NDArray[Any]) -> OnlineMonitor | None:  # noqa: ARG002
+        """Raise :class:`UsageError`: keys have records."""
+        raise UsageError(
+            "a fleet of delayed verdicts in discrete time has a record for each key, and no monitor; read update_many()"
+        )
 
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
         """Take a batch. Raises for wrong data, and nothing has changed."""
@@ -99,11 +143,16 @@ class InOrder:
         ]
         return Taken(np.zeros(len(times), np.bool_), outputs)
 
-    def watermark(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002
-        """Release what waits up to a time; ``arrays``: makes an array of keys."""
+    def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002
+        """Release what waits up to a time in seconds."""
         raise UsageError(
             "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)"
         )
+
+    @property
+    def capacity(self) -> int:
+        """How many keys there may be."""
+        return int(self.records.capacity)
 
     @property
     def memory(self) -> int:
@@ -139,8 +188,15 @@ class InOrder:
 class EventTime(InOrder):
     """Samples that a reorder buffer for each key puts in order."""
 
-    def __init__(self, records: Any, lateness: float | None, gaps: Gaps, state: bytes | None) -> None:
-        super().__init__(records)
+    def __init__(
+        self,
+        records: Any,
+        requirements: tuple[str, ...],
+        lateness: float | None,
+        gaps: Gaps,
+        state: bytes | None,
+    ) -> None:
+        super().__init__(records, requirements)
         self._lateness = lateness
         self._buffer = records.reordering(lateness, gaps.filled, state)
 
@@ -150,10 +206,10 @@ class EventTime(InOrder):
         late, ready = self._buffer.offer(keys, times, columns)
         return self._taken(late, keys[ready.places], ready)
 
-    def watermark(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:
+    def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:
         """See :class:`InOrder`."""
         if self._lateness is None:
-            return super().watermark(time, arrays)
+            return super().release(time, arrays)
         keys, ready = self._buffer.advance(time)
         return self._taken(np.empty(0, np.bool_), arrays(keys), ready)
 
@@ -231,6 +287,17 @@ def _sorted_out(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output
         out[at] = found[own]
     others = ~own & known.known
     return Output(values, final, times, warming, keys[others], known.times[others], known.values[others])
+
+
+def _seconds(time: Any) -> float:
+    """Return a watermark in seconds."""
+    if isinstance(time, int | float | np.number) and not isinstance(time, bool):
+        seconds = float(time)
+    else:
+        seconds = float(timestamps([time]).seconds[0])
+    if isnan(seconds):
+        raise TraceError("the watermark is NaN: give a number of seconds")
+    return seconds
 
 
 # ---- states --------------------------------------------------------------------------------------

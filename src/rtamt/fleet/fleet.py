@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isnan
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.fleet.event_time import GAPS, EventTime, InOrder, unpacked
 from rtamt.fleet.keys import capacity_of, keys_of
 from rtamt.fleet.suite import Suite
-from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
-from rtamt.signals.arrays import timestamps
 from rtamt.specification import Specification
 from rtamt.usage_guard import UsageGuard, exclusive
+from rtamt.verdicts.modes import DELAYED, mode_of
 
 if TYPE_CHECKING:
     from rtamt.engine import OnlineMonitor
-    from rtamt.fleet.event_time import EventState, Gaps, Taken
+    from rtamt.fleet.event_time import EventState, Gaps
+    from rtamt.fleet.per_key import MonitorPerKey
     from rtamt.language.units.durations import Duration
     from rtamt.signals.binding import Binding
 
 
 class Fleet:
-    """Monitors one specification, or many, for many keys, such as vehicles, in discrete time.
+    """Monitors one specification, or many, for many keys, such as vehicles.
 
     ``spec``: a specification or, for a column of values for each requirement, a :class:`Suite` of specifications with
     the same sampling period. A suite that does not select the robustness reports +inf where a requirement holds, and
@@ -38,7 +35,10 @@ class Fleet:
     ``"restart"`` the trace of the key with the sample after the gap, or ``"hold"`` the last value where whole
     periods are missing. ``settings``: those of ``Specification.monitor``.
 
-    Each key has the results of its own ``spec.monitor(**settings)``, bit for bit.
+    Each key has the results of its own ``spec.monitor(**settings)``, bit for bit. Delayed verdicts in discrete time run
+    as records of the compiled core, a fixed number of bytes each. In dense time and in the other verdict modes, the
+    fleet has a monitor for each key: it costs more, and has no snapshots, suites and ``gaps``. ``lateness`` is then a
+    setting of ``verdict="interval"``, whose bounds late samples narrow.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always[0:1](x >= 3)")
@@ -60,17 +60,20 @@ class Fleet:
     ) -> None:
         if gaps not in GAPS:
             raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
-        self._open(spec, capacity_of(capacity), _lateness(lateness), GAPS[gaps], settings)
+        self._open(spec, capacity_of(capacity), lateness, GAPS[gaps], settings)
 
     def _open(
         self,
         spec: Specification | Suite,
         capacity: int,
-        lateness: float | None,
+        lateness: Duration | None,
         gaps: Gaps,
         settings: Mapping[str, Any],
         state: EventState | None = None,
     ) -> None:
+        mode = mode_of(settings.get("verdict", DELAYED), {})
+        if lateness is not None and "lateness" in mode.settings:
+            settings, lateness = {**settings, "lateness": lateness}, None
         monitor, specs, self.requirements = _monitor_of(spec, settings)
         records = monitor.records(
             capacity,
@@ -79,42 +82,52 @@ class Fleet:
             identities={name: identity for each in specs for name, identity in _identities(each).items()},
             watched=bool(self.requirements),
         )
-        if records is None:
-            raise UsageError(
-                "a fleet monitors the delayed robustness in discrete time, without custom operators; "
-                "make a monitor for each key instead"
-            )
         self._usage = UsageGuard()
         self._binding: Binding = monitor._binding
-        self._gaps, self._lateness = gaps, lateness
+        self._gaps = gaps
+        #: Whether a batch may lack variables: whether it may is for the monitors of the keys.
+        self._partial = records is None
+        self._samples: InOrder | MonitorPerKey
+        if records is None:
+            self._samples = _monitors(monitor, self.requirements, capacity, lateness, gaps, settings, state)
+            return
+        late = None if lateness is None else float(duration(lateness))
         waiting = None if state is None else state.waiting
-        ordered = lateness is None and not gaps.filled and waiting is None
-        self._samples = InOrder(records) if ordered else EventTime(records, lateness, gaps, waiting)
+        ordered = late is None and not gaps.filled and waiting is None
+        self._samples = (
+            InOrder(records, self.requirements)
+            if ordered
+            else EventTime(records, self.requirements, late, gaps, waiting)
+        )
 
     @exclusive
-    def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
+    def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> Any:
         """Take a batch of samples: the key and the time of each, and a column of values for each variable.
 
         ``keys``: integers, texts or bytes, in any order; without ``lateness``, samples of one key are in the order of
-        their times. New keys start a trace. Raises :class:`TraceError` for wrong data and :class:`EvaluationError`
-        where an operation has no value, with the key and the index in the batch; no key has changed then.
+        their times. New keys start a trace. Returns what the batch made known: a :class:`FleetUpdate`, for dense time
+        a :class:`FleetPoints`, and for the verdict modes a :class:`FleetVerdicts`, :class:`FleetBounds` or
+        :class:`FleetCausation`. Outside of delayed verdicts in discrete time, values are what ``update`` of the monitor
+        takes, such as None or bounds, and a masked value of an array leaves its variable out of the sample.
+
+        Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no value, with the
+        key and the index in the batch; no key has changed then.
         """
         given = keys_of(keys)
         if not isinstance(columns, Mapping):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
-        seconds, found = self._samples.records.columns(times, self._binding.applied(dict(columns)))
-        if len(given) != len(seconds):
-            raise TraceError(
-                f"there are {len(given)} keys and {len(seconds)} times: give one of each for every sample"
-            )
-        return self._updated(self._samples.update(given, seconds, found))
+        found = self._binding.applied(dict(columns), partial=self._partial)
+        return self._samples.take(given, times, found)
 
     @exclusive
-    def watermark(self, time: Any) -> FleetUpdate:
+    def watermark(self, time: Any) -> Any:
         """Declare that no sample before a time will arrive, of any key: what waits up to it is released.
 
         ``time``: in seconds, or a date. Earlier samples are late from now on. Returns an update with an empty batch:
         see ``released``.
+
+        With ``verdict="interval"``, and with ``verdict="causation"`` in dense time, it is ``watermark`` of the monitor
+        of each key that there is, and the update has a row for each key.
 
         >>> import rtamt
         >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10, lateness="2s")
@@ -123,41 +136,15 @@ class Fleet:
         >>> fleet.watermark(1).released
         Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]), requirements=array([0, 0]))
         """
-        return self._mark(time, 0.0)
+        return self._samples.watermark(time, keys_of)
 
     @exclusive
-    def advance(self, now: Any) -> FleetUpdate:
+    def advance(self, now: Any) -> Any:
         """Set the current time: no sample will arrive that is older than the lateness. As :meth:`watermark`.
 
         For streams with keys that fall silent, whose own samples release nothing.
         """
-        return self._mark(now, self._lateness or 0.0)
-
-    def _mark(self, time: Any, late: float) -> FleetUpdate:
-        if isinstance(time, int | float | np.number) and not isinstance(time, bool):
-            seconds = float(time)
-        else:
-            seconds = float(timestamps([time]).seconds[0])
-        if isnan(seconds):
-            raise TraceError("the watermark is NaN: give a number of seconds")
-        return self._updated(self._samples.watermark(seconds - late, keys_of))
-
-    def _updated(self, taken: Taken) -> FleetUpdate:
-        outputs = taken.outputs
-        released = Released(
-            np.concatenate([each.keys for each in outputs]),
-            np.concatenate([each.at for each in outputs]),
-            np.concatenate([each.found for each in outputs]),
-            np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
-        )
-        if not self.requirements:
-            (one,) = outputs
-            return FleetUpdate(one.values, one.known, one.times, one.warming, taken.late, released)
-        values = np.stack([each.values for each in outputs], axis=1)
-        known = np.stack([each.known for each in outputs], axis=1)
-        times = np.stack([each.times for each in outputs], axis=1)
-        warming = np.stack([each.warming for each in outputs], axis=1)
-        return FleetUpdate(values, known, times, warming, taken.late, released, self.requirements)
+        return self._samples.advance(now, keys_of)
 
     @property
     def late(self) -> int:
@@ -172,7 +159,7 @@ class Fleet:
     @property
     def capacity(self) -> int:
         """The largest number of keys."""
-        return int(self._samples.records.capacity)
+        return self._samples.capacity
 
     @property
     def memory(self) -> int:
@@ -189,6 +176,24 @@ class Fleet:
         except TraceError:
             return False
         return self._samples.contains(given)
+
+    @exclusive
+    def monitor(self, key: Any) -> OnlineMonitor:
+        """Return a copy of the monitor of a key, for bounds at other instants, explanations and what is watched.
+
+        For fleets that have a monitor for each key: in dense time, and in all verdict modes but ``"delayed"``. Raises
+        :class:`UsageError` for a key that is not there.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("once[0:1](x >= 3)"), capacity=10, verdict="interval")
+        >>> _ = fleet.update_many([7, 7], [0, 1], {"x": [5, 4]})
+        >>> fleet.monitor(7).interval(1)
+        Interval(lower=2.0, upper=2.0)
+        """
+        found = self._samples.monitor(keys_of([key]))
+        if found is None:
+            raise UsageError(f"the fleet has no key {shown(key)}")
+        return found
 
     @exclusive
     def keys(self) -> list[Any]:
@@ -234,6 +239,8 @@ class Fleet:
     def snapshot(self) -> bytes:
         """Return the state of all keys, in the format of [the state of a fleet](fleet-state.md).
 
+        Raises :class:`UsageError` where the fleet has a monitor for each key, whose state has no such format.
+
         >>> import rtamt
         >>> spec = rtamt.parse("once(x >= 3)")
         >>> fleet = rtamt.Fleet(spec, capacity=10)
@@ -270,7 +277,7 @@ class Fleet:
         made._open(
             spec,
             0 if capacity is None else capacity_of(capacity),
-            stored.lateness if lateness is None else _lateness(lateness),
+            stored.lateness if lateness is None else lateness,
             stored.gaps if gaps is None else GAPS[gaps],
             settings,
             stored,
@@ -283,6 +290,10 @@ def _monitor_of(
 ) -> tuple[OnlineMonitor, tuple[Specification, ...], tuple[str, ...]]:
     """Return a monitor, the specifications that it is of, and the names of requirements that it watches."""
     if isinstance(spec, Suite):
+        if "verdict" in settings:
+            raise UsageError(
+                "a fleet of a suite has delayed verdicts; for verdict=, make a fleet of each specification"
+            )
         if settings:
             raise UsageError(
                 f"{next(iter(settings))}= is a setting of the suite: write Suite(specs, {next(iter(settings))}=...)"
@@ -293,11 +304,31 @@ def _monitor_of(
         raise UsageError(
             f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
         )
+    spec.require_no_groups("a fleet")
     return spec.monitor(**settings), (spec,), ()
 
 
-def _lateness(given: Duration | None) -> float | None:
-    return None if given is None else float(duration(given))
+def _monitors(
+    monitor: OnlineMonitor,
+    requirements: tuple[str, ...],
+    capacity: int,
+    lateness: Duration | None,
+    gaps: Gaps,
+    settings: Mapping[str, Any],
+    state: EventState | None,
+) -> MonitorPerKey:
+    """Return a monitor for each key; raise :class:`UsageError` where there can be none."""
+    from rtamt.fleet.collectors import collector_of  # with all verdict modes, which records do not need
+    from rtamt.fleet.per_key import MonitorPerKey, no_state
+
+    if requirements:
+        raise UsageError(
+            "a fleet of a suite monitors the delayed robustness in discrete time, without custom operators; make a "
+            "fleet of each specification"
+        )
+    if state is not None:
+        raise no_state(collector_of(monitor).what)
+    return MonitorPerKey(monitor, capacity, lateness=lateness, gaps=gaps, unit=settings.get("time_unit"))
 
 
 def _identities(spec: Specification) -> dict[str, str]:

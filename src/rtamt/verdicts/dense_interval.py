@@ -13,7 +13,7 @@ from rtamt.signals.outcomes import Interval
 from rtamt.signals.runs import compared, merged
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
-from rtamt.verdicts.interval import Change, IntervalMonitor
+from rtamt.verdicts.interval import Change, IntervalMonitor, LateSampleError
 from rtamt.verdicts.prediction import later_steps
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
                 variable=arrays.TIME,
                 index=self.samples,
             )
-        raise TraceError(
+        raise LateSampleError(
             f"sample {self.samples} is of time {scale.show(tick)}, later than the lateness of "
             f"{format_duration(self._lateness)} allows: {final} allow for more lateness",
             variable=arrays.TIME,

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.native import EarlyMonitorBase
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.regular import irregular
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
-from rtamt.verdicts.interval import Change, IntervalMonitor
+from rtamt.verdicts.interval import Change, IntervalMonitor, LateSampleError
 from rtamt.verdicts.prediction import Later, later_samples
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if place is None:
             raise irregular(self.samples, time, last, self._step, self._tolerance)
         if place <= backend.closed:
-            raise TraceError(
+            raise LateSampleError(
                 f"sample {self.samples} is of time {time:.15g} s, later than the lateness of "
                 f"{format_duration(self._lateness)} allows: what was up to {backend.time(backend.closed):.15g} s "
                 f"is final; leave it out, or allow for more lateness",

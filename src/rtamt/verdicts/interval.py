@@ -45,6 +45,10 @@ class Change(NamedTuple):
     retracted: bool = False
 
 
+class LateSampleError(TraceError):
+    """A sample came later than the lateness allows; a :class:`TraceError` to users."""
+
+
 class IntervalMonitor(EarlyMonitor):
     """Bounds of the robustness from the samples so far.
 

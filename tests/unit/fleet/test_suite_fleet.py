@@ -101,7 +101,12 @@ def test_a_state_goes_from_a_specification_to_a_suite() -> None:
         ),
         (
             lambda: rtamt.Fleet(rtamt.Suite(rtamt.parse("x > 3", time="dense")), 3),
-            "a fleet monitors the delayed robustness in discrete time",
+            "a fleet of a suite monitors the delayed robustness in discrete time, without custom operators; make a "
+            "fleet of each specification",
+        ),
+        (
+            lambda: rtamt.Fleet(rtamt.Suite(SPEC), 3, verdict="interval", lateness=2),
+            "a fleet of a suite has delayed verdicts; for verdict=, make a fleet of each specification",
         ),
     ],
 )

@@ -158,5 +158,5 @@ def test_a_robustness_of_zero_does_not_decide():
 
 
 def test_what_no_fleet_monitors_is_an_error_at_once():
-    with pytest.raises(rtamt.UsageError, match=r"^a fleet monitors the delayed robustness in discrete time"):
+    with pytest.raises(rtamt.UsageError, match=r"^gaps='restart' needs delayed verdicts in discrete time"):
         Shard(rtamt.parse("x >= 3", time="dense"))

@@ -450,3 +450,8 @@ def push_samples(
 ) -> Signal:
     """Take a chunk of ``n`` samples as returned by ``arrays.columns_of``; not thread-safe."""
     return monitor._push(timestamps, columns, n)
+
+
+def settled_time(monitor: Monitor) -> float:
+    """Return the time that the value is for which the last sample made known."""
+    return float(monitor._recent(monitor._lags[0] + 1)[0])

@@ -1,0 +1,226 @@
+"""A monitor for each key: dense time, and the verdict modes for which the compiled core has no records."""
+
+from __future__ import annotations
+
+from copy import copy
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rtamt.engine.reorder import full, place_of
+from rtamt.errors import EvaluationError, TraceError, UsageError, shown
+from rtamt.fleet.collectors import collector_of
+from rtamt.signals.arrays import TIME, timestamps
+from rtamt.signals.data_errors import unknown_variable
+from rtamt.verdicts.interval import LateSampleError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from rtamt.engine import OnlineMonitor
+    from rtamt.fleet.event_time import Gaps
+
+
+class MonitorPerKey:
+    """Copies of one monitor by key. A batch runs on copies of the monitors of its keys, which then replace them.
+
+    ``monitor``: one that has taken no sample. ``unit``: of times that are numbers.
+    """
+
+    #: No sample waits: a monitor takes each at once.
+    waiting = 0
+
+    def __init__(
+        self, monitor: OnlineMonitor, capacity: int, *, lateness: Any, gaps: Gaps, unit: str | None
+    ) -> None:
+        self._collector = collector_of(monitor)
+        if gaps.code:
+            raise UsageError(
+                f"gaps='{gaps.name}' needs delayed verdicts in discrete time, and this fleet has a monitor for each "
+                f"key ({self._collector.what}): leave gaps= out"
+            )
+        if lateness is not None:
+            raise UsageError(
+                f"lateness= needs delayed verdicts in discrete time or verdict='interval', and this fleet has a "
+                f"monitor for each key ({self._collector.what}): give the samples of a key in the order of their times"
+            )
+        self._new: Any = copy(monitor)  # raises an error where there are no copies
+        self._unit, self.capacity = unit, capacity
+        self._monitors: dict[Any, Any] = {}
+        #: The time of the newest sample of each key, in seconds.
+        self._newest: dict[Any, float] = {}
+        #: How many samples were late.
+        self.late = 0
+
+    def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> Any:
+        """Take a batch; return what it made known. Raises for wrong data, and nothing has changed."""
+        self._check_names(columns)
+        moments = _listed(TIME, times)
+        seconds = timestamps(times, self._unit).seconds.tolist()
+        if len(keys) != len(seconds):
+            raise TraceError(
+                f"there are {len(keys)} keys and {len(seconds)} times: give one of each for every sample"
+            )
+        values = {name: _listed(name, column) for name, column in columns.items()}
+        for name, column in values.items():
+            if len(column) != len(seconds):
+                raise TraceError(
+                    f"'{TIME}' has {len(seconds)} and '{name}' has {len(column)} samples: give one value of each at "
+                    f"every sample",
+                    variable=name,
+                )
+        given = keys.tolist()
+        self._check_kind(given)
+        return self._run(keys, given, moments, seconds, values)
+
+    def _run(
+        self,
+        keys: NDArray[Any],
+        given: Sequence[Any],
+        moments: Sequence[Any],
+        seconds: Sequence[float],
+        values: Mapping[str, Sequence[Any]],
+    ) -> Any:
+        names = tuple(values)
+        rows = zip(*values.values(), strict=True) if names else [()] * len(given)
+        reports = self._collector()
+        twins: dict[Any, Any] = {}
+        newest: dict[Any, float] = {}
+        room, late = self.capacity - len(self._monitors), 0
+        for index, (key, moment, row) in enumerate(zip(given, moments, rows, strict=True)):
+            twin = twins.get(key)
+            if twin is None:
+                old = self._monitors.get(key)
+                if old is None:
+                    if not room:
+                        raise full(place_of(key, index), self.capacity)
+                    room -= 1
+                twin = twins[key] = copy(self._new if old is None else old)
+            sample = {name: each for name, each in zip(names, row, strict=True) if each is not np.ma.masked}
+            try:
+                report = twin.update(moment, **sample)
+            except LateSampleError:
+                reports.leave_out(index, twin)
+                late += 1
+                continue
+            except TraceError as error:
+                raise TraceError(
+                    f"{place_of(key, index)}: {error}",
+                    variable=error.variable,
+                    index=index,
+                    time=seconds[index],
+                ) from None
+            except EvaluationError as error:
+                raise EvaluationError(f"{place_of(key, index)}: {error}") from None
+            reports.take(index, twin, report)
+            newest[key] = max(seconds[index], newest.get(key, seconds[index]))
+        update = reports.update(keys)
+        self._monitors.update(twins)
+        for key, time in newest.items():
+            self._newest[key] = max(time, self._newest.get(key, time))
+        self.late += late
+        return update
+
+    def _check_names(self, columns: Mapping[str, Any]) -> None:
+        new = self._new
+        known = {*new.input_names, *(name.split(".")[0] for name in new.input_names), *new._declared}
+        for name in columns:
+            if name not in known:
+                raise unknown_variable(name, new.input_names)
+
+    def _check_kind(self, keys: Sequence[Any]) -> None:
+        if keys and self._monitors and type(keys[0]) is not type(next(iter(self._monitors))):
+            raise UsageError("the keys of a fleet are all integers, all texts, or all bytes")
+
+    def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
+        """Declare that no sample at or before a time will arrive, of any key; return what each key reports then."""
+        return self._mark("watermark", time, arrays)
+
+    def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
+        """Set the current time of all keys; return what each key reports then."""
+        return self._mark("advance", now, arrays)
+
+    def _mark(self, method: str, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
+        if not hasattr(self._new, method):
+            raise UsageError(
+                f"the monitors of this fleet ({self._collector.what}) have no {method}(); choose verdict='interval'"
+            )
+        reports = self._collector()
+        twins = {key: copy(monitor) for key, monitor in self._monitors.items()}
+        for index, twin in enumerate(twins.values()):
+            reports.take(index, twin, getattr(twin, method)(time))
+        update = reports.update(arrays(list(twins)))
+        self._monitors = twins
+        return update
+
+    # ---- keys ------------------------------------------------------------------------------------
+
+    @property
+    def memory(self) -> int:
+        """Bytes of state, without the objects of Python around it."""
+        return sum(monitor.memory for monitor in self._monitors.values())
+
+    def __len__(self) -> int:
+        return len(self._monitors)
+
+    def monitor(self, key: NDArray[Any]) -> OnlineMonitor | None:
+        """Return a copy of the monitor of the key of an array of one; None if it is not there."""
+        found = self._monitors.get(key[0].item())
+        return None if found is None else copy(found)
+
+    def contains(self, key: NDArray[Any]) -> bool:
+        """Return whether the key of an array of one is there."""
+        return key[0].item() in self._monitors
+
+    def keys(self) -> list[Any]:
+        """Return all keys."""
+        return list(self._monitors)
+
+    def drop(self, keys: NDArray[Any]) -> int | None:
+        """Forget keys; return the index of the first that is not there, and forget none then."""
+        given = keys.tolist()
+        for index, key in enumerate(given):
+            if key not in self._monitors:
+                return index
+        for key in set(given):
+            del self._monitors[key]
+            self._newest.pop(key, None)
+        return None
+
+    def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:
+        """Forget the keys whose newest sample is before a time in seconds; return how many."""
+        stale = [key for key, time in self._newest.items() if time < before]
+        self.drop(arrays(stale))
+        return len(stale)
+
+    def snapshot(self, gaps: Gaps) -> bytes:  # noqa: ARG002 - gaps are rejected
+        """Raise :class:`UsageError`: what monitors remember has no format that could be read from anyone."""
+        raise no_state(self._collector.what)
+
+
+def no_state(what: str) -> UsageError:
+    """Return the error for a state of monitors."""
+    return UsageError(
+        f"a fleet with a monitor for each key ({what}) has no snapshots: keep the samples of each key that its "
+        f"verdicts still depend on, and replay them into a new fleet"
+    )
+
+
+def _listed(name: str, column: Any) -> list[Any]:
+    """Return the values of a column one by one; of a masked array, what is masked stays masked."""
+    if isinstance(column, np.ma.MaskedArray):
+        mask = np.ma.getmaskarray(column).tolist()
+        data = _listed(name, column.data)
+        return [np.ma.masked if hidden else each for each, hidden in zip(data, mask, strict=True)]
+    kind = getattr(getattr(column, "dtype", None), "kind", "")
+    if kind not in ("m", "M"):  # as numbers they would be in any unit
+        for method in ("tolist", "to_pylist", "to_list"):
+            if hasattr(column, method):
+                found = getattr(column, method)()
+                if isinstance(found, list):
+                    return found
+    if isinstance(column, str | bytes) or not hasattr(column, "__iter__"):
+        raise TraceError(f"'{name}' is {shown(column)}, expected a column of values", variable=name)
+    return list(column)

@@ -1,0 +1,104 @@
+"""What a batch has made known to a fleet of monitors, as arrays: one class for each form of report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.lazy_dataclasses import dataclass
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class FleetPoints:
+    """Delayed verdicts in dense time: the points of the robustness that samples made final.
+
+    ``keys``: of each point; ``index``: the sample of the batch that made it final; ``times`` and ``values``: as in the
+    Signal that ``DenseMonitor.update`` returns.
+    """
+
+    keys: NDArray[Any]
+    index: NDArray[np.int64]
+    times: NDArray[Any]
+    values: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetVerdicts:
+    """Eager verdicts: what samples decided.
+
+    ``keys``: of each verdict; ``index``: the sample of the batch that released it; ``times``: the sample that it is
+    for; ``satisfied``: whether the formula holds there; ``decided_at``: the time of the sample that decided it.
+    ``ends``: in dense time, a verdict is for all instants from ``times[i]`` up to but excluding ``ends[i]``; in
+    discrete time they are the same.
+    """
+
+    keys: NDArray[Any]
+    index: NDArray[np.int64]
+    times: NDArray[Any]
+    ends: NDArray[Any]
+    satisfied: NDArray[np.bool_]
+    decided_at: NDArray[Any]
+
+    def __len__(self) -> int:
+        return len(self.satisfied)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetChanges:
+    """The runs whose bounds samples changed, with the new bounds, as ``IntervalMonitor.changes`` returns them.
+
+    ``keys``: of each run; ``index``: the sample of the batch that changed it; the others are those of ``Change``.
+    """
+
+    keys: NDArray[Any]
+    index: NDArray[np.int64]
+    begins: NDArray[Any]
+    ends: NDArray[Any]
+    lower: FloatArray
+    upper: FloatArray
+    final: NDArray[np.bool_]
+    retracted: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetBounds:
+    """Interval verdicts: for each sample, in the order of the batch, bounds of the robustness of its key after it.
+
+    ``lower`` and ``upper``: at the start of the trace of ``keys[i]``. ``late``: which samples came later than the
+    lateness allows, and were left out. ``changes``: of the bounds at other instants; empty with ``at="start"``.
+    """
+
+    keys: NDArray[Any]
+    lower: FloatArray
+    upper: FloatArray
+    late: NDArray[np.bool_]
+    changes: FleetChanges
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+
+@dataclass(frozen=True, slots=True)
+class FleetCausation:
+    """Causation: by how much each sample alone, in the order of the batch, violates and satisfies the formula.
+
+    ``violation`` and ``satisfaction``: at the start of the trace of ``keys[i]``, as in ``Causation``.
+    """
+
+    keys: NDArray[Any]
+    violation: FloatArray
+    satisfaction: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.violation)
