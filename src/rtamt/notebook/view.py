@@ -36,7 +36,7 @@ def view(result: Result, *, at: Any = None, height: int = _HEIGHT) -> ResultWidg
     >>> shown.height
     400
     """
-    if not (isinstance(height, int) and height > 0):
+    if type(height) is not int or height <= 0:
         raise UsageError(f"height is {shown(height)}, expected a whole number of pixels")
     static = StaticView(_page(result, at), result._repr_html_(), height)
     try:
