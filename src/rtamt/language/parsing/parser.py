@@ -4,8 +4,7 @@
 
     expression = operand , { infix operator , [ interval ] , expression | "in" , set }
     set        = "{" , expression , { "," , expression } , "}"
-    operand    = number | name | atom | group | call | prefix | choice | use of a template
-               | quantifier, see quantifiers.py
+    operand    = number | name | atom | group | call | prefix | choice | use of a template | quantifier
     group      = "(" , expression , ")"
     call       = function , [ interval ] , "(" , [ share , "," ] , expression , { "," , expression } , ")"
     share      = number , [ "/" , number ] , [ "%" | unit ]
