@@ -27,6 +27,8 @@ def session(tmp_path_factory):
     from rtamt.scale import spark
 
     settings = {"spark.sql.shuffle.partitions": "1", "spark.default.parallelism": "1"}
+    # Python's workers connect by a file, not by a port that a program of another test could call at that moment.
+    settings["spark.python.unix.domain.socket.enabled"] = "true"
     settings["spark.sql.warehouse.dir"] = str(tmp_path_factory.mktemp("spark"))
     for name, value in settings.items():
         SparkSession.builder.config(name, value)
