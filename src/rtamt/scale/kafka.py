@@ -115,6 +115,8 @@ class Worker:
         finally:
             self._partitions.clear()  # saved, or wrong
             self._consumer.close()
+            # Clients refer to the worker, by its callbacks: without this their threads would stay.
+            self._consumer = self._producer = None
 
     @property
     def keys(self) -> int:
