@@ -77,7 +77,7 @@ def _front(found: Mined, axes: Any) -> Any:
         color=style.QUIET,
         loc="right",
     )
-    return _styled(axes)
+    return style.styled(axes)
 
 
 def _limits(points: Any, names: Sequence[str], found: Mined) -> tuple[list[float], list[float]]:
@@ -111,7 +111,7 @@ def _by_recording(found: Mined, axes: Any) -> Any:
     axes.set_ylim(-0.7, len(names) - 0.3)
     axes.set_xlabel(_label(found, 0))
     axes.set_title(f"{role.name} = {tight:.6g}", fontsize=9, color=style.FAILS, loc="right")
-    return _styled(axes)
+    return style.styled(axes)
 
 
 def _search(found: Mined, axes: Any) -> Any:
@@ -141,7 +141,7 @@ def _search(found: Mined, axes: Any) -> Any:
     axes.set_title(
         f"{len(margins)} values tried, not proven tight", fontsize=9, color=style.QUIET, loc="right"
     )
-    return _styled(axes)
+    return style.styled(axes)
 
 
 def strips(found: Classifier, figure: Any = None) -> Any:
@@ -174,10 +174,10 @@ def strips(found: Classifier, figure: Any = None) -> Any:
             family="monospace",
         )
         axes.set_xlabel("threshold that the recording needs" if rule is found.rules[-1] else "")
-        _styled(axes)
+        style.styled(axes)
     if not found.rules:
         panels[0].set_title("no rule is better than the majority", fontsize=9, loc="left")
-        _styled(panels[0])
+        style.styled(panels[0])
     return figure
 
 
@@ -191,14 +191,3 @@ def _axes(axes: Any, size: tuple[float, float]) -> Any:
     if axes is not None:
         return axes
     return library("matplotlib.pyplot", "a plot", "plot").subplots(figsize=size, layout="constrained")[1]
-
-
-def _styled(axes: Any) -> Any:
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_color(style.FAINT)
-    axes.tick_params(labelsize=8, color=style.FAINT, labelcolor=style.QUIET, length=3)
-    for label in (axes.xaxis.label, axes.yaxis.label):
-        label.set(fontsize=9, color=style.QUIET)
-    return axes

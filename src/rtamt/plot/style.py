@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 #: For signals, by Okabe and Ito: distinct for every kind of colour vision. Without the two of verdicts.
 SIGNALS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#5D4A9C")
 
@@ -26,3 +28,15 @@ def number(value: float) -> str:
     if abs(value) == float("inf"):
         return INFINITE[value > 0]
     return f"{value + 0.0:.4g}".replace("-", "−")
+
+
+def styled(axes: Any) -> Any:
+    """Apply the common style of all plots to matplotlib's axes, and return them."""
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_color(FAINT)
+    axes.tick_params(labelsize=8, color=FAINT, labelcolor=QUIET, length=3)
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set(fontsize=9, color=QUIET)
+    return axes

@@ -29,7 +29,7 @@ def descent(found: Falsification, axes: Any = None) -> Any:
     axes.set_xlabel("simulation")
     axes.set_ylabel("robustness")
     axes.legend(frameon=False, fontsize=8, labelcolor=style.QUIET)
-    return _styled(axes)
+    return style.styled(axes)
 
 
 def landscape(found: Sensitivity, axes: Any = None) -> Any:
@@ -63,25 +63,13 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
         axes.figure.colorbar(made, ax=axes, label="robustness")
         axes.set_ylabel(names[1])
     axes.set_xlabel(names[0])
-    return _styled(axes)
+    return style.styled(axes)
 
 
 def _colors() -> Any:
     """Return the colors of robustness values: one for violations (below 0), one for satisfaction."""
     colors = library("matplotlib.colors", "a plot", "plot")
     return colors.LinearSegmentedColormap.from_list("robustness", (style.FAILS, "#f6f6f6", style.HOLDS))
-
-
-def _styled(axes: Any) -> Any:
-    """Apply the common style of all plots to axes."""
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_color(style.FAINT)
-    axes.tick_params(labelsize=8, color=style.FAINT, labelcolor=style.QUIET, length=3)
-    for label in (axes.xaxis.label, axes.yaxis.label):
-        label.set(fontsize=9, color=style.QUIET)
-    return axes
 
 
 def _axes(axes: Any) -> Any:
