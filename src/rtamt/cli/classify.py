@@ -39,11 +39,13 @@ Exit code: 0 rules were learned, 1 no rule is better than the class of most reco
 _EPILOG = """\
 A folder stands for all recordings in it. The templates are bounds that hold always, at some time, from some time on,
 within each window or throughout some window, and bounds of changes and of differences of two signals; windows last a
-tenth and a quarter of the shortest recording. SPEC has other templates instead: requirements with one parameter each,
-a threshold. --rules-file writes the rules as a specification that is satisfied where a recording is good.
+tenth and a quarter of the shortest recording. A signal may be infinite; templates without a value on some recording,
+such as the change of an infinite signal, are left out. SPEC has other templates instead: requirements with one
+parameter each, a threshold. --rules-file writes the rules as a specification that is satisfied where a recording is
+good.
 
 --json prints one object: {"rules": [{"formula", "class", "covered"}], "default", "accuracy", "baseline", "training",
-"folds", "seed", "templates", "recordings": [{"name", "class", "predicted"}], "specification"}.
+"folds", "seed", "templates", "undefined", "recordings": [{"name", "class", "predicted"}], "specification"}.
 
 examples:
   rtamt classify --good logs/good/*.csv --bad logs/bad/*.csv
@@ -154,7 +156,10 @@ def _read(args: argparse.Namespace, files: Sequence[str], progress: Progress) ->
 
 def _print(found: Classifier) -> None:
     good = sum(found.recordings.values())
-    say(f"{good} good and {len(found.recordings) - good} bad recordings, {found.templates} templates")
+    without = f" ({found.undefined} left out: without a value on some recording)" if found.undefined else ""
+    say(
+        f"{good} good and {len(found.recordings) - good} bad recordings, {found.templates} templates{without}"
+    )
     say()
     if found.rules:
         say(str(found))

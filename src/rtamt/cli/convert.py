@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import CommandError, add_specification_options, read_specification, write_output
 from rtamt.cli.parser import OK, VIOLATED, WRITTEN, complain
@@ -26,11 +26,22 @@ Exit code: 0 all requirements are converted, 1 some are not, 2 error."""
 _EPILOG = """\
 formats: {formats}
 
-Where the two languages differ in what these requirements mean, a note says so.
+With --from, --period is the sampling period that the specification declares. Where the two languages differ in what
+these requirements mean, a note says so.
 
 examples:
   rtamt convert examples/fret/pump.txt --from fret --period 500ms -o build/pump.stl
   rtamt convert examples/request_grant/spec.stl --to fret --component arbiter -o build/arbiter.json"""
+
+
+#: What the options of a specification are where they are not given; only --to reads a specification.
+_DEFAULTS: dict[str, Any] = {
+    "unit": "s",
+    "backend": "cpp",
+    "semantics": "standard",
+    "set": [],
+    "language": None,
+}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -77,6 +88,11 @@ def run(args: argparse.Namespace) -> int:
 def _read(args: argparse.Namespace) -> Conversion:
     if args.component is not None:
         raise UsageError("--component is for --to: the file that is read names its components")
+    for name, default in _DEFAULTS.items():
+        if getattr(args, name) != default:
+            raise UsageError(
+                f"--{name} is for --to: it is about specifications, and --from reads another format"
+            )
     try:
         with open(args.spec, encoding="utf-8-sig") as file:
             text = file.read()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
-from rtamt.interchange.written import Names, ReadRequirement, specification_text
+from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Formula, Parameter, Span, Var, postorder
 from rtamt.language.value_types import Boolean, Enumeration
 
@@ -76,11 +76,12 @@ _END_NOTE = (
 )
 
 
-def read_breach(text: str, _period: Fraction | None = None) -> Conversion:
+def read_breach(text: str, period: Fraction | None = None) -> Conversion:
     r"""Convert a file of Breach to a specification.
 
     Args:
         text: the content of the file. Formulas that no other one uses become requirements.
+        period: the sampling period in seconds that the specification declares; None for none.
 
     Returns:
         The specification, what it cannot express (signals at other times, such as ``x[t+dt]``), and where Breach
@@ -113,13 +114,18 @@ def read_breach(text: str, _period: Fraction | None = None) -> Conversion:
     if not sources:
         raise UsageError("there is no formula in the text: Breach has them after ':='")
     used = {word for source in sources.values() for word in re.findall(r"[A-Za-z_]\w*(?!\w|\[t)", source)}
-    written = [
-        ReadRequirement(name, formula, f"{name} := {sources[name]}")
-        for name, formula in definitions.items()
-        if name not in used
-    ]
+    written: list[ReadRequirement] = []
+    for name, formula in definitions.items():
+        if name in used:
+            continue
+        try:
+            require_period(formula, period)
+        except InexpressibleError as error:
+            rejected.append(Rejection(name, str(error)))
+        else:
+            written.append(ReadRequirement(name, formula, f"{name} := {sources[name]}"))
     return Conversion(
-        specification_text("Formulas of Breach.", written, Names(parameters=values)),
+        specification_text("Formulas of Breach.", written, Names(parameters=values), period),
         tuple(each.name for each in written),
         tuple(rejected),
         (_NOTE, _END_NOTE),

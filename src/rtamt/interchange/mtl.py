@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
-from rtamt.interchange.written import Names, ReadRequirement, specification_text
+from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Apply, Interval, Var, fold, postorder
 from rtamt.language.operators import STL
 from rtamt.language.units.durations import decimal
@@ -61,11 +61,12 @@ _NOTE = "py-metric-temporal-logic holds each value until the next sample: use --
 _END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
 
 
-def read_mtl(text: str, _period: Fraction | None = None) -> Conversion:
+def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
     """Convert formulas of py-metric-temporal-logic to a specification.
 
     Args:
         text: one formula a line, each with an optional name and a colon before it. Its atoms become Booleans.
+        period: the sampling period in seconds that the specification declares; None for none.
 
     Raises:
         UsageError: the text has no formula.
@@ -83,14 +84,15 @@ def read_mtl(text: str, _period: Fraction | None = None) -> Conversion:
         atoms = set(_ATOM.findall(source)) - _WORDS
         try:
             formula = MTL.read(source, variables=atoms, types=dict.fromkeys(atoms, BOOLEAN))
-        except SpecificationError as error:
+            require_period(formula, period)
+        except (SpecificationError, InexpressibleError) as error:
             rejected.append(Rejection(name, str(error)))
             continue
         written.append(ReadRequirement(name, formula, source))
     if not written and not rejected:
         raise UsageError("there is no formula in the text, such as: G(a -> F[0, 2] b)")
     return Conversion(
-        specification_text("Formulas of py-metric-temporal-logic.", written, Names()),
+        specification_text("Formulas of py-metric-temporal-logic.", written, Names(), period),
         tuple(each.name for each in written),
         tuple(rejected),
         (_NOTE, _END_NOTE),

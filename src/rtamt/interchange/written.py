@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Const, Formula, Var, postorder
+from rtamt.interchange.dialect import InexpressibleError
+from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Enumeration
@@ -77,6 +78,19 @@ def specification_text(
             f"    {to_text(each.formula, parameters=True)}",
         ]
     return "\n".join(lines) + "\n"
+
+
+def require_period(formula: Formula, step: Fraction | None) -> None:
+    """Raise :class:`InexpressibleError` for a bound that is not a multiple of a sampling period, None for no period."""
+    if step is None:
+        return
+    for node in postorder(formula):
+        interval = node.interval if isinstance(node, Apply) else None
+        for bound in () if interval is None else (interval.begin, interval.end):
+            if bound is not None and bound % step:
+                raise InexpressibleError(
+                    f"{decimal(bound) or bound} s in '{node}' is not a whole number of periods of {decimal(step)} s"
+                )
 
 
 def _type(variable: Var) -> str:

@@ -40,7 +40,8 @@ class Classifier:
 
     ``accuracy``: the share of the recordings that were right when the list was learned without them, by
     cross-validation in ``folds`` parts that ``seed`` chooses. ``baseline``: the share of the class of most recordings.
-    ``predicted``: which recordings the engine finds good, by the specification of the list.
+    ``predicted``: which recordings the engine finds good, by the specification of the list. ``templates``: how many
+    templates there are. ``undefined``: how many built-in ones have no value on some recording and were left out.
     """
 
     rules: tuple[Rule, ...]
@@ -52,6 +53,7 @@ class Classifier:
     folds: int
     seed: int
     templates: int
+    undefined: int
     values: NDArray[np.float64]
 
     @property
@@ -89,6 +91,7 @@ class Classifier:
             "folds": self.folds,
             "seed": self.seed,
             "templates": self.templates,
+            "undefined": self.undefined,
             "recordings": [
                 {"name": name, "class": _class(good), "predicted": _class(self.predicted[name])}
                 for name, good in self.recordings.items()
@@ -131,7 +134,9 @@ def classify(
     """Learn a decision list of at most ``rules`` rules that tells good recordings from bad ones.
 
     ``signals``: the variables of the templates, by default all that every recording has. ``templates``:
-    specifications whose requirements have one threshold each, in place of those over each signal and each pair.
+    specifications whose requirements have one threshold each, in place of those over each signal and each pair. Signals
+    may be infinite; of the latter templates, those without a value on some recording, such as the difference of two
+    infinite signals, are left out.
     ``evaluations``, ``timeout`` and ``progress`` as for :func:`mine`; the other settings are those of
     :meth:`Specification.evaluate` in discrete time. The result is the same each time.
 
@@ -161,6 +166,9 @@ def classify(
         if not chosen:
             raise UsageError("there is no template; give specifications with a parameter each")
         table = features(chosen, recordings, reading, budget)
+        defined = [column for column in range(len(chosen)) if not np.isnan(table[:, column]).any()]
+        undefined = len(chosen) - len(defined)
+        chosen, table = [chosen[column] for column in defined], table[:, defined]
         is_good = np.array(list(labels.values()))
         found = learned(chosen, table, is_good, rules)
         accuracy, baseline = _validated(chosen, table, is_good, rules, folds, seed)
@@ -168,7 +176,17 @@ def classify(
     except Spent:
         raise UsageError("the budget was spent before the rules were learned; give a larger one") from None
     return Classifier(
-        found.rules, found.default, labels, predicted, accuracy, baseline, folds, seed, len(chosen), table
+        found.rules,
+        found.default,
+        labels,
+        predicted,
+        accuracy,
+        baseline,
+        folds,
+        seed,
+        len(chosen),
+        undefined,
+        table,
     )
 
 

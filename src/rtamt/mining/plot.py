@@ -145,7 +145,10 @@ def _search(found: Mined, axes: Any) -> Any:
 
 
 def strips(found: Classifier, figure: Any = None) -> Any:
-    """Plot the tight value of each recording for each rule, and the threshold between them."""
+    """Plot the tight value of each recording for each rule, and the threshold between them.
+
+    Infinite values are triangles at the edges.
+    """
     count = max(len(found.rules), 1)
     if figure is None:
         figure = library("matplotlib.pyplot", "a plot", "plot").figure(
@@ -156,11 +159,18 @@ def strips(found: Classifier, figure: Any = None) -> Any:
     open_ = np.ones(len(good), bool)  # not decided by an earlier rule
     for place, (axes, rule) in enumerate(zip(panels, found.rules, strict=False)):
         values = found.values[:, rule.column]
+        finite = np.append(values[np.isfinite(values)], rule.threshold)
+        pad = 0.08 * np.ptp(finite) or 1.0
+        places = np.clip(values, finite.min() - pad, finite.max() + pad)
         for label, height, color in ((True, 1, style.HOLDS), (False, 0, style.FAILS)):
             for shown, ink in ((good == label) & ~open_, style.FAINT), ((good == label) & open_, color):
-                mine = values[shown & np.isfinite(values)]
+                mine = np.flatnonzero(shown)
                 spread = np.linspace(-0.22, 0.22, len(mine)) if len(mine) > 1 else np.zeros(len(mine))
-                axes.plot(mine, height + spread, "o", markersize=4, alpha=0.75, color=ink)
+                markers = (("o", np.isfinite(values)), ("<", values == -np.inf), (">", values == np.inf))
+                for marker, kind in markers:
+                    of = kind[mine]
+                    x, y = places[mine][of], (height + spread)[of]
+                    axes.plot(x, y, marker, markersize=4, alpha=0.75, color=ink, linestyle="none")
         open_ &= ~rule.satisfied(found.values)
         axes.axvline(rule.threshold, color=style.INK, linewidth=1.1)
         axes.set_yticks([0, 1], ["bad", "good"])

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rtamt import texts
-from rtamt.errors import TraceError, UsageError, shown
+from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, shown
 from rtamt.fleet.suite import Suite
 from rtamt.language.formula import Var
 from rtamt.language.units.durations import decimal
@@ -132,23 +132,30 @@ def own(given: Iterable[Any]) -> list[Template]:
 def features(
     templates: Sequence[Template], recordings: Mapping[str, Any], reading: Mapping[str, Any], budget: Budget
 ) -> NDArray[np.float64]:
-    """Return the tight value of each template (a column) for each recording (a row)."""
+    """Return the tight value of each template (a column) for each recording (a row).
+
+    A built-in template that has no value on some recording, such as the change of an infinite signal, has NaN there.
+    """
     table = np.empty((len(recordings), len(templates)))
     plain = [column for column, each in enumerate(templates) if each.own is None]
     if plain:
         # Of the standard semantics, robustness is the distance of the threshold from its tight value.
+        settings: Any = {**reading, "semantics": "standard"}
+        specs = {column: texts.parse(templates[column].written(0.0)) for column in plain}
         suite = Suite(
-            {str(column): texts.parse(templates[column].written(0.0)) for column in plain},
-            select=["robustness"],
-            **{**reading, "semantics": "standard"},
+            {str(column): spec for column, spec in specs.items()}, select=["robustness"], **settings
         )
+        undefined: set[int] = set()
         for row, (name, data) in enumerate(recordings.items()):
             budget.take()
             for column, found in zip(plain, suite.evaluate(data), strict=True):
-                if found.error is not None:
+                if found.robustness is not None:
+                    table[row, column] = -templates[column].direction * found.robustness
+                elif column in undefined or _is_undefined(specs[column], data, settings):
+                    undefined.add(column)
+                    table[row, column] = np.nan
+                else:
                     raise TraceError(f"{name}: {found.error}")
-                assert found.robustness is not None
-                table[row, column] = -templates[column].direction * found.robustness
     for column, template in enumerate(templates):
         if template.own is not None:
             spec, parameter = template.own
@@ -156,6 +163,15 @@ def features(
                 region = Region(spec, {name: data}, reading, budget)
                 table[row, column] = _tight(region, parameter, template.direction)
     return table
+
+
+def _is_undefined(spec: Specification, data: Any, settings: Mapping[str, Any]) -> bool:
+    """Return whether a template cannot be evaluated because it has no value, and not because the data are wrong."""
+    try:
+        spec.evaluate(data, **settings)
+    except StlError as error:
+        return isinstance(error, EvaluationError)
+    return False
 
 
 def _tight(region: Region, parameter: str, direction: int) -> float:

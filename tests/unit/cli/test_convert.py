@@ -38,4 +38,13 @@ def test_what_cannot_be_converted_is_an_error(run, write):
     assert answer.err.endswith("rtamt: spec.stl: no requirement can be converted\n")
     assert "give the other format" in run("convert", "spec.stl").err
     assert "there is no format 'frt'; did you mean 'fret'?" in run("convert", "spec.stl", "--to", "frt").err
+    for option, value in (
+        ("--unit", "ms"),
+        ("--set", "a=1"),
+        ("--semantics", "boolean"),
+        ("--backend", "python"),
+    ):
+        assert run("convert", "x.mtl", "--from", "mtl", option, value).err.endswith(
+            f"{option} is for --to: it is about specifications, and --from reads another format\n"
+        )
     assert "cannot read 'none.json'" in run("convert", "none.json", "--from", "fret").err

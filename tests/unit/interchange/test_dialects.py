@@ -204,3 +204,22 @@ def test_keywords_of_breach_are_no_signals(name: str) -> None:
     (rejected,) = found.rejected
     assert rejected.reason == f"'{name}' cannot be a name of Breach, where it is a keyword"
     assert "S := not_[t] > 1" in found.text
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "bound"),
+    [
+        (read_breach, "R := alw_[0, 0.5] (x[t] > 1)\nS := ev_[0, 0.75] (x[t] > 1)", "eventually[0:0.75](x > 1)"),
+        (read_mtl, "R: G[0, 0.5] a\nS: F[0, 0.75] a", "eventually[0:0.75] a"),
+    ],
+)  # fmt: skip
+def test_a_period_is_declared_and_its_multiples_are_bounds(read, text: str, bound: str) -> None:
+    found = read(text, Fraction(1, 2))
+    spec = rtamt.parse(found.text)
+    assert (spec.period, list(spec.requirements)) == (0.5, ["R"])
+    (rejected,) = found.rejected
+    assert (rejected.name, rejected.reason) == (
+        "S",
+        f"0.75 s in '{bound}' is not a whole number of periods of 0.5 s",
+    )
+    assert rtamt.parse(read(text).text).period is None

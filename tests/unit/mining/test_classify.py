@@ -201,6 +201,42 @@ def test_wrong_recordings():
         classify([{"x": [1.0, 2.0]}, {"x": [1.0, float("nan")]}], [{"x": [3.0, 2.0]}] * 2, folds=2)
 
 
+def gaps(least, cars):
+    """Return a drive with no car ahead at first, or at all: the gap is infinite, and its speed unknown."""
+    draw = np.random.default_rng(round(100 * least))
+    gap = least + 10 * draw.random(40)
+    gap[: 10 if cars else None] = np.inf
+    return {"gap": gap, "lead": np.where(np.isinf(gap), -np.inf, 20 + draw.random(40))}
+
+
+def test_signals_may_be_infinite():
+    good = [gaps(20 + k / 10, cars=k % 3 > 0) for k in range(8)]
+    bad = [gaps(2 + k / 10, cars=True) for k in range(8)]
+    found = classify(good, bad, folds=4, rules=1)
+    assert (found.training, found.accuracy) == (1, 1)
+    # Changes of each of the two signals, in both directions and windows, are undefined.
+    assert (found.undefined, found.templates) == (8, 32)
+    assert found.to_dict()["undefined"] == 8
+    spec = rtamt.parse(found.text)
+    named = {f"good {k}": data for k, data in enumerate(good)} | {
+        f"bad {k}": data for k, data in enumerate(bad)
+    }
+    assert {name: spec.evaluate(data).satisfied for name, data in named.items()} == found.predicted
+    axes = pytest.importorskip("matplotlib.figure").Figure()
+    (panel,) = found.plot(axes).axes
+    assert sum(len(line.get_xdata()) for line in panel.lines[:-1]) == len(named)
+    low, high = panel.get_xlim()
+    assert all(low <= x <= high for line in panel.lines for x in line.get_xdata())
+
+
+def test_a_template_that_was_given_must_have_a_value_on_every_recording():
+    wild = [{"x": [np.inf, -np.inf], "y": [np.inf, -np.inf]}] * 2
+    own = rtamt.parse("parameter float p = 1  always(x - y <= p)")
+    with pytest.raises(TraceError, match="has no value"):
+        classify(wild, wild, folds=2, templates=[own])
+    assert classify(wild, wild, folds=2, signals=["x"]).undefined == 2
+
+
 def test_recordings_with_different_periods_have_templates_without_windows():
     slow = [{"time": [0, 2, 4], "x": [1.0, k, 2.0]} for k in range(3)]
     fast = [{"time": [0, 1, 2], "x": [5.0, 6.0, k + 7]} for k in range(3)]
