@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, line_and_column
 from rtamt.language.document import Declaration, Import
 from rtamt.language.formula import Span
-from rtamt.language.parsing.imports import ImportedFileError, Library, called, moved
+from rtamt.language.operators import STL
+from rtamt.language.parsing.imports import (
+    Imported,
+    ImportedFileError,
+    ImportsOthersError,
+    Library,
+    NoLibrary,
+    called,
+    moved,
+)
 from rtamt.language.parsing.requirements import RequirementParser
 from rtamt.language.parsing.scope import Scope
 
@@ -16,12 +26,33 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.document import Document
+    from rtamt.language.formula import Formula
     from rtamt.language.operators import Language
     from rtamt.language.parsing.lexer import Token
     from rtamt.language.parsing.templates import Template
     from rtamt.language.quantifiers import Group
     from rtamt.language.records import Operator
     from rtamt.language.value_types import Enumeration, ValueType
+
+    #: What a file means that imports no other: the parser, the text, the default unit, and whether Booleans are truths.
+    _Key = tuple[type["ImportParser"], str, str, bool]
+
+
+#: Imported files that are kept parsed: an editor parses a text at every change.
+_KEPT = 32
+
+
+@lru_cache(_KEPT)
+def _parsed(key: _Key) -> Document:
+    """Return the document of a file; raise :class:`ImportsOthersError` if it imports others."""
+    parser, text, unit, truths = key
+    return parser(text, STL, unit, Scope(), {}, NoLibrary(), truths).document(imported=True)
+
+
+@lru_cache(_KEPT)
+def _placed(key: _Key, span: Span) -> tuple[Mapping[str, Formula], Mapping[str, Template]]:
+    """Return the definitions and templates of a file at the position of its import."""
+    return moved(_parsed(key), span)
 
 
 class ImportParser(RequirementParser):
@@ -94,10 +125,7 @@ class ImportParser(RequirementParser):
         if file not in library.documents:
             library.open.append(file)
             try:
-                other = type(self)(
-                    text, self.language, self.unit, Scope(), self._values, library, self._truths
-                )
-                document = other.document(imported=True)
+                library.documents[file] = self._read_file(file, text)
             except SpecificationError as error:
                 raise self._error_in(file, error, token) from None
             except ImportedFileError as error:
@@ -105,24 +133,14 @@ class ImportParser(RequirementParser):
                 raise (self.error(str(error), token.span) if outermost else error) from None
             finally:
                 library.open.pop()
-            names = (
-                *document.constants,
-                *document.definitions,
-                *document.templates,
-                *document.variables,
-                *document.enumerations,
-                *document.tables,
-                *document.groups,
-            )
-            library.documents[file] = document, {**dict.fromkeys(names, file), **other.origins}
-        document, origins = library.documents[file]
+        document, origins, placed = library.documents[file]
         for name, origin in origins.items():
             known = self.origins.setdefault(name, origin)
             if known != origin:
                 raise self.error(
                     f"'{name}' is in '{called(known)}' and in '{called(origin)}'; rename one of them", span
                 )
-        definitions, templates = moved(document, span)
+        definitions, templates = placed(span)
         self._constants.update(document.constants)
         self._parameters.update(document.parameters)
         self._declarations.update({each.name: each for each in document.declarations})
@@ -134,6 +152,37 @@ class ImportParser(RequirementParser):
         self._types.update(document.types)
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})
+
+    def _read_file(self, file: str, text: str) -> Imported:
+        """Parse an imported file, if it was not parsed before."""
+        found = self._read_alone(text)
+        if found is None:
+            other = type(self)(
+                text, self.language, self.unit, Scope(), self._values, self.library, self._truths
+            )
+            document = other.document(imported=True)
+            found = Imported(document, other.origins, partial(moved, document))
+        document = found.document
+        names = (
+            *document.constants,
+            *document.definitions,
+            *document.templates,
+            *document.variables,
+            *document.enumerations,
+            *document.tables,
+            *document.groups,
+        )
+        return found._replace(origins={**dict.fromkeys(names, file), **found.origins})
+
+    def _read_alone(self, text: str) -> Imported | None:
+        """Return a file that imports no other, which this process parses once; None for others."""
+        if self._values or self.language is not STL:
+            return None
+        key = type(self), text, self.unit, self._truths
+        try:
+            return Imported(_parsed(key), {}, partial(_placed, key))
+        except ImportsOthersError:
+            return None
 
     def _no_file(self, error: ImportedFileError, token: Token) -> SpecificationError | ImportedFileError:
         """Return the error of a file that cannot be imported: at the outermost import, else for it."""

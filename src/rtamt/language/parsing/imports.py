@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import stat
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import StlError, did_you_mean
 from rtamt.files import nearest_file
@@ -17,6 +17,8 @@ from rtamt.language.parsing.templates import all_placed
 from rtamt.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula, Span
     from rtamt.language.parsing.templates import Template
@@ -35,6 +37,18 @@ class ImportedFileError(StlError):
     """A file cannot be imported; the parser adds where it is."""
 
 
+class Imported(NamedTuple):
+    """A file that has been parsed.
+
+    ``origins``: from each of its names to the file that defines it. ``placed`` returns its definitions and templates at
+    the position of an import.
+    """
+
+    document: Document
+    origins: Mapping[str, str]
+    placed: Callable[[Span], tuple[Mapping[str, Formula], Mapping[str, Template]]]
+
+
 @dataclass
 class Library:
     """The files that a specification imports, directly or not.
@@ -46,8 +60,8 @@ class Library:
 
     folder: str | None = None
     found: dict[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
-    #: What has been parsed of them: a document, and from each of its names to the file that defines it.
-    documents: dict[str, tuple[Document, dict[str, str]]] = field(default_factory=dict)
+    #: What has been parsed of them.
+    documents: dict[str, Imported] = field(default_factory=dict)
     #: The files that are being parsed, from the outermost to the innermost.
     open: list[str] = field(default_factory=list)
 
@@ -106,6 +120,18 @@ class Library:
             return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise ImportedFileError(f"'{path}' is not UTF-8 text (byte {error.start})") from None
+
+
+class ImportsOthersError(Exception):
+    """A file that was taken for one without imports has some."""
+
+
+class NoLibrary(Library):
+    """That of a file which imports no other: what is in it depends on its text alone."""
+
+    def read(self, path: str) -> tuple[str, str]:  # noqa: ARG002
+        """Raise :class:`ImportsOthersError`."""
+        raise ImportsOthersError
 
 
 def called(file: str) -> str:

@@ -2,13 +2,18 @@
 
 import os
 import pickle
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 import pytest
 
 import rtamt
+from rtamt.errors import StlError
 from rtamt.language.formula import Span, postorder
-from rtamt.language.parsing import imports
+from rtamt.language.operators import STL
+from rtamt.language.parsing import import_parser, imports
 from rtamt.language.parsing.parser import parse_formula
 
 LIBRARY = """\
@@ -228,3 +233,45 @@ def test_a_boolean_argument_of_an_imported_template_is_its_truth(tmp_path):
     imported = rtamt.load(tmp_path / "spec.stl")
     assert imported.formula == here.formula
     assert imported.evaluate({"b": [False, True]}).signal.values.tolist() == [-np.inf, np.inf]
+
+
+def test_a_file_that_imports_no_other_is_parsed_once_for_all_texts(folder, monkeypatch):
+    parsed, original = [], import_parser._parsed.__wrapped__
+
+    def parse(key):
+        parsed.append(key)
+        return original(key)
+
+    monkeypatch.setattr(import_parser, "_placed", lru_cache(import_parser._placed.__wrapped__))
+    monkeypatch.setattr(import_parser, "_parsed", lru_cache(parse))
+    (folder / "own.stl").write_text("const float most = 3  slow = x <= most; def low(y) = y <= most and slow")
+    own = 'import "own.stl"; input float x; low(x)'
+    for _ in range(2):
+        assert str(rtamt.parse(own, folder=folder)) == "x <= 3 and x <= 3"
+        assert str(rtamt.parse(f"// Another place.\n{own}", folder=folder)) == "x <= 3 and x <= 3"
+    assert len(parsed) == 1
+    (folder / "own.stl").write_text("const float most = 4  slow = x <= most; def low(y) = y <= most and slow")
+    assert str(rtamt.parse(own, folder=folder)) == "x <= 4 and x <= 4"
+    assert len(parsed) == 2
+
+
+def test_what_is_kept_of_an_imported_file_has_the_meaning_of_each_text_that_imports_it(folder):
+    (folder / "own.stl").write_text("input bool on  const float d = 2  soon = eventually[0:d](on)")
+    own = 'import "own.stl"; soon'
+    ends = [rtamt.parse(own, folder=folder, unit=unit).formula.interval.end for unit in ("s", "ms", "s")]
+    assert ends == [2, Fraction(1, 500), 2]
+    first, moved = (rtamt.parse(text, folder=folder).formula.span for text in (own, f"   {own}"))
+    assert (first, moved) == (Span(0, 16), Span(3, 19))
+    (folder / "own.stl").write_text("parameter float d = 2  soon = eventually[0:d](x > 3)")
+    spec = rtamt.parse(own, folder=folder)
+    ends = [each.formula.interval.end for each in (spec, spec.with_parameters(d=5), spec)]
+    assert ends == [2, 5, 2]
+
+
+def test_an_imported_file_has_the_operators_of_the_text_that_imports_it(folder):
+    near = replace(STL["gt"], name="near", spellings=("~~",), definition=lambda a, b: a - b, truth=None)
+    (folder / "own.stl").write_text("same = x ~~ y")
+    own = 'import "own.stl"; same'
+    assert str(rtamt.parse(own, folder=folder, language=STL.extend(near))) == "x ~~ y"
+    with pytest.raises(StlError, match=r"own.stl has an error in line 1, column 10"):
+        rtamt.parse(own, folder=folder)
