@@ -1,6 +1,7 @@
 // The extension module rtamt.engine._core: what Python may call, and nothing else.
 #include "../program/opcodes.hpp"
 #include "dense_early_monitor.hpp"
+#include "direct_evaluator.hpp"
 #include "early_monitor.hpp"
 #include "evaluator.hpp"
 #include "failures.hpp"
@@ -65,6 +66,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_online(m);
     rtamt::python::add_offline(m, exceptions);
     rtamt::python::add_evaluator(m, exceptions);
+    rtamt::python::add_direct_evaluator(m);
     rtamt::python::add_fleet(m);
     rtamt::python::add_reorder(m);
     rtamt::python::add_recording(m);

@@ -113,14 +113,16 @@ std::vector<Buffer> Evaluator::columns_of(const nb::list& columns, std::size_t c
     return held;
 }
 
-nb::list Evaluator::run(const nb::list& columns, std::size_t count, const nb::object& allowed) {
+std::size_t Evaluator::threads(std::size_t count, const nb::object& allowed) const {
     // Some ten milliseconds: where others use the cores, too, a thread may have to wait for one.
     constexpr std::size_t worth_threads = std::size_t{1} << 24U;
+    if (count < worth_threads / program_.instructions.size() || allowed.is_none()) return 1;
+    return std::max<std::size_t>(nb::cast<std::size_t>(allowed()), 1);
+}
+
+nb::list Evaluator::run(const nb::list& columns, std::size_t count, const nb::object& allowed) {
     const auto held = columns_of(columns, count);
-    std::size_t threads = 1;
-    if (count >= worth_threads / program_.instructions.size() && !allowed.is_none()) {
-        threads = std::max<std::size_t>(nb::cast<std::size_t>(allowed()), 1);
-    }
+    const std::size_t threads = this->threads(count, allowed);
     const Made made(numpy_, program_.outputs.size(), count);
     const auto failure = without_gil(
         count, [&] { return evaluate(pointers_of(held), count, made.pointers, threads); });

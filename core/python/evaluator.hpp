@@ -47,6 +47,18 @@ class Evaluator {
     // returns the first trace in which a value is undefined, or -1; then there are no results.
     [[nodiscard]] nb::tuple run_rows(const nb::list& columns, std::size_t rows, std::size_t count);
 
+    // The same of columns and outputs of `count` doubles each, by so many threads at most; needs no
+    // GIL.
+    [[nodiscard]] std::optional<discrete::Failure> evaluate(std::span<const double* const> columns,
+                                                            std::size_t count,
+                                                            std::span<double* const> outputs,
+                                                            std::size_t threads);
+
+    // How many threads evaluate so many samples: for many as many as `allowed()` returns.
+    [[nodiscard]] std::size_t threads(std::size_t count, const nb::object& allowed) const;
+
+    [[nodiscard]] std::size_t outputs() const noexcept { return program_.outputs.size(); }
+
   private:
     static constexpr std::size_t width = 8;
     using Executor = discrete::Executor;
@@ -63,10 +75,6 @@ class Evaluator {
     [[nodiscard]] std::int64_t evaluate_rows(std::span<const double* const> columns,
                                              std::size_t rows, std::size_t count,
                                              std::span<double* const> outputs);
-    [[nodiscard]] std::optional<discrete::Failure> evaluate(std::span<const double* const> columns,
-                                                            std::size_t count,
-                                                            std::span<double* const> outputs,
-                                                            std::size_t threads);
 };
 
 void add_evaluator(const nb::module_& module, const Exceptions& exceptions);

@@ -118,23 +118,6 @@ nb::list evaluate_bounds(const nb::bytes& bytes, const std::vector<BoundsColumn>
     return found;
 }
 
-void scan(std::string_view kind, std::span<const double> first,
-          std::optional<std::span<const double>> second, std::span<double> out) {
-    if (kind == "run_max") {
-        discrete::scan<Max>(first, out);
-    } else if (kind == "run_min") {
-        discrete::scan<Min>(first, out);
-    } else if (kind == "until") {
-        if (!second) {
-            throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
-        }
-        discrete::scan_until<Real>(first, *second, out);
-    } else {
-        throw std::invalid_argument("There is no scan '" + std::string(kind) +
-                                    "': it is run_max, run_min or until.");
-    }
-}
-
 // Of traces of `count` samples each, one after another.
 Result scan(std::string_view kind, const Column& a, const std::optional<Column>& b,
             std::optional<std::size_t> count) {
@@ -153,9 +136,9 @@ Result scan(std::string_view kind, const Column& a, const std::optional<Column>&
     const std::span<double> out(results.pointers().front(), first.size());
     for (std::size_t begin = 0; begin == 0 || begin < first.size();
          begin += std::max<std::size_t>(size, 1)) {
-        std::optional<std::span<const double>> other;
-        if (second) other = second->subspan(begin, size);
-        scan(kind, first.subspan(begin, size), other, out.subspan(begin, size));
+        std::vector<std::span<const double>> operands{first.subspan(begin, size)};
+        if (second) operands.push_back(second->subspan(begin, size));
+        python::scan(kind, operands, out.subspan(begin, size));
     }
     return std::move(results.hand_over().front());
 }
@@ -257,6 +240,23 @@ nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
 }
 
 } // namespace
+
+void scan(std::string_view kind, std::span<const std::span<const double>> operands,
+          std::span<double> out) {
+    if (kind == "run_max") {
+        discrete::scan<Max>(operands[0], out);
+    } else if (kind == "run_min") {
+        discrete::scan<Min>(operands[0], out);
+    } else if (kind == "until") {
+        if (operands.size() != 2) {
+            throw std::invalid_argument("The scan 'until' takes two columns of the same length.");
+        }
+        discrete::scan_until<Real>(operands[0], operands[1], out);
+    } else {
+        throw std::invalid_argument("There is no scan '" + std::string(kind) +
+                                    "': it is run_max, run_min or until.");
+    }
+}
 
 void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
     m.def(

@@ -5,7 +5,14 @@
 
 #include <nanobind/nanobind.h>
 
+#include <span>
+#include <string_view>
+
 namespace rtamt::python {
+
+// Unbounded future over whole columns of the same length: run_max and run_min of one, until of two.
+void scan(std::string_view kind, std::span<const std::span<const double>> operands,
+          std::span<double> out);
 
 void add_offline(nanobind::module_& module, const Exceptions& exceptions);
 

@@ -167,9 +167,10 @@ namespace {
     return (*std::max_element(gaps.begin(), middle) + *middle) / 2.0;
 }
 
-// As infer_period() in rtamt.signals.regular: the median gap, as the shortest decimal within its
-// precision. Timestamps since 1970 have a precision of about 0.2 µs.
-[[nodiscard]] std::optional<double> inferred_period(std::span<const double> times) {
+} // namespace
+
+// Timestamps since 1970 have a precision of about 0.2 µs.
+double inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
     const double gap = median_gap(times);
     const double largest = std::max(std::fabs(times.front()), std::fabs(times.back()));
@@ -185,6 +186,8 @@ namespace {
     }
     return gap;
 }
+
+namespace {
 
 // ---- the recording ------------------------------------------------------------------------------
 

@@ -22,10 +22,11 @@ from rtamt.verdicts import offline as verdicts
 from rtamt.verdicts.offline import Findings, findings_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from matplotlib.figure import Figure
 
+    from rtamt.engine.direct import Reading
     from rtamt.explain.explanation import Explanation
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
@@ -45,13 +46,10 @@ class Result:
     """
 
     specification: Specification
-    trace: DomainTrace
-    #: ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``.
-    signal: Signal
     #: The semantics of predicates: a name, or the given function.
     semantics: str | PredicateSemantics
     #: What is known already: of a requirement what its program has found, of several with different starts each.
-    known: Findings | Mapping[str, Result] | None
+    known: Findings | Mapping[str, Result] | None = None
 
     def __init__(
         self,
@@ -68,6 +66,19 @@ class Result:
         fields["signal"] = signal
         fields["semantics"] = semantics
         fields["known"] = known
+
+    @cached_property
+    def trace(self) -> DomainTrace:
+        """The recording."""
+        reading, found = self.__dict__["_found"]
+        return self.specification._with_units(reading.trace(found))
+
+    @cached_property
+    def signal(self) -> Signal:
+        """ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``."""
+        reading, found = self.__dict__["_found"]
+        signal: Signal = reading.signal(found)
+        return signal
 
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
@@ -125,7 +136,9 @@ class Result:
     @property
     def robustness(self) -> float:
         """ρ at the first instant: how far the recording is from violating (or satisfying)."""
-        if isinstance(self.known, Mapping):
+        if self.known is not None and isinstance(
+            self.known, Mapping
+        ):  # the check takes longer than all the rest
             return min(part.robustness for part in self.known.values())
         if isinstance(self.signal, BoundedSignal):
             return self.signal.value(0) + 0.0
@@ -353,6 +366,19 @@ class Result:
                 f"the requirements start at different times, '{first}' at {show_time(starts[first])} and '{last}' at "
                 f"{show_time(starts[last])}; {what} one of them, such as result.requirements['{first}']"
             )
+
+
+def found_directly(specification: Specification, reading: Reading, found: Any) -> Result:
+    """Return the result of a direct evaluation, whose trace and signal are made when they are asked for."""
+    result = _new_result(Result)
+    fields = result.__dict__
+    fields["specification"] = specification
+    fields["semantics"] = specification.__dict__["_own_query"].semantics
+    fields["_found"] = reading, found
+    return result
+
+
+_new_result: Callable[[type[Result]], Result] = object.__new__
 
 
 def requirements_of(

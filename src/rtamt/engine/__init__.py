@@ -11,6 +11,7 @@ discrete        the engine of discrete time
 dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
 offline         evaluate queries on a recording; cache compiled plans
+direct          the short way from data to robustness: one call
 offline_bounds  offline bounds of recordings with missing or uncertain samples
 time_axis       a recording divided into cells, as explanations evaluate it
 apart           keep calls whose times are converted off the fast path

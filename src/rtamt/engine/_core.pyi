@@ -543,6 +543,32 @@ class Evaluator:
         Return as many values of each output, and the first trace with an undefined value, or -1.
         """
 
+class DirectEvaluator:
+    """Reads, checks and evaluates a recording in one call.
+
+    ``given``: the ``period`` is not inferred from timestamps. ``fewest``, ``most``: numbers of samples. ``stages``: of
+    each its evaluator, the places of its columns, and its scans: kinds and operands. Variables come before scans.
+    """
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        time: str,
+        period: float,
+        given: bool,
+        tolerance: float,
+        fewest: int,
+        most: int,
+        stages: list[tuple[Evaluator, list[int], list[tuple[str, list[int]]]]],
+        threads: Callable[[], int] | None,
+    ) -> None: ...
+    def run(self, data: Any) -> tuple[bytearray | list[NDArray[np.float64]], int, bool] | None:
+        """Evaluate a dict of columns.
+
+        Return memory, the number of samples, and whether there are timestamps. The memory has rows of doubles: the
+        columns, the timestamps and the values. None for data that has to be converted, is wrong, or makes no value.
+        """
+
 class TickPoints:
     """The base of signals whose class has ``_events``, ticks and then values as bytes, and ``_scale``, their times."""
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rtamt.compiler.plan import DEFINED, Plan
 from rtamt.compiler.shared import Shape
 from rtamt.engine.cores import threads
+from rtamt.engine.direct import Direct
+from rtamt.engine.discrete.recording import Reading, frame_columns
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
+from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,7 +27,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.discrete import DiscreteTrace
+    from rtamt.signals.discrete import Discrete, DiscreteTrace
 
     #: Lower and upper bounds at each sample.
     Ends = tuple[FloatArray, FloatArray]
@@ -86,6 +90,26 @@ class Evaluator:
         values = runs[-1].rows(flat, count, n)
         return None if values is None else values[0].reshape(count, n)
 
+    def direct(self, domain: Discrete, trace: DiscreteTrace) -> Direct | None:
+        """Return what evaluates the only formula over data alone, in recordings like this one; None if nothing does."""
+        n, names = len(trace), tuple(trace.columns)
+        plan, runs = self.plan(n)
+        places = {name: place for place, name in enumerate(names)}
+        stages = []
+        for run, scans in zip(runs, [*(stage.scans for stage in plan.stages), ()], strict=True):
+            if run.evaluator is None or any(scan.kind == DEFINED for scan in scans):
+                return None
+            inputs = [places[name] for name in run.program.inputs]
+            stages.append((run.evaluator, inputs, [(scan.kind, list(scan.outputs)) for scan in scans]))
+            for scan in scans:
+                places[scan.name] = len(places)
+        sizes = (n, n) if n <= self._longest else (self._longest + 1, sys.maxsize)
+        given = domain.period is not None
+        evaluator = core().DirectEvaluator(
+            names, TIME, float(trace.period), given, domain.tolerance, *sizes, stages, threads
+        )
+        return Direct(evaluator.run, frame_columns, Reading(names, trace.period, given))
+
 
 class StoredEvaluator(Evaluator):
     """Evaluates a plan without formulas."""
@@ -139,9 +163,9 @@ class Run:
     """A program of a plan, ready to run over whole columns any number of times."""
 
     def __init__(self, program: Program) -> None:
-        self._program = program
+        self.program = program
         # Calls have a state of their own, which belongs to one run.
-        self._evaluator = None if program.calls else core().Evaluator(program.code())
+        self.evaluator: Any = None if program.calls else core().Evaluator(program.code())
 
     def over(
         self,
@@ -152,12 +176,12 @@ class Run:
         asked: Sequence[Formula],
     ) -> list[FloatArray]:
         """Return n values of each output; ``trace``, ``plan`` and the formulas that are ``asked``: for errors."""
-        program = self._program
+        program = self.program
         inputs = [columns[name] for name in program.inputs]
         values: list[FloatArray]
         try:
-            if self._evaluator is not None:
-                values = self._evaluator.run(inputs, n, threads)
+            if self.evaluator is not None:
+                values = self.evaluator.run(inputs, n, threads)
             else:
                 calls = calls_of(program, SampleDriver)
                 values = core().evaluate(program.code(), inputs, n, calls)
@@ -167,10 +191,10 @@ class Run:
 
     def rows(self, columns: Mapping[str, FloatArray], count: int, n: int) -> list[FloatArray] | None:
         """Return the same of ``count`` traces of n samples, one after another; None where one has no value."""
-        if self._evaluator is None:
+        if self.evaluator is None:
             return None
         values: list[FloatArray]
-        values, wrong = self._evaluator.run_rows([columns[name] for name in self._program.inputs], count, n)
+        values, wrong = self.evaluator.run_rows([columns[name] for name in self.program.inputs], count, n)
         return values if wrong < 0 else None
 
 

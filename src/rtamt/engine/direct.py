@@ -1,0 +1,33 @@
+"""The short way from data to robustness: one call that reads, checks and evaluates a recording."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.signal import Signal
+
+
+class Reading(Protocol):
+    """Makes objects of what a direct evaluation has found, when they are asked for."""
+
+    def trace(self, found: Any) -> DomainTrace:
+        """Return the recording."""
+
+    def signal(self, found: Any) -> Signal:
+        """Return the robustness."""
+
+
+class Direct(NamedTuple):
+    """Evaluates one formula over recordings that need no conversion.
+
+    ``run``: from data in a dict to what was found; None for data that have to be read, checked or evaluated in the
+    general way. ``columns``: from other data and the variables to such a dict; None where that is impossible.
+    """
+
+    run: Callable[[Any], Any]
+    columns: Callable[[Any, Sequence[str]], dict[str, Any] | None]
+    reading: Reading
