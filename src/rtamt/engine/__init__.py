@@ -1,7 +1,8 @@
 """Evaluate formulas on signals: offline on complete recordings, online sample by sample.
 
-Other packages import the names below from here; the back ends (``backend``) and the compiled core (``native``), which
-need longer to load, from their modules. Only the code for one time domain imports the folder of that domain.
+Other packages import the names below from here; the back ends (``backend``, ``early``) and the compiled core
+(``native``), which need longer to load, from their modules. Only the code for one time domain imports the folder of
+that domain.
 
 ==============  ============================================================================
 module          purpose
@@ -10,6 +11,7 @@ engine          what an engine has: back ends, a monitor, a time axis; the engin
 discrete        the engine of discrete time
 dense           the engine of dense time
 backend         the interface of a back end, and what compiled back ends share
+early           what monitors of early verdict modes ask of a back end, and what all back ends share for it
 offline         evaluate queries on a recording; cache compiled plans
 direct          the short way from data to robustness: one call
 offline_bounds  offline bounds of recordings with missing or uncertain samples

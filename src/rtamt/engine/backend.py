@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.program import CallSite, Program
     from rtamt.compiler.stored import StoredPlan
+    from rtamt.engine.early import EarlyQuery, EarlySession
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import BoundedSignal
@@ -69,6 +70,13 @@ class Backend(ABC):
 
         ``domain``: the time domain, whose step is known. ``ignored``: other variables that an update may hold.
         """
+
+    def early_session(self, query: EarlyQuery, domain: Any) -> EarlySession:
+        """Prepare to report verdicts, bounds or causation of formulas before the horizon.
+
+        For time domains that have early verdict modes. ``domain``: the time domain, whose step is known.
+        """
+        raise NotImplementedError
 
 
 class Session(ABC):

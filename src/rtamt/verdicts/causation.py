@@ -8,7 +8,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.causation import compile_causes
 from rtamt.errors import SpecificationError, TraceError, UsageError, shown
 from rtamt.language.printing.printer import excerpt
 from rtamt.rewrite.check import unbounded_future
@@ -18,8 +17,6 @@ from rtamt.verdicts.early import EarlyMonitor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.compiler.causation import Causes
-    from rtamt.compiler.graph import Graph
     from rtamt.engine import Watched
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
@@ -51,7 +48,7 @@ def not_exact(name: str, given: Any, index: int, moment: str) -> TraceError:
 class CausationMonitor(EarlyMonitor):
     """What the monitors of causation share."""
 
-    _verdict = None
+    _reports_causes = True
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         _check_causes(formula, settings.get("text"), settings.get("watch", ()))
@@ -59,9 +56,6 @@ class CausationMonitor(EarlyMonitor):
         super().__init__(formula, domain, start=True, every=self._bounded, **settings)
         self._forget()
         self._prepare()
-
-    def _causes_of(self, graph: Graph, outputs: Sequence[Formula]) -> Causes:
-        return compile_causes(graph, outputs)
 
     if TYPE_CHECKING:  # by the base
 

@@ -37,8 +37,6 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
     """
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale")
-    # Variables become known at different instants, and with them the predicates that read them.
-    _apart = True
 
     if TYPE_CHECKING:  # by the base
 

@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError
-from rtamt.language.formula import own_variables
-from rtamt.language.operators import STL
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
-from rtamt.rewrite.desugar import written
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import unknown_variable
-from rtamt.signals.outcomes import Causation, VerdictRun
+from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.samples import time_of
 from rtamt.signals.ticks import TimeScale
 from rtamt.usage_guard import exclusive, in_use
-from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession, Group
+from rtamt.verdicts.early import EarlyMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from rtamt.engine.dense.early_python_backend import Output
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Cause
@@ -36,8 +29,6 @@ if TYPE_CHECKING:
 
 class DenseEarlyMonitor(EarlyMonitor):
     """What the monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
-
-    _base = EarlyMonitorBase
 
     def __init__(
         self,
@@ -59,119 +50,19 @@ class DenseEarlyMonitor(EarlyMonitor):
         """See :class:`EarlyMonitor`: a variable is missing from its sample on, until its next one."""
         return True
 
-    def _prepare(self) -> None:
-        """Open the first monitor of the back end."""
-        self._session = self._compiled() if self._chosen.compiled else self._defined()
-        self._connect(self._session.open())
-
-    def _grouped(self, domain: type[TimeDomain], *, start: bool) -> tuple[Group, ...]:
-        """See :class:`EarlyMonitor`: formulas whose traces start at different instants are in different groups."""
-        wanted: dict[tuple[str, ...], list[Formula]] = {}
-        for each in self._requirements:
-            wanted.setdefault(self._trace_of(each), []).append(each)
-        if len(wanted) == 1:
-            (only,) = super()._grouped(domain, start=start)
-            self._traces: tuple[tuple[str, ...], ...] = (self._inputs,)
-            self._required = 1
-            self._places: list[list[tuple[int, int]]] = [[(0, output)] for output in self._outputs]
-            return (only,)
-        self._required = len(wanted)
-        formulas = [[reduce(STL["and"], parts)] for parts in wanted.values()]
-        traces = list(wanted)
-        shown = range(0 if self._hidden else self._required)
-        self._places = [[(number, 0) for number in shown]] if shown else []
-        for watched in self._formulas[1:]:
-            trace = self._trace_of(watched) if watched in self._requirements else self._inputs
-            if trace not in traces:
-                traces.append(trace)
-                formulas.append([])
-            number = traces.index(trace)
-            hidden = self._hidden if number < self._required else 0
-            self._places.append([(number, len(formulas[number]) - hidden)])
-            formulas[number].append(watched)
-        self._traces = tuple(traces)
-        return tuple(
-            self._group(
-                each,
-                trace,
-                domain,
-                start=start and number < self._required,
-                hidden=self._hidden if number < self._required else 0,
-            )
-            for number, (each, trace) in enumerate(zip(formulas, traces, strict=True))
-        )
-
-    def _trace_of(self, formula: Formula) -> tuple[str, ...]:
-        """Return the variables that form the trace of a requirement, in order."""
-        own = own_variables(formula, self._inputs)
-        return tuple(name for name in self._inputs if name in own)
-
-    def _lag(self, output: int) -> int:
-        found = [
-            self._groups[group].graph.horizon(self._groups[group].outputs[place])
-            for group, place in self._places[output]
-        ]
-        return max(0, *found)
-
-    def _compiled(self) -> GraphSession:
-        groups = [
-            (
-                graph.nodes,
-                outputs,
-                graph.items,
-                [self._inputs.index(name) for name in trace],
-                None if causes is None else (*causes, Causation),
-            )
-            for (graph, outputs, causes, _), trace in zip(self._groups, self._traces, strict=True)
-        ]
-        return GraphSession(
-            [group.graph for group in self._groups],
-            "DenseEarlyMonitor",
-            groups,
-            self._required,
-            self._places,
-            self._known_ranges(),
-            list(self._inputs),
-            self._unread,
-            codes_of(self._types),
-            self._late,
-            self._verdict is not None,
-            self._replays,
-        )
-
-    def _defined(self) -> DefinitionSession:
-        return DefinitionSession(
-            [group.graph for group in self._groups],
-            PythonDenseEarlyMonitor,
-            [self._output_with_names(formula) for formula in self._formulas],
-            self._hidden,
-            self._known_ranges(),
-            self._inputs,
-            self._step,
-            self._late,
-            self._verdict is not None,
-            any(group.causes is not None for group in self._groups),
-        )
-
     def _connect(self, backend: Any) -> None:
         super()._connect(backend)
         self._scale_in_use: TimeScale | None = None
         self._set_time_scale()
 
     def _set_time_scale(self) -> None:
-        """Set the time scale of the core, so that it reads plain times itself."""
+        """Set the time scale of the back end, so that it can read plain times itself."""
         scale = self._scale
-        if scale is None or scale is self._scale_in_use or not isinstance(self._session, GraphSession):
+        if scale is None or scale is self._scale_in_use:
             return
         self._scale_in_use = scale
         if scale.rate is not None and scale.ticks_in_1 is not None:
             self._backend.set_time_scale(VerdictRun, float(scale.rate))
-
-    def _output_with_names(self, formula: Formula) -> Output:
-        """Return a formula with the variables of its trace; the result as its requirements, each with its own."""
-        if formula is self._formulas[0]:
-            return [(each, self._trace_of(each)) for each in self._requirements]
-        return [(formula, self._trace_of(formula) if formula in self._requirements else self._inputs)]
 
     def _forget(self) -> None:
         super()._forget()
@@ -179,8 +70,7 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
-        formula = written(self._origin(error.args[0]), self._formulas)
-        return undefined(formula, f"time {self._shown(error.args[1])}")
+        return undefined(self._session.culprit(error), f"time {self._shown(error.args[1])}")
 
     # ---- times -----------------------------------------------------------------------------------
 
@@ -267,7 +157,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
     """
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_scale", "_evidence")
-    _verdict = VerdictRun
+    _reports_verdicts = True
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         super().__init__(formula, domain, **settings)

@@ -179,7 +179,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
     def _change(
         self, begin: int, end: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
     ) -> Change:
-        lag = self._lag(output)
+        lag = self._session.lag(output)
         complete = self._backend.complete
         final = self._finished or lower == upper or (lag < FOREVER and end - 1 + lag <= complete)
         first, last = self._times([begin, end])

@@ -6,20 +6,15 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.engine import Apart, inner_of
-from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
-from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
-from rtamt.rewrite.desugar import written
-from rtamt.signals.coding import codes_of
 from rtamt.signals.data_errors import missing_variable, unknown_variable
-from rtamt.signals.outcomes import Causation
 from rtamt.signals.regular import irregular, not_increasing
 from rtamt.signals.samples import read_time
 from rtamt.usage_guard import in_use
 from rtamt.verdicts.caller_clock import CallerClock, Timestamp
-from rtamt.verdicts.early import DefinitionSession, EarlyMonitor, GraphSession
+from rtamt.verdicts.early import EarlyMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,7 +30,6 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     _clock: CallerClock
 
     _remembered: ClassVar[tuple[str, ...]] = ("_finished", "_clock", "_evidence")
-    _base = EarlyMonitorBase
 
     def __init__(
         self,
@@ -49,47 +43,6 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         self._unit = None if unit is None else check_unit(unit)
         self._tolerance = domain.tolerance
         super().__init__(formula, domain, **settings)
-
-    def _prepare(self) -> None:
-        """Open the first monitor of the back end."""
-        self._session = self._compiled() if self._chosen.compiled else self._defined()
-        self._connect(self._session.open())
-
-    def _defined(self) -> DefinitionSession:
-        (group,) = self._groups
-        return DefinitionSession(
-            [group.graph],
-            PythonEarlyMonitor,
-            self._formulas,
-            self._hidden,
-            self._known_ranges(),
-            self._inputs,
-            self._step,
-            self._tolerance,
-            self._late,
-            self._verdict,
-            group.causes is not None,
-        )
-
-    def _compiled(self) -> GraphSession:
-        (group,) = self._groups
-        return GraphSession(
-            [group.graph],
-            "EarlyMonitor",
-            group.graph.nodes,
-            group.outputs,
-            group.graph.items,
-            self._known_ranges(),
-            list(self._inputs),
-            self._unread,
-            codes_of(self._types),
-            float(self._step),
-            self._tolerance,
-            self._late,
-            self._verdict,
-            self._replays,
-            None if group.causes is None else (*group.causes, Causation),
-        )
 
     def _connect(self, backend: Any) -> None:
         super()._connect(backend if self._clock.plain else Apart(inner_of(backend)))
@@ -208,5 +161,4 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist."""
-        formula = written(self._origin(error.args[0]), self._formulas)
-        return undefined(formula, at_sample(error.args[1], error.time))
+        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))

@@ -239,7 +239,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
     ) -> Change:
         backend = self._backend
-        lag = self._lag(output)
+        lag = self._session.lag(output)
         final = (
             self._finished
             or lower == upper

@@ -27,7 +27,7 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
     ([], [Verdict(time=0.0, satisfied=False, decided_at=1.0), Verdict(time=1.0, satisfied=False, decided_at=1.0)])
     """
 
-    _verdict = Verdict
+    _reports_verdicts = True
 
     def __init__(self, formula: Formula, domain: TimeDomain, **settings: Any) -> None:
         super().__init__(formula, domain, **settings)

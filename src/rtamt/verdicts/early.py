@@ -1,6 +1,6 @@
-"""Online before the horizon: what the monitors of verdicts and of bounds share in all time domains.
+"""Online before the horizon: what the monitors of verdicts and of bounds share in all time domains and back ends.
 
-All run the same graph (``compiler/graph.py``) in the core.
+The back end of a specification answers one query of the monitor, see :class:`rtamt.engine.early.EarlyQuery`.
 """
 
 from __future__ import annotations
@@ -8,14 +8,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from functools import partial
 from math import inf, isnan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.shared import Shape
 from rtamt.engine import Apart, OnlineMonitor, Watched, engine_of, grounded, inner_of
-from rtamt.engine.backend import Session
-from rtamt.engine.native import core
+from rtamt.engine.early import EarlyQuery
+from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
-from rtamt.language.parameters import with_values
 from rtamt.language.value_types import BOOLEAN
 from rtamt.rewrite.presence import channel_of, presences, tracked
 from rtamt.signals import arrays
@@ -27,65 +25,30 @@ from rtamt.verdicts.evidence import Evidence, span_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
-    from rtamt.compiler.causation import Causes
-    from rtamt.compiler.graph import Graph
+    from rtamt.engine.early import EarlySession
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Cause, Verdict, VerdictRun
 
 
-class GraphSession(Session):
-    """Graphs that monitors of the core run: ``monitor`` is their class in ``_core``, the rest are its arguments."""
-
-    def __init__(self, graphs: Sequence[Graph], monitor: str, *settings: Any) -> None:
-        self._graphs = graphs
-        self._monitor = getattr(core(), monitor)
-        self._settings = settings
-        self.refused = core().Refused
-        self.undefined = (core().Undefined,)
-
-    def open(self) -> Any:
-        """See :class:`Session`."""
-        return self._monitor(*self._settings)
-
-    @property
-    def fingerprint(self) -> bytes:
-        """See :class:`Session`."""
-        return b"".join(graph.fingerprint() for graph in self._graphs)
-
-
-class DefinitionSession(Session):
-    """Graphs whose formulas are evaluated by definition: ``monitor`` does, the rest are its arguments."""
-
-    def __init__(self, graphs: Sequence[Graph], monitor: Callable[..., Any], *settings: Any) -> None:
-        self._graphs = graphs
-        self._monitor = monitor
-        self._settings = settings
-
-    def open(self) -> Any:
-        """See :class:`Session`."""
-        return self._monitor(*self._settings)
-
-    @property
-    def fingerprint(self) -> bytes:
-        """See :class:`Session`."""
-        return b"".join(graph.fingerprint() for graph in self._graphs)
-
-
-class Group(NamedTuple):
-    """Formulas over one trace: their graph, the references of what is reported, and the values of parameters."""
-
-    graph: Graph
-    outputs: list[int]
-    causes: Causes | None
-    values: Mapping[str, float]
-
-
 class EarlyMonitor(OnlineMonitor):
     """What the monitors of verdicts and of bounds share. Not instantiated by users."""
 
-    #: The class of what update() returns, None for bounds.
-    _verdict: type | None
+    _base = EarlyMonitorBase
+    _session: EarlySession
+
+    #: Whether verdicts are reported; else bounds.
+    _reports_verdicts = False
+    #: Whether causation is reported.
+    _reports_causes = False
+    #: The conjuncts of the formula, where each has its own trace.
+    _requirements: tuple[Formula, ...] = ()
+    #: By how many steps at most a sample may be late; None where all come in order.
+    _late: int | None = None
+    #: Whether samples may correct earlier ones.
+    _replays = False
+    #: The samples that may decide a verdict; None if they are not needed.
+    _evidence: Evidence | None = None
 
     def __init__(
         self,
@@ -107,7 +70,7 @@ class EarlyMonitor(OnlineMonitor):
         assert step is not None
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         self._chosen = engine_of(domain).backends[backend]
-        self._step = step
+        self._domain, self._step = domain, step
         self._explained, self._continuous = explain, domain.continuous
         self._ranges = self._read_ranges(ranges or {})
         asked = presences(*self._formulas)
@@ -117,57 +80,33 @@ class EarlyMonitor(OnlineMonitor):
         #: The variables and the channels of their presence, which is what the back end reads.
         self._inputs = (*self.input_names, *self._channels.values())
         # A formula that is asked for at the start alone is no output.
-        self._hidden = 0 if every else 1
-        self._groups = self._grouped(type(domain), start=start)
+        self._hidden, self._at_start = 0 if every else 1, start
 
-    def _grouped(self, domain: type[TimeDomain], *, start: bool) -> tuple[Group, ...]:
-        """Return what the back end runs, in the order of its steps: all formulas over one trace."""
-        return (self._group(self._formulas, self._inputs, domain, start=start, hidden=self._hidden),)
+    def _prepare(self) -> None:
+        """Ask the back end for a session, and open its first monitor."""
+        self._session = self._chosen.early_session(self._query(), self._domain)
+        self._connect(self._session.open())
 
-    def _group(
-        self,
-        formulas: Sequence[Formula],
-        inputs: tuple[str, ...],
-        domain: type[TimeDomain],
-        *,
-        start: bool,
-        hidden: int,
-    ) -> Group:
-        shape = Shape.of(formulas)
-        graph = shape.graph(self._step, inputs, domain, start=start, apart=self._apart)
-        causes = self._causes_of(graph, shape.expanded()[hidden:])
-        graph = graph.with_parameters(shape.values)
-        return Group(graph, graph.outputs[hidden:], causes, shape.values)
-
-    def _origin(self, step: int) -> Formula:
-        """Return the core formula that a step of the graphs computes."""
-        for graph, _, _, values in self._groups:
-            if step < len(graph.origins):
-                return with_values([graph.origins[step]], values)[0]
-            step -= len(graph.origins)
-        raise IndexError(step)
-
-    def _lag(self, output: int) -> int:
-        """Return how many steps after an instant the value of an output is final at the latest."""
-        group = self._groups[0]
-        return max(0, group.graph.horizon(group.outputs[output]))
+    def _query(self) -> EarlyQuery:
+        return EarlyQuery(
+            self._formulas,
+            self._requirements,
+            self._inputs,
+            self._known_ranges(),
+            self._types,
+            self._unread,
+            verdicts=self._reports_verdicts,
+            causes=self._reports_causes,
+            start=self._at_start,
+            hidden=self._hidden,
+            late=self._late,
+            replays=self._replays,
+        )
 
     @property
     def _outputs(self) -> range:
         """The numbers of the formula, unless it is asked for at the start alone, and of what is watched."""
         return range(len(self._formulas) - self._hidden)
-
-    def _causes_of(self, graph: Graph, outputs: Sequence[Formula]) -> Causes | None:
-        """Return the parts that causes are computed of, and add to the graph what they need: for causation alone."""
-
-    #: Whether each predicate is a node of the graph.
-    _apart = False
-    #: By how many steps at most a sample may be late; None where all come in order.
-    _late: int | None = None
-    #: Whether samples may correct earlier ones.
-    _replays = False
-    #: The samples that may decide a verdict; None if they are not needed.
-    _evidence: Evidence | None = None
 
     def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
         read = {}
@@ -211,10 +150,6 @@ class EarlyMonitor(OnlineMonitor):
         super()._resume(state)
         if self._evidence is not None:
             self._evidence = self._evidence.copied()
-
-    @abstractmethod
-    def _prepare(self) -> None:
-        """Open the first monitor of the back end."""
 
     def _connect(self, backend: Any) -> None:
         self._backend = Apart(inner_of(backend)) if self._channels or self._explained else backend

@@ -64,8 +64,6 @@ class IntervalMonitor(EarlyMonitor):
     (Interval(lower=4.5, upper=7.0), Interval(lower=4.5, upper=7.0))
     """
 
-    _verdict = None
-
     def __init__(
         self,
         formula: Formula,

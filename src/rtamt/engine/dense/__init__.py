@@ -4,6 +4,7 @@
 module                purpose
 ====================  =====================================================================
 backends              the back ends: the compiled core and the definition
+early                 what both back ends report before the horizon: requirements, each with its own trace
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
 quantifiers           the monitor of quantifiers, over members that come and go

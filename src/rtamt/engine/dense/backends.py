@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.compiler.program import Program
+    from rtamt.engine.early import EarlyQuery, EarlySession
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
@@ -70,6 +71,12 @@ class CompiledDense(Compiled):
         """See :class:`Backend`. ``parts``: whether :meth:`Session.part` is needed."""
         return EventProgram(formulas, inputs, domain, ignored, parts=parts)
 
+    def early_session(self, query: EarlyQuery, domain: Dense) -> EarlySession:
+        """See :class:`Backend`."""
+        from rtamt.engine.dense import early  # delayed monitors do not wait for it
+
+        return early.program_of(query, domain)
+
 
 class DefinedDense(Defined):
     """The definition."""
@@ -103,6 +110,12 @@ class DefinedDense(Defined):
     ) -> EventDefinition:
         """See :class:`Backend`."""
         return EventDefinition(formulas, inputs, domain)
+
+    def early_session(self, query: EarlyQuery, domain: Dense) -> EarlySession:
+        """See :class:`Backend`."""
+        from rtamt.engine.dense import early  # delayed monitors do not wait for it
+
+        return early.definition_of(query, domain)
 
 
 class EventProgram(CompiledSession):

@@ -171,6 +171,9 @@ class PythonDenseEarlyMonitor:
         """Return what is reported of an output from now on."""
         return _verdicts(before, found, newest, now) if self._decides else _changes(before, found, newest)
 
+    def set_time_scale(self, signal: type, rate: float) -> None:
+        """Ignore the time scale: callers convert all times."""
+
     # ---- answers ---------------------------------------------------------------------------------
 
     @property

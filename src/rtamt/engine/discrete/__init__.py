@@ -4,6 +4,7 @@
 module                purpose
 ====================  =====================================================================
 backends              the back ends: the compiled core and the definition
+early                 what both back ends report before the horizon
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
 fleet                 many monitors of one formula: a record for each key in the compiled core

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
     from rtamt.compiler.program import Program
+    from rtamt.engine.early import EarlyQuery, EarlySession
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import Discrete, DiscreteTrace
@@ -88,6 +89,12 @@ class CompiledDiscrete(Compiled):
         """See :class:`Backend`."""
         return int(core().memory(program.code(), calls_of(program, SampleDriver)))
 
+    def early_session(self, query: EarlyQuery, domain: Discrete) -> EarlySession:
+        """See :class:`Backend`."""
+        from rtamt.engine.discrete import early  # delayed monitors do not wait for it
+
+        return early.program_of(query, domain)
+
 
 class DefinedDiscrete(Defined):
     """The definition."""
@@ -126,6 +133,12 @@ class DefinedDiscrete(Defined):
         if worst_case:
             raise UsageError("worst_case=True needs the compiled core; leave out backend='python'")
         return SampleDefinition(formulas, inputs, domain, strict=strict, unit=unit)
+
+    def early_session(self, query: EarlyQuery, domain: Discrete) -> EarlySession:
+        """See :class:`Backend`."""
+        from rtamt.engine.discrete import early  # delayed monitors do not wait for it
+
+        return early.definition_of(query, domain)
 
 
 class SampleProgram(CompiledSession):
