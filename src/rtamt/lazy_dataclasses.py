@@ -93,7 +93,9 @@ class _StandardFields:
 
         found = [each.standard() for each in cls._record_fields.values()]
         made: Any = dataclasses.make_dataclass(cls.__name__, found)
-        return made.__dataclass_fields__
+        fields = made.__dataclass_fields__
+        type.__setattr__(cls, "__dataclass_fields__", fields)  # from now on without this descriptor
+        return fields
 
 
 def _processed(

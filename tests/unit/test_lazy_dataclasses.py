@@ -117,3 +117,16 @@ def test_commands_without_data_import_neither_numpy_nor_dataclasses(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr.strip() == ""
+
+
+def test_fields_for_the_standard_library_are_made_once():
+    @lazy_dataclasses.dataclass(frozen=True)
+    class Point:
+        x: int = 0
+
+    class Named(Point):
+        pass
+
+    assert dataclasses.replace(Point(), x=3) == Point(3)
+    assert dataclasses.fields(Point)[0] is dataclasses.fields(Point)[0]
+    assert [each.name for each in dataclasses.fields(Named)] == ["x"]

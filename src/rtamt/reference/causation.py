@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Window
+from rtamt.reference.cores import core_of
 from rtamt.reference.discrete_bounds import bounds
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import at_one_instant, connects
-from rtamt.rewrite.ground import ground
 from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | Non
     >>> causation(parse_formula("always(x >= 3)"), Knowledge({"x": Enclosure(x, x)}, 3), Fraction(1), 1)
     [Causation(violation=-1.0, satisfaction=-inf)]
     """
-    core = desugar(ground(formula, period))
+    core = core_of(formula, period).formula
     reach = sum(_reach(node, period) + 1 for node in postorder(core))
     m = known.n + reach if m is None else m
     causes = _Causes(known, period, m + known.n + reach)

@@ -18,13 +18,11 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import undefined
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
-from rtamt.rewrite.check import check_dense
-from rtamt.rewrite.desugar import desugar, written
-from rtamt.rewrite.ground import ground
-from rtamt.rewrite.horizon import horizons
+from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
@@ -100,12 +98,10 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     >>> bounds(soon, DenseKnowledge({"x": ([0, 5], [1, 4], [1, 4])}, {"x": (0, 5)}), Fraction(1))
     StepBounds(times=(0, 3, 4, 6), lower=(-2.0, 1.0, 1.0, -3.0), upper=(-2.0, 1.0, 2.0, 2.0))
     """
-    check_dense(formula)
-    core = desugar(ground(formula, tick, continuous=True))
+    core, ahead = core_of(formula, tick, continuous=True)
     start = known.start
     origin = (0 if start is None else start) * QUARTERS
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
-    ahead = horizons(core, tick)
     complete = None if start is None else known.complete
     last = max((int(times[-1]) for times, _, _ in known.samples.values() if len(times)), default=0) * QUARTERS
     read = last_read(core, last, tick)
@@ -117,7 +113,7 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
             return inf if limit is None else limit
         if complete is None or depth is None:
             return -inf
-        return min(last, (complete - int(depth / tick)) * QUARTERS)
+        return min(last, (complete - depth) * QUARTERS)
 
     def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
         value = _apply(node, below, signals, origin, tick)

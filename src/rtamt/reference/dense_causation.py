@@ -17,10 +17,9 @@ from rtamt.language.definitions import dense as dense_definitions
 from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged, pieces
 from rtamt.language.formula import Apply, Formula, postorder, variables
 from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
+from rtamt.reference.cores import core_of
 from rtamt.reference.dense_bounds import DenseKnowledge, bounds
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import at_one_instant, connects
-from rtamt.rewrite.ground import ground
 from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def causation(
     >>> found.times, [cause.violation for cause in found.causes]
     ((0, 1, 3, 4), [inf, 1.0, -2.0, inf])
     """
-    core = desugar(ground(formula, tick, continuous=True))
+    core = core_of(formula, tick, continuous=True).formula
     start = now.start
     assert start is not None
     found: dict[Formula, _Sides] = {}

@@ -22,10 +22,9 @@ from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import arguments_of
-from rtamt.rewrite.desugar import desugar, written
-from rtamt.rewrite.ground import ground
-from rtamt.rewrite.horizon import horizons
+from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -76,8 +75,7 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
     >>> bounds(soon, Knowledge({"x": Enclosure(x, x)}, 2, {"x": (0.0, 5.0)}), Fraction(1))
     Enclosure(lower=array([ 1., -2., -3.]), upper=array([2., 2., 2.]))
     """
-    core = desugar(ground(formula, period))
-    ahead = horizons(core, period)
+    core, ahead = core_of(formula, period)
     closed = known.n if known.closed is None else known.closed
 
     def step(node: Formula, below: tuple[Enclosure, ...]) -> Enclosure:
@@ -85,7 +83,7 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
         wrong = np.isnan(value.lower) | np.isnan(value.upper)
         if wrong.any():
             depth = ahead[id(node)]
-            final = known.n if known.finished else 0 if depth is None else closed - int(depth / period)
+            final = known.n if known.finished else 0 if depth is None else closed - depth
             # Known exactly, or not better later.
             certain = _exact(node, below, len(wrong)) & (np.arange(len(wrong)) < known.n)
             certain[: max(0, final)] = True
@@ -248,8 +246,10 @@ def _longest(operands: tuple[Enclosure, ...]) -> int:
 
 def _padded(x: Enclosure, n: int) -> Enclosure:
     """Return bounds of n samples: the last entry is that of all later ones."""
-    more = max(0, n - len(x.lower))
-    return Enclosure(np.pad(x.lower, (0, more), "edge"), np.pad(x.upper, (0, more), "edge"))
+    more = n - len(x.lower)
+    if more <= 0:
+        return x
+    return Enclosure(*(np.concatenate((ends, np.full(more, ends[-1]))) for ends in x))
 
 
 def _reach(node: Apply, window: tuple[int | None, ...]) -> tuple[int, int]:

@@ -14,8 +14,7 @@ from rtamt import Causation
 from rtamt.language.formula import Apply, Formula, postorder, variables
 from rtamt.language.operators import Tense
 from rtamt.reference import dense_bounds
-from rtamt.rewrite.desugar import desugar
-from rtamt.rewrite.ground import ground
+from rtamt.reference.cores import core_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,7 +35,7 @@ def on_grid(formula: Formula, before: DenseKnowledge, now: DenseKnowledge, tick:
 
     ``before`` and ``now``: what is known before and after the event, with which the trace has started.
     """
-    core = desugar(ground(formula, tick, continuous=True))
+    core = core_of(formula, tick, continuous=True).formula
     return _Grid(core, before, now, tick).of(core)
 
 

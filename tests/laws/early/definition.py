@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from rtamt import Interval, Verdict, VerdictRun
 from rtamt.compiler.graph import FOREVER
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import variables
+from rtamt.lazy_dataclasses import replace
 from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
@@ -86,16 +87,22 @@ class _Discrete:
 
 
 class _Intervals(_Discrete):
+    _found: Enclosure | None = None
+
     def update(self, t: int, **values: Any) -> None:
         self._take(t, values)
+        self._found = None
 
     def interval(self, t: int = 0) -> Interval:
-        found = discrete_bounds.bounds(self._formula, self.known, PERIOD)
+        if self._found is None:
+            self._found = discrete_bounds.bounds(self._formula, self.known, PERIOD)
+        found = self._found
         i = min(t, len(found.lower) - 1)
         return Interval(float(found.lower[i]), float(found.upper[i]))
 
     def finish(self) -> None:
         self._finished = True
+        self._found = None
 
 
 class _Eager(_Discrete):
@@ -114,13 +121,18 @@ class _Eager(_Discrete):
 class _Causes(_Discrete):
     def __init__(self, formula: Formula) -> None:
         super().__init__(formula, variables(formula), {})
+        self._found: list[Causation] = []
 
     def update(self, t: int, **values: Any) -> Causation:
         self._take(t, values)
+        self._found = []
         return self.causation(0)
 
     def causation(self, t: int) -> Causation:
-        return causation.causation(self._formula, self.known, PERIOD, t + 1)[t]
+        if t >= len(self._found):
+            until = max(t, len(self._rows)) if t else 0  # at first the start alone is asked for
+            self._found = causation.causation(self._formula, self.known, PERIOD, until + 1)
+        return self._found[t]
 
 
 class _Dense:

@@ -1,14 +1,23 @@
-"""The laws on random cases: ``python -m tests.laws.early.soak 1000000 [SEED]`` checks each on its share of so many.
+"""The laws on random cases: ``python -m tests.laws.early.soak 1000000`` checks each on its share of so many.
 
-A failure prints the seed of its case, which :data:`LAWS` reproduces: ``law(random.Random(seed), made)``.
+Cases are numbered, and a number determines its case: the law, the implementation, and the seed of all that is drawn.
+``--from NUMBER`` goes on where another run ended, which its progress reports; ``--case NUMBER`` repeats a failure with
+its traceback. Only cases with something to check count: others have an operation without a value, or are outside the
+class of their law.
 """
 
 from __future__ import annotations
 
+import argparse
+import os
 import sys
-from collections import Counter
+import time
+import traceback
+from collections import Counter, deque
+from concurrent.futures import ProcessPoolExecutor
+from itertools import count, islice
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from tests.laws.early import dense_laws, laws, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
@@ -216,24 +225,96 @@ def laws_of(made: Implementation) -> list[Law]:
     return [law for law in LAWS if law not in excluded]
 
 
-def main(count: int, first: int = 0) -> None:
-    """Check every law for every implementation on its share of ``count`` cases, from seed ``first`` on."""
-    pairs = [(law, made) for made in IMPLEMENTATIONS for law in laws_of(made)]
-    checked: Counter[str] = Counter()
-    for seed in range(first, first + count):
-        law, made = pairs[seed % len(pairs)]
+PAIRS = [(law, made) for made in IMPLEMENTATIONS for law in laws_of(made)]
+
+#: Cases that a process checks at a time.
+PART = 10 * len(PAIRS)
+#: Seconds between two lines of progress.
+PAUSE = 30.0
+
+
+class Part(NamedTuple):
+    """What became of the cases of a part: how many had something to check, by law; how many had not; failures."""
+
+    checked: Counter[str]
+    void: int
+    failures: list[str]
+
+
+def check(number: int) -> str | None:
+    """Check a case; return the name of its law and of its implementation, or None where there is nothing to check."""
+    law, made = PAIRS[number % len(PAIRS)]
+    try:
+        law(Random(number), made)  # noqa: S311 - no secret
+    except laws.NothingToCheck:
+        return None
+    return f"{law.__name__} of {made.name}"
+
+
+def check_part(first: int) -> Part:
+    """Check the cases of a part, all of them, whether some fail or not."""
+    part = Part(Counter(), 0, [])
+    for number in range(first, first + PART):
         try:
-            law(Random(seed), made)  # noqa: S311 - no secret
-        except laws.NothingToCheck:
-            checked["without a value to check"] += 1
-        except BaseException:
-            print(f"{law.__name__} of {made.name}, seed {seed}", flush=True)
-            raise
+            checked = check(number)
+        except Exception as error:  # noqa: BLE001 - whatever a law meets is its failure
+            law, made = PAIRS[number % len(PAIRS)]
+            shown = traceback.format_exception_only(error)[-1].splitlines()[0]
+            part.failures.append(f"case {number}: {law.__name__} of {made.name}: {shown}")
+            continue
+        if checked is None:
+            part = part._replace(void=part.void + 1)
         else:
-            checked[f"{law.__name__} of {made.name}"] += 1
+            part.checked[checked] += 1
+    return part
+
+
+def main(wanted: int, first: int, workers: int) -> int:
+    """Check cases from number ``first`` on until ``wanted`` had something to check; return how many failed."""
+    checked: Counter[str] = Counter()
+    void, failures, begin = 0, 0, time.perf_counter()
+    said = begin
+    with ProcessPoolExecutor(workers) as pool:
+        numbers = count(first, PART)
+        # In the order of their numbers: all before the next one are done.
+        running = deque((n, pool.submit(check_part, n)) for n in islice(numbers, 2 * workers))
+        while running:
+            number, future = running.popleft()
+            part = future.result()
+            checked += part.checked
+            void += part.void
+            failures += len(part.failures)
+            print(*part.failures, sep="\n", end="\n" * bool(part.failures), flush=True)
+            total = checked.total()
+            if total < wanted:
+                after = next(numbers)
+                running.append((after, pool.submit(check_part, after)))
+            now = time.perf_counter()
+            if now - said > PAUSE or not running:
+                said, rate = now, total / (now - begin)
+                rest = max(0.0, (wanted - total) / rate) if rate else float("inf")
+                print(
+                    f"{total:,} cases checked, {void:,} without anything to check, {failures:,} failures; "
+                    f"{rate:.0f} a second, {rest / 60:.0f} min to go; next: --from {number + PART}",
+                    flush=True,
+                )
     for name, cases in sorted(checked.items()):
         print(f"{cases:>9,}  {name}")
+    return failures
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    parser = argparse.ArgumentParser(
+        description="check the laws of bounds and early verdicts on random cases"
+    )
+    parser.add_argument(
+        "wanted", type=int, nargs="?", default=1_000_000, help="cases with something to check"
+    )
+    parser.add_argument("--from", type=int, default=0, dest="first", help="the number of the first case")
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes")
+    parser.add_argument("--case", type=int, help="check the case of this number alone")
+    options = parser.parse_args()
+    if options.case is not None:
+        print(check(options.case) or "nothing to check")
+        sys.exit(0)
+    sys.exit(1 if main(options.wanted, options.first, options.workers) else 0)

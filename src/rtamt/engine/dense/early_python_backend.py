@@ -285,7 +285,8 @@ class PythonDenseEarlyMonitor:
 
     def causation_at_start(self) -> Pair:
         """Violation and satisfaction that the last event caused at the start of the trace, as bounds there."""
-        parts = [self._caused_of([part]) for part in self._formulas[0]]
+        first = self._formulas[0]
+        parts = [self._caused(0)] if len(first) == 1 else [self._caused_of([part]) for part in first]
         begun = [part.causes[0] for part in parts if part is not None]
         violation = min((cause.violation for cause in begun), default=inf)
         satisfaction = max((cause.satisfaction for cause in begun), default=-inf)

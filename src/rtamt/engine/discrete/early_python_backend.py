@@ -54,6 +54,7 @@ class PythonEarlyMonitor:
         # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
         self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
         self._reports: list[list[Any]] = [[] for _ in self._outputs]
+        self._answer_anew()
 
     @property
     def state_bytes(self) -> int:
@@ -97,15 +98,22 @@ class PythonEarlyMonitor:
         closed = min(n, self.closed + 1)
         return Knowledge(columns, n, self._ranges, self.finished, closed)
 
+    def _answer_anew(self) -> None:
+        """Forget the answers, which what came makes obsolete: of each formula by its identity."""
+        self._found: dict[int, Enclosure] = {}
+        self._causation: dict[int, list[Causation]] = {}
+
     def _bounds(self, formula: Formula) -> Enclosure:
-        start = self._times[0] if self._times else 0.0
-        return bounds(formula, self._knowledge(), self._period, start)
+        if id(formula) not in self._found:
+            start = self._times[0] if self._times else 0.0
+            self._found[id(formula)] = bounds(formula, self._knowledge(), self._period, start)
+        return self._found[id(formula)]
 
     def _compute(self) -> None:
         """Compute what the last sample made known of each output, up to the newest sample."""
-        self._found = [self._bounds(formula) for formula in self._outputs]
-        if self._start not in self._outputs:
-            self._bounds(self._start)  # which fails where an operation has no value
+        self._answer_anew()
+        for formula in (*self._outputs, self._start):
+            self._bounds(formula)  # which fails where an operation has no value
         self._reports = [
             self._verdicts(i) if self._verdict else self._changes(i) for i in range(len(self._outputs))
         ]
@@ -115,7 +123,8 @@ class PythonEarlyMonitor:
         return float(found.lower[place]), float(found.upper[place])
 
     def _verdicts(self, output: int) -> list[Any]:
-        found, decided, reported = self._found[output], self._decided[output], self._reported[output]
+        found = self._bounds(self._outputs[output])
+        decided, reported = self._decided[output], self._reported[output]
         last = len(found.lower) - 1
         for sample in range(last + 1):
             low, high = self._pair(found, sample)
@@ -133,7 +142,7 @@ class PythonEarlyMonitor:
         return news
 
     def _changes(self, output: int) -> list[Any]:
-        found, reported = self._found[output], self._reported[output]
+        found, reported = self._bounds(self._outputs[output]), self._reported[output]
         news: list[Any] = []
         for sample in range(self.newest + 1):
             pair = self._pair(found, sample)
@@ -162,8 +171,13 @@ class PythonEarlyMonitor:
     def _caused(self, formula: Formula, sample: int) -> Pair:
         if not self.samples:
             return inf, -inf
-        found = causation(formula, self._knowledge(), self._period, sample + 1)[sample]
-        return found.violation, found.satisfaction
+        found = self._causation.get(id(formula), [])
+        if sample >= len(found):
+            until = max(sample, self.newest) if sample else 0  # the start is often all that is asked for
+            found = self._causation[id(formula)] = causation(
+                formula, self._knowledge(), self._period, until + 1
+            )
+        return found[sample].violation, found[sample].satisfaction
 
     def caused(self, output: int) -> list[tuple[int, int, float, float]]:
         """The same as runs (first, last, violation, satisfaction), where there is any."""
@@ -190,11 +204,13 @@ class PythonEarlyMonitor:
         if self.newest >= 0:
             steps = floor((time - self._times[self.newest]) / float(self._period) + self._tolerance)
             self.closed = max(self.closed, self.newest + steps)
+            self._answer_anew()
 
     def finish(self) -> Any:
         """End the trace; return what that makes known."""
         before = self.state()
         self.finished = True
+        self._answer_anew()
         try:
             if self._verdict:
                 self._compute()
@@ -293,3 +309,4 @@ class PythonEarlyMonitor:
     def restore(self, state: bytes) -> None:
         """Restore the state of a monitor that was made with the same arguments."""
         self.__dict__.update(pickle.loads(state))  # noqa: S301 - its own
+        self._answer_anew()
