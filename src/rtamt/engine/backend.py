@@ -10,6 +10,7 @@ from rtamt.engine.engine import BACKENDS, engine_of
 from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
 from rtamt.language.formula import postorder, types_of
+from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.coding import codes_of
 
@@ -84,7 +85,7 @@ class Session(ABC):
 
     #: What a monitor raises for an update that it cannot take; nothing has changed then.
     refused: type[Exception] = RefusedError
-    #: What it raises where an operation has no value, for :meth:`culprit`. The definition raises the final error.
+    #: What it raises where an operation has no value, for :meth:`culprit`. Others are final errors.
     undefined: tuple[type[Exception], ...] = ()
     #: Whether its monitors check all data of an update, so that callers need not.
     checks: bool = False
@@ -119,6 +120,17 @@ class Session(ABC):
                 f"a monitor of '{name}' can be neither copied nor pickled: only the operator's own code knows what "
                 f"it remembers; use backend='python'"
             )
+
+
+class TickDefinition(Session):
+    """Formulas that are evaluated by definition, in ticks; in samples the definition raises the final error."""
+
+    undefined = (UndefinedAtTickError,)
+
+    def culprit(self, error: Exception) -> Formula:
+        """See :class:`Session`."""
+        culprit: Formula = error.args[0]
+        return culprit
 
 
 C = TypeVar("C", bound=Backend)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.compiler.causation import compile_causes
 from rtamt.compiler.shared import Shape
-from rtamt.engine.backend import Session
+from rtamt.engine.backend import Session, TickDefinition
 from rtamt.engine.native import core
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass
@@ -156,5 +156,5 @@ class EarlyProgram(EarlySession):
         raise IndexError(step)
 
 
-class EarlyDefinition(EarlySession):
+class EarlyDefinition(EarlySession, TickDefinition):
     """Formulas that are evaluated by definition; their graphs give lags, and refuse what has no bounds."""

@@ -36,6 +36,20 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
     return undefined_text(meaning_of(formula), where)
 
 
+class UndefinedAtTickError(EvaluationError):
+    """The definition's error for an undefined value in dense time, which callers word with times in their own format.
+
+    ``args``: the formula without a value, as it is written, and the tick; the text has ``seconds``.
+    """
+
+    def __init__(self, formula: Formula, tick: int, seconds: float) -> None:
+        super().__init__(formula, tick, seconds)
+
+    def __str__(self) -> str:
+        formula, _, seconds = self.args
+        return str(undefined(formula, f"time {seconds:.15g} s"))
+
+
 def meaning_of(formula: Formula) -> str:
     """Return what :func:`undefined_text` needs of a formula of built-in operators, as text."""
     why = formula.op.fails if isinstance(formula, Apply) else ""

@@ -20,7 +20,7 @@ from rtamt.errors import UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Tense
-from rtamt.language.undefined_value import undefined
+from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import spelled_out
@@ -232,7 +232,7 @@ def _evaluate(formula: Formula, trace: _Trace, limits: Limits) -> Steps:
         limit = limits[id(node)]
         for time, v in zip(*value, strict=True):
             if isnan(v) and (limit is None or time <= limit):
-                raise undefined(node, f"time {trace.seconds(time):.15g} s")
+                raise UndefinedAtTickError(node, time // QUARTERS, trace.seconds(time))
         return value
 
     # Later than the limits NaN may meet any operator, and none of it is reported.

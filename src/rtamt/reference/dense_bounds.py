@@ -16,7 +16,7 @@ from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
-from rtamt.language.undefined_value import undefined
+from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import signal_of
@@ -232,7 +232,7 @@ def _defined(
     for i in wrong:
         if certain(times[i]):
             seconds = float(times[i] * tick / QUARTERS)
-            raise undefined(written(node, [formula]), f"time {seconds:.15g} s")
+            raise UndefinedAtTickError(written(node, [formula]), times[i] // QUARTERS, seconds)
     for i in wrong:
         pairs[i] = (-inf, inf)
     return _Signal(merged(times, [low for low, _ in pairs]), merged(times, [high for _, high in pairs]))

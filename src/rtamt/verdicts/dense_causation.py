@@ -79,7 +79,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         try:
             happens()
         except BaseException as error:
-            wrong = self._no_value(error) if isinstance(error, self._undefined) else None
+            wrong = self._no_value(error, scale) if isinstance(error, self._undefined) else None
             self._scale = before
             if isinstance(error, self._refused):
                 raise in_use() from None

@@ -68,9 +68,11 @@ class DenseEarlyMonitor(EarlyMonitor):
         super()._forget()
         self._scale: TimeScale | None = None
 
-    def _no_value(self, error: Any) -> Exception:
-        """Name the sub-formula and the instant of a value that does not exist."""
-        return undefined(self._session.culprit(error), f"time {self._shown(error.args[1])}")
+    def _no_value(self, error: Any, scale: TimeScale | None = None) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist, in the ``scale`` of the new sample."""
+        tick = error.args[1]
+        where = self._shown(tick) if scale is None else scale.show(tick)
+        return undefined(self._session.culprit(error), f"time {where}")
 
     # ---- times -----------------------------------------------------------------------------------
 
@@ -187,7 +189,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             except self._refused:
                 raise in_use() from None
             except self._undefined as error:
-                raise self._no_value(error) from None
+                raise self._no_value(error, scale) from None
             self._scale = scale
             self._set_time_scale()
             if self._evidence is not None:

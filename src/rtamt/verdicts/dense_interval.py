@@ -74,7 +74,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
             if isinstance(error, self._refused):
                 raise in_use() from None
             if isinstance(error, self._undefined):
-                raise self._no_value(error) from None
+                raise self._no_value(error, scale) from None
             raise
         self._set_time_scale()
 
@@ -118,7 +118,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         try:
             self._watermark(tick)
         except self._undefined as error:
-            raise self._no_value(error) from None
+            raise self._no_value(error, scale) from None
         self._retracted = None
         self._scale = scale
 

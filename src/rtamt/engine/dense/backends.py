@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.shared import Shape
 from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Compiled, CompiledSession, Defined, Session, named
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, TickDefinition, named
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, settling
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import core, not_made
 from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.language.undefined_value import UndefinedAtTickError, undefined
 from rtamt.lazy_dataclasses import replace
 from rtamt.reference import dense as reference
 from rtamt.rewrite.desugar import desugar
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.program import Program
     from rtamt.engine.early import EarlyQuery, EarlySession
+    from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
@@ -90,14 +92,20 @@ class DefinedDense(Defined):
         """See :class:`Backend`."""
 
         def evaluated(trace: DenseTrace) -> list[Samples]:
-            steps = (reference.evaluate(f, trace.columns, step) for f in formulas)
+            try:
+                steps = [reference.evaluate(f, trace.columns, step) for f in formulas]
+            except UndefinedAtTickError as error:
+                raise _at_callers_time(error, trace) from None
             return [(each.times, each.values) for each in steps]
 
         return evaluated
 
     def bounds_of(self, formula: Formula, trace: DenseTrace) -> BoundedSignal:
         """See :class:`Defined`."""
-        return offline_bounds.dense(formula, trace)
+        try:
+            return offline_bounds.dense(formula, trace)
+        except UndefinedAtTickError as error:
+            raise _at_callers_time(error, trace) from None
 
     def session(
         self,
@@ -153,7 +161,7 @@ class EventProgram(CompiledSession):
         return known
 
 
-class EventDefinition(Session):
+class EventDefinition(TickDefinition):
     """Formulas that are evaluated by definition."""
 
     def __init__(self, formulas: Sequence[Formula], inputs: tuple[str, ...], domain: Dense) -> None:
@@ -166,6 +174,11 @@ class EventDefinition(Session):
     def part(self, monitor: PythonDenseMonitor, formula: Formula) -> Samples:
         """See :class:`Session`."""
         return monitor.part(formula)
+
+
+def _at_callers_time(error: UndefinedAtTickError, trace: DenseTrace) -> EvaluationError:
+    formula, tick, _ = error.args
+    return undefined(formula, f"time {trace.scale.show(tick)}")
 
 
 _DEFINED = DefinedDense()
