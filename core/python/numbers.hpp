@@ -3,6 +3,7 @@
 
 #include "../values/vectors.hpp"
 #include "cpython.hpp"
+#include "numpy_attribute.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -61,10 +62,7 @@ class Numbers {
   public:
     static constexpr bool plain = false;
 
-    Numbers()
-        : accepted_(nb::make_tuple(nb::module_::import_("numbers").attr("Real"),
-                                   nb::module_::import_("numpy").attr("bool_"))),
-          duration_(nb::module_::import_("numpy").attr("timedelta64")) {}
+    Numbers() : real_(nb::module_::import_("numbers").attr("Real")) {}
 
     // False for what is no number, for one that no double holds, and for NaN. What the object
     // itself raises stays set.
@@ -80,17 +78,27 @@ class Numbers {
     }
 
   private:
-    nb::object accepted_;
-    nb::object duration_; // of numpy, which derives it from its integers
+    nb::object real_;
 
-    [[nodiscard]] PyTypeObject* duration() const noexcept {
-        return reinterpret_cast<PyTypeObject*>(duration_.ptr());
+    // Whether an object that is neither float nor int is a number. Durations of numpy, which
+    // derives them from its integers, are none.
+    [[nodiscard]] bool is_other_number(PyObject* object) const noexcept {
+        static constinit NumPyAttribute truth("bool_");
+        static constinit NumPyAttribute duration("timedelta64");
+        PyObject* truths = truth.get_if_imported();
+        if (truths != nullptr && is_instance(object, truths)) return true;
+        if (PyObject_IsInstance(object, real_.ptr()) <= 0) return false;
+        PyObject* durations = duration.get_if_imported();
+        return durations == nullptr || !is_instance(object, durations);
+    }
+
+    [[nodiscard]] static bool is_instance(PyObject* object, PyObject* type) noexcept {
+        return PyObject_TypeCheck(object, reinterpret_cast<PyTypeObject*>(type)) != 0;
     }
 
     [[nodiscard]] bool convert(PyObject* object, double& value) const noexcept {
-        if (!PyFloat_Check(object) && !PyLong_Check(object)) {
-            const int real = PyObject_IsInstance(object, accepted_.ptr());
-            if (real <= 0 || PyObject_TypeCheck(object, duration()) != 0) return false;
+        if (!PyFloat_Check(object) && !PyLong_Check(object) && !is_other_number(object)) {
+            return false;
         }
         value = PyFloat_AsDouble(object);
         // A long double may have overflowed: the Python caller decides.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "large_memory.hpp"
+#include "numpy_attribute.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -63,11 +64,10 @@ struct NewArray {
 
 class NumPy {
   public:
-    NumPy() : ndarray_(module().attr("ndarray")), empty_(module().attr("empty")) {}
-
     // Whether this is an array, and of no derived class, whose values may mean something else.
     [[nodiscard]] bool is_array(PyObject* object) const noexcept {
-        return reinterpret_cast<PyObject*>(Py_TYPE(object)) == ndarray_.ptr();
+        static constinit NumPyAttribute ndarray("ndarray");
+        return reinterpret_cast<PyObject*>(Py_TYPE(object)) == ndarray.get_if_imported();
     }
 
     [[nodiscard]] NewArray make(std::size_t count) const {
@@ -101,16 +101,13 @@ class NumPy {
     }
 
   private:
-    nb::object ndarray_;
-    nb::object empty_;
-
     [[nodiscard]] NewArray make_small(std::size_t count) const {
-        nb::object array = empty_(count);
+        static constinit NumPyAttribute empty("empty");
+        nb::object array = nb::handle(empty.get())(count);
         const Buffer buffer(array.ptr(), PyBUF_WRITABLE);
         if (!buffer) throw nb::python_error();
         return {std::move(array), static_cast<double*>(buffer.view().buf)};
     }
-    [[nodiscard]] static nb::module_ module() { return nb::module_::import_("numpy"); }
 };
 
 } // namespace rtamt::python

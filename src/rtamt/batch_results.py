@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
-import numpy as np
-
 from rtamt.errors import BoundError, StlError, TraceError, placed
+from rtamt.lazy_numpy import np
 from rtamt.results import Result
 from rtamt.signals.outcomes import BoundedSignal
 

@@ -7,14 +7,13 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.formula import Apply, variables
 from rtamt.language.operators import STL
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval

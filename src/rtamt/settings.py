@@ -8,15 +8,13 @@ from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
-import numpy as np
-
 from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
 from rtamt.language.formula import Formula, variables
 from rtamt.language.operators import Language
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
-from rtamt.signals.arrays import is_number
+from rtamt.signals.arrays import is_number, is_truth
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -170,7 +168,7 @@ def parameter_value(name: str, given: Any, type_: ValueType | None, *, whole: bo
     if not is_number(given) or isnan(given):
         needed = "it is a bool, so give true or false" if type_ is BOOLEAN else "give a number"
         raise UsageError(f"the parameter '{name}' is {shown(given)}; {needed}")
-    truth = isinstance(given, bool | np.bool_)
+    truth = is_truth(given)
     if type_ is BOOLEAN and not truth and given not in (0, 1):
         raise UsageError(f"the parameter '{name}' is {shown(given)}; it is a bool, so give true or false")
     if type_ is None and truth:
@@ -191,7 +189,7 @@ def _code(name: str, given: Any, type_: Enumeration) -> float:
         if code is None:
             raise UsageError(f"the parameter '{name}' is {shown(member)}, which is {type_.stranger(member)}")
         return float(code)
-    if not is_number(given) or isinstance(given, bool | np.bool_) or type_.member(given) is None:
+    if not is_number(given) or is_truth(given) or type_.member(given) is None:
         raise UsageError(
             f"the parameter '{name}' is {shown(given)}, which is no member of {type_.name}; "
             f"its members are {type_.listing()}"

@@ -7,13 +7,12 @@ from math import floor, inf, isfinite, log10
 from time import monotonic
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.analysis.encoder import Encoder, Limits
 from rtamt.analysis.solver import Solver
 from rtamt.analysis.witness import Wish, Witness
 from rtamt.language.formula import Const, Formula, postorder, variables
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -31,7 +31,6 @@ held_feed         streams whose variables arrive at any time, sampled by ``sampl
 robustness_lines  the lines of ``rtamt monitor`` for the robustness of each instant
 live_view         the live view of ``rtamt monitor``
 terminal          output, colours, tables, progress
-numpy_on_use      numpy is imported when a command first uses it
 compiled          ``rtamt info`` for compiled programs
 reports           JUnit, SARIF and HTML reports
 ================  =============================================================
@@ -45,7 +44,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt.cli.numpy_on_use import load_numpy_on_use
 from rtamt.cli.parser import ERROR, INTERRUPTED, OK, Command, Help, Parser, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, UsageError, choices
@@ -101,7 +99,8 @@ exit codes:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
-    load_numpy_on_use()
+    # Threads that multiply matrices start with NumPy, and cost more than the rest of it; no command multiplies any.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if sys.stderr is None:  # closed: what would be said there goes nowhere
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
     if sys.stdout is None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
 from rtamt.cli.command import (
     OUTPUT,
@@ -31,6 +29,7 @@ from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_o
 from rtamt.errors import escaped
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

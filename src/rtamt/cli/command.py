@@ -9,8 +9,6 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
@@ -18,6 +16,7 @@ from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, c
 from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
+from rtamt.lazy_numpy import np
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend

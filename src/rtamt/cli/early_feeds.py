@@ -7,14 +7,13 @@ import sys
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.cli.command import json_number, stamp_text
 from rtamt.cli.json_lines import STDIN
 from rtamt.cli.live_view import rounded
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.language.value_types import BOOLEAN, value_text
+from rtamt.lazy_numpy import np
 from rtamt.signals.outcomes import Interval, VerdictRun
 from rtamt.verdicts.at_start import SAFE
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor

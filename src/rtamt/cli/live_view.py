@@ -8,13 +8,12 @@ from collections import deque
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.cli.command import short
 from rtamt.cli.terminal import use_color
 from rtamt.errors import escaped
 from rtamt.extras import library
 from rtamt.language.value_types import value_text
+from rtamt.lazy_numpy import np
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.trace import in_seconds
 

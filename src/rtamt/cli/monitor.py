@@ -8,8 +8,6 @@ from contextlib import nullcontext
 from math import inf
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from rtamt.cli.command import (
     METRICS,
     CommandError,
@@ -30,6 +28,7 @@ from rtamt.cli.stdin_reader import Samples, lines_of
 from rtamt.cli.stream_members import StreamMembers
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, TraceError
+from rtamt.lazy_numpy import np
 from rtamt.metrics import add_metrics_options, exported
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.regular import TOLERANCE

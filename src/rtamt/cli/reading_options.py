@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.cli.command import READING, CommandError, add_stamp_options, options
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag

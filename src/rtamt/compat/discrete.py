@@ -8,8 +8,6 @@ from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.compat.backends import signal
 from rtamt.compat.explained import ExplainedSpecification
 from rtamt.compat.failures import raises_rtamt
@@ -17,6 +15,7 @@ from rtamt.compat.formulas import Formulas
 from rtamt.compat.options import sampling
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import check_bounds
 from rtamt.signals import arrays
 from rtamt.signals.arrays import TIME

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
-    from rtamt.engine.time_axis import TimeAxis
     from rtamt.signals.domain_interface import DomainTrace, TimeDomain
 
 
@@ -21,17 +20,15 @@ BACKENDS = ("cpp", "python")
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """What evaluates, monitors and explains formulas in one time domain: ``ENGINE`` in its folder.
+    """What evaluates and monitors formulas in one time domain: ``ENGINE`` in its folder.
 
     ``backends``: by name, see :data:`BACKENDS`. ``monitor``: takes a formula and the time
-    domain; for its settings see :class:`Monitor`. ``time_axis``: takes a recording and the name of a back end.
-    ``read``: takes data, the variables and the time domain; returns the recording if the data needs no conversion
-    and is valid, else None.
+    domain; for its settings see :class:`Monitor`. ``read``: takes data, the variables and the time domain; returns the
+    recording if the data needs no conversion and is valid, else None.
     """
 
     backends: Mapping[str, Backend]
     monitor: Callable[..., OnlineMonitor]
-    time_axis: Callable[[Any, str], TimeAxis]
     read: Callable[[Any, Sequence[str], Any], DomainTrace | None] = field(default=lambda *_given: None)
 
 

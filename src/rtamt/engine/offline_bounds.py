@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals.outcomes import BoundedSignal
 
 if TYPE_CHECKING:

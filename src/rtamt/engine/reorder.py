@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.engine.native import core
 from rtamt.errors import TraceError, UsageError
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -13,11 +13,10 @@ import ctypes
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps
 from rtamt.language.operators import Blocks, Bounds, Compiled
+from rtamt.lazy_numpy import np
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
     DefinedSamples,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:

@@ -12,11 +12,10 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Until, Window
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 
 if TYPE_CHECKING:

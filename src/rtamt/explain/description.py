@@ -7,14 +7,13 @@ from itertools import accumulate
 from math import isinf
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.explain.explanation import Listed, Reading, Stretch
 from rtamt.explain.readings import Readings
 from rtamt.explain.wording import predicate_text, reading
 from rtamt.language.formula import Var, types_of, variables
 from rtamt.language.value_types import value_text
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 

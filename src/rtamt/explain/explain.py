@@ -7,9 +7,7 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from rtamt.engine import Evaluators, engine_of
+from rtamt.engine import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description
@@ -21,6 +19,7 @@ from rtamt.explain.signals import Signals, truths
 from rtamt.explain.wording import cause, predicate_text, summary
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import PAGE
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals.instants import Cells, StepFunction, two_valued
@@ -30,6 +29,7 @@ from rtamt.verdicts.robustness_and_truth import outputs_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from rtamt.engine import TimeAxis
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
     from rtamt.signals.domain_interface import DomainTrace
@@ -73,7 +73,7 @@ class _Explainer:
         self._text = text
         self._recording = recording
         self._evaluators = Evaluators(backend)
-        self._line = engine_of(recording.domain).time_axis(recording, backend)
+        self._line: TimeAxis = recording.domain.part("time_axis")(recording, backend)
         self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves

@@ -11,10 +11,9 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.explain.signals import truths
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import literal, reaches
 from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 

@@ -11,10 +11,9 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.explain.propagate import Asked, Demands
 from rtamt.language.formula import Var
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.explain.critical import around
 from rtamt.explain.shares import TickWindow, sharing
 from rtamt.explain.witnesses import blocking, reaching, witnesses
@@ -17,6 +15,7 @@ from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
 from rtamt.language.shares import rank_of
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Place, opcode, window_of
 from rtamt.signals.instants import NONE, Cells
 

@@ -12,14 +12,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.explain.attained import attained
 from rtamt.explain.critical import Walk
 from rtamt.explain.propagate import Demands
 from rtamt.explain.signals import Signals, truths
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 from rtamt.language.records import Ahead, Pointwise, Shift, Sort, Source, Sum, Tense, Window
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Structure, own_reach, window_of
 from rtamt.rewrite.truth import rebuilt

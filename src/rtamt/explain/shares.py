@@ -7,9 +7,8 @@ from collections import deque
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:

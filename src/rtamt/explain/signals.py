@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.language.formula import Apply, Const, Formula, Var, children
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode
 from rtamt.signals.instants import Cells, StepFunction, two_valued
 

@@ -10,12 +10,11 @@ from math import nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor, settled_time
 from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetChanges, FleetPoints, FleetVerdicts
 from rtamt.fleet.updates import FleetUpdate, Released
+from rtamt.lazy_numpy import np
 from rtamt.verdicts.causation import CausationMonitor
 from rtamt.verdicts.dense_early import DenseEagerMonitor
 from rtamt.verdicts.eager import EagerMonitor

@@ -8,11 +8,10 @@ from math import isfinite, isnan, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import timestamps
 
 if TYPE_CHECKING:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,11 +5,10 @@ from __future__ import annotations
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.reorder import full, place_of
 from rtamt.errors import EvaluationError, TraceError, UsageError, shown
 from rtamt.fleet.collectors import collector_of
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.verdicts.interval import LateSampleError

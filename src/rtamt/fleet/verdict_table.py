@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.extras import library
+from rtamt.lazy_numpy import np
 from rtamt.signals.datetimes import nanoseconds_of
 
 if TYPE_CHECKING:

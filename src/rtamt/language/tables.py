@@ -16,8 +16,6 @@ from functools import lru_cache
 from math import isinf
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
 from rtamt.language.expansions import choice
 from rtamt.language.formula import Const, Formula, Span
 from rtamt.language.operators import STL
@@ -25,6 +23,7 @@ from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.unwritten import reaches
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, choices, shown
+from rtamt.lazy_numpy import np
 
 #: Where a variable is found: ``("observation", 2)``, ``("info", "speed")``, ``("action",)``.
 Path: TypeAlias = tuple[Any, ...]

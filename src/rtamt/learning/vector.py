@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.extras import library
 from rtamt.fleet.fleet import Fleet
+from rtamt.lazy_numpy import np
 from rtamt.learning.episode import INTERVAL, ROBUSTNESS, SHAPING, not_finite, settings_of
 from rtamt.learning.signals import SignalReader
 

@@ -31,6 +31,7 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import number
 from rtamt.language.shares import ShareKind
 from rtamt.language.value_types import BOOLEAN
+from rtamt.lazy_numpy import np
 from rtamt.lint.found import Found
 
 if TYPE_CHECKING:
@@ -120,8 +121,6 @@ def _expanded(expansion: object, operands: list[Range], interval: Interval | Non
 
 
 def _extended(op: Operator, operands: list[Range]) -> Range:
-    import numpy as np
-
     from rtamt.language.definitions.enclosures import Enclosure, extended
 
     assert op.definition is not None
@@ -137,8 +136,6 @@ def _extended(op: Operator, operands: list[Range]) -> Range:
 
 def _leaves_domain(op: Operator, operands: list[Range]) -> bool:
     """Return whether a function has no value at a corner of the ranges of its operands."""
-    import numpy as np
-
     corners = np.array(list(product(*operands))).clip(-_FAR, _FAR).T
     assert op.definition is not None
     with np.errstate(all="ignore"):
@@ -146,8 +143,6 @@ def _leaves_domain(op: Operator, operands: list[Range]) -> bool:
 
 
 def _over_time(op: Operator, operands: list[Range], interval: Interval | None) -> Range:
-    import numpy as np
-
     window: tuple[object, ...] = ()
     if op.bounds is not Bounds.NONE:
         window = _window(interval)

@@ -5,12 +5,11 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt import texts
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Var
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.mining.mine import named_recordings
 from rtamt.mining.region import Budget, Region, Spent, require_count
 from rtamt.mining.rules import DecisionList, learned

@@ -11,8 +11,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import BoundError, UsageError, choices
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, postorder
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
@@ -20,6 +18,7 @@ from rtamt.language.parameters import bounding
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import WHOLE
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import boolean
 

@@ -6,10 +6,9 @@ from itertools import product
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.mining.region import Spent, written
 
 if TYPE_CHECKING:

@@ -11,14 +11,13 @@ from itertools import combinations
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt import texts
 from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, shown
 from rtamt.fleet.suite import Suite
 from rtamt.language.formula import Var
 from rtamt.language.units.durations import decimal
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.mining.brackets import FARTHEST
 from rtamt.mining.direction import require, roles_of
 from rtamt.mining.grid import hardest

@@ -8,11 +8,10 @@ from functools import cached_property
 from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.suite import Suite
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.mutation.mutants import Mutant, mutants_of
 from rtamt.specification import Specification
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import UsageError
+from rtamt.lazy_numpy import np
 from rtamt.play.messages import MOST_SAMPLES
 
 if TYPE_CHECKING:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
 from rtamt.language.formula import Apply, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.play import drawn
 from rtamt.play.recordings import drawn_lines
 from rtamt.play.reduced import line, number

@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import StlError, UsageError
+from rtamt.lazy_numpy import np
 from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
 from rtamt.play.reduced import extremes, number, numbers, parts
 from rtamt.plot.band import band

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.extras import library
+from rtamt.lazy_numpy import np
 from rtamt.plot import style
 from rtamt.plot.texts import shortened
 from rtamt.signals.regular import merged

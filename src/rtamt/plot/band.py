@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.plot.clock import Clock
 from rtamt.verdicts.at_start import StartMonitor
 from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick

@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.language.formula import variables
+from rtamt.lazy_numpy import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges, matplotlib
 from rtamt.plot.lines import Line

@@ -5,9 +5,8 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_numpy import np
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

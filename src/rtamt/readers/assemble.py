@@ -6,11 +6,10 @@ from collections import defaultdict
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt import lazy_dataclasses
 from rtamt.errors import TraceError, choices, did_you_mean, shown
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_numpy import np
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.timestamps import Clock, guess_field
 from rtamt.signals.arrays import TIME, is_number

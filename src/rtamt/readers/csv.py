@@ -9,10 +9,9 @@ from math import isinf, isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import TraceError, shown
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.readers.dates import is_date
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from importlib import import_module
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.readers.ahead import ahead
 from rtamt.readers.arrow import values_of
 from rtamt.readers.csv_cells import LARGEST

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import shown
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_numpy import np
 from rtamt.readers.csv import Header, is_boolean, is_number, number, truth
 from rtamt.readers.dates import DateError, Dates, is_date
 

@@ -7,10 +7,9 @@ from io import TextIOWrapper
 from itertools import chain, islice
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.readers.csv import (
     Column,
     Header,

@@ -6,8 +6,7 @@ import re
 from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals.datetimes import has_length, nanoseconds_of
 
 if TYPE_CHECKING:

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
+from rtamt.lazy_numpy import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import format_duration
+from rtamt.lazy_numpy import np
 from rtamt.signals.listing import show_time
 
 if TYPE_CHECKING:

@@ -11,10 +11,9 @@ import struct
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.extras import library
+from rtamt.lazy_numpy import np
 from rtamt.readers.source import printable
 
 if TYPE_CHECKING:

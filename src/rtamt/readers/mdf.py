@@ -11,10 +11,9 @@ from datetime import timezone
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_numpy import np
 from rtamt.readers.source import Field, Source, Table, damage, library, printable
 
 if TYPE_CHECKING:

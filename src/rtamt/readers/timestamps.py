@@ -10,10 +10,9 @@ from decimal import Decimal
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, in_seconds
+from rtamt.lazy_numpy import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_number
 from rtamt.signals.counting import refuse_implausible

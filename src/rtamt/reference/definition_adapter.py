@@ -11,13 +11,12 @@ import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_arguments
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,14 +10,13 @@ from __future__ import annotations
 from math import inf, isnan
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import numpy as np
-
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_numpy import np
 from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense import last_read

@@ -12,13 +12,12 @@ from __future__ import annotations
 from math import lcm
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sum, Tense
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.reference.definition_adapter import arguments_of, values_of
 from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds

@@ -10,11 +10,10 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-import numpy as np
-
 from rtamt.errors import readable
 from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_numpy import np
 from rtamt.report.scene_data import data_of
 from rtamt.report.signals import BUDGET, signals_of
 from rtamt.report.store import Store

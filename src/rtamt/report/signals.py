@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.plot.lines import Line
 from rtamt.report.scene_data import line_data
 

@@ -7,9 +7,8 @@ from base64 import b64encode
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

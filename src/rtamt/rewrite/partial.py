@@ -7,9 +7,8 @@ from itertools import combinations
 from math import inf
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.language.operators import Operator, Sort, builtin
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

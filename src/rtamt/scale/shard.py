@@ -10,11 +10,10 @@ import json
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, WaitedError
 from rtamt.fleet.fleet import Fleet
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_numpy import np
 from rtamt.signals.counting import is_implausible
 
 if TYPE_CHECKING:

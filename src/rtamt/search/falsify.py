@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.language.printing.printer import to_text
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.search.executor import Enough, Runs
 from rtamt.search.log import Evaluation, Record
 from rtamt.search.optimizers import optimizer as named_optimizer

@@ -20,10 +20,9 @@ from bisect import bisect_right
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
-import numpy as np
-
 from rtamt.errors import UsageError, shown, with_article
 from rtamt.lazy_dataclasses import dataclass, fields
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:

@@ -10,10 +10,9 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
 from rtamt.errors import UsageError, choices
 from rtamt.extras import library
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.extras import library
+from rtamt.lazy_numpy import np
 from rtamt.plot import style
 
 if TYPE_CHECKING:

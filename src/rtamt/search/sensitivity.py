@@ -6,12 +6,11 @@ from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
 from rtamt.language.printing.printer import to_text
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.search.executor import Enough, Runs, count
 from rtamt.search.log import Evaluation, Record
 

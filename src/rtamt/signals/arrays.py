@@ -11,10 +11,9 @@ from numbers import Real
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown, with_article
 from rtamt.language.units.durations import UNITS, check_unit, in_seconds
+from rtamt.lazy_numpy import np
 from rtamt.signals import counting
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
@@ -176,7 +175,8 @@ def number_of(value: Any) -> float | None:
     """Return a real number as a double; None for anything else or if it is too large."""
     if value.__class__ is float:
         return value
-    if isinstance(value, np.timedelta64) or not isinstance(value, (Real, np.bool_)):
+    known = isinstance(value, float | int)  # without loading numpy
+    if not known and (isinstance(value, np.timedelta64) or not isinstance(value, (Real, np.bool_))):
         return None  # timedelta64 is a subclass of numpy's integers
     try:
         number = float(value)
@@ -184,6 +184,11 @@ def number_of(value: Any) -> float | None:
         return None
     # A longdouble beyond every double is finite itself.
     return None if isinf(number) and value not in (number, -number) else number
+
+
+def is_truth(value: Any) -> bool:
+    """Return whether a value is a Boolean of Python or numpy."""
+    return isinstance(value, bool) or (not isinstance(value, float | int) and isinstance(value, np.bool_))
 
 
 def timestamps(values: Any, unit: str | None = None) -> Timestamps:

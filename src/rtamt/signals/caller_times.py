@@ -5,11 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

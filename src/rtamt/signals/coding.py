@@ -6,10 +6,9 @@ from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, shown
 from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

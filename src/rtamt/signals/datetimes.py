@@ -7,10 +7,9 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_numpy import np
 from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:

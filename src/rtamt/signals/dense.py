@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from rtamt.errors import StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES
@@ -57,6 +56,7 @@ class Dense(TimeDomain):
     setting: ClassVar[str] = "resolution"
     parts: ClassVar[Mapping[str, str]] = {
         "engine": "rtamt.engine.dense:ENGINE",
+        "time_axis": "rtamt.engine.dense.time_axis:DenseTimeAxis",
         "members": "rtamt.engine.dense.quantifiers:DenseMemberMonitor",
         "stream": "rtamt.verdicts.dense_stream:DenseStream",
         "eager": "rtamt.verdicts.dense_early:DenseEagerMonitor",

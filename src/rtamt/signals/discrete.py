@@ -6,11 +6,10 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import UNITS, decimal, positive_period
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import (
     TIME,
@@ -72,6 +71,7 @@ class Discrete(TimeDomain):
     setting: ClassVar[str] = "period"
     parts: ClassVar[Mapping[str, str]] = {
         "engine": "rtamt.engine.discrete:ENGINE",
+        "time_axis": "rtamt.engine.discrete.time_axis:DiscreteTimeAxis",
         "stream": "rtamt.verdicts.discrete_stream:DiscreteStream",
         "eager": "rtamt.verdicts.eager:EagerMonitor",
         "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",

@@ -10,10 +10,9 @@ from collections.abc import Mapping
 from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_numpy import np
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping, number_of
 

@@ -6,8 +6,7 @@ from fractions import Fraction
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import date_text, is_epoch, moment_text
 

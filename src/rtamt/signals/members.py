@@ -10,12 +10,11 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.language.quantifiers import Field
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays

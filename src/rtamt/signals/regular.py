@@ -5,10 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.units.durations import format_duration
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:

@@ -6,10 +6,9 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, format_duration
+from rtamt.lazy_numpy import np
 from rtamt.signals.listing import show_time
 from rtamt.signals.regular import merged
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, as_array, is_mapping
 from rtamt.signals.data_errors import missing_variable
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.regular import check_increasing

@@ -5,10 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -25,11 +25,10 @@ from numbers import Rational
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,
@@ -301,7 +300,7 @@ def kind_of(times: Any) -> str:
 
 def kinds_of(times: Any) -> dict[str, int]:
     """Return the kinds of times, each with the index of its first; values that are not times count as numbers."""
-    if isinstance(times, np.ndarray) and times.dtype.kind != "O":
+    if not isinstance(times, list | tuple) and isinstance(times, np.ndarray) and times.dtype.kind != "O":
         kind = _OF_DTYPE.get(times.dtype.kind, "seconds")
         if kind == "timedeltas" and not has_length(times):
             kind = NO_LENGTH

@@ -13,11 +13,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, overload
 
-import numpy as np
-
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing

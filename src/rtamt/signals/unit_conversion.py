@@ -11,12 +11,11 @@ from functools import lru_cache
 from math import lcm
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.language.units.pint_units import in_unit, parsed, registry, same_text
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray

@@ -6,11 +6,10 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.errors import UsageError
 from rtamt.language.value_types import value_names
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.plot.band import band
 from rtamt.results import episodes_in_steps, first_violation
 from rtamt.rewrite.presence import channel_of

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.files import replacing
+from rtamt.lazy_numpy import np
 from rtamt.telemetry.content import SATISFIED, VIOLATED, content_of
 from rtamt.telemetry.messages import ROOT, topic
 
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from rtamt.results import Result
@@ -111,8 +111,6 @@ class _Log:
 
     def _texts(self, entity: str, rows: Sequence[tuple[int, str, str]]) -> None:
         if rows:
-            import numpy as np
-
             times, texts, levels = zip(*rows, strict=True)
             columns = self._rerun.TextLog.columns(text=list(texts), level=list(levels))
             self._send(entity, np.array(times, np.int64), columns)

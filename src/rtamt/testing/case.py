@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
@@ -13,6 +12,7 @@ from rtamt.language.formula import Apply, Formula, Interval, Var, fold
 from rtamt.language.operators import Bounds, Fixity, Language, Operator, Tense
 from rtamt.language.printing.printer import to_text
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.testing.strategies import formulas
 
 if TYPE_CHECKING:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from hypothesis import assume
 
 from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
+from rtamt.lazy_numpy import np
 from rtamt.reference import dense as dense_reference
 from rtamt.signals.dense import Dense, record_dense
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from hypothesis import assume
 
 from rtamt.engine import BACKENDS, Evaluators, engine_of
@@ -17,6 +16,7 @@ from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
+from rtamt.lazy_numpy import np
 from rtamt.reference import discrete as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon

@@ -6,7 +6,6 @@ import itertools
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
@@ -15,6 +14,7 @@ from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tens
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind, rank_arguments
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.reference import discrete as reference
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from bisect import bisect_right
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 

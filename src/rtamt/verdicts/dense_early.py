@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

@@ -5,11 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.errors import TraceError
 from rtamt.language.formula import own_variables
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.chunks import Group, Requirement, StreamResult

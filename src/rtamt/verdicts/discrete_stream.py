@@ -5,9 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.discrete.monitor import push_samples
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.regular import check_increasing, has_period, infer_period

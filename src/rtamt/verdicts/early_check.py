@@ -8,12 +8,11 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import own_variables
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.semantics import no_verdict

@@ -6,10 +6,9 @@ from fractions import Fraction
 from math import ceil, inf, isnan
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

@@ -11,12 +11,11 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Var
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.semantics import no_verdict
 from rtamt.signals.discrete import DISCRETE, DiscreteTrace
 from rtamt.verdicts.decompose import Leaf

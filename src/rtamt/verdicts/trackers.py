@@ -5,9 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.language.formula import Var
+from rtamt.lazy_numpy import np
 from rtamt.signals.discrete import DiscreteTrace
 
 if TYPE_CHECKING:

@@ -19,7 +19,6 @@ early_python_backend  the definition of bounds behind the interface of monitors 
 
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.dense.time_axis import DenseTimeAxis
 from rtamt.engine.engine import Engine
 
-ENGINE = Engine(BACKENDS, DenseMonitor, DenseTimeAxis)
+ENGINE = Engine(BACKENDS, DenseMonitor)

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rtamt.compiler.plan import DEFINED
 from rtamt.compiler.shared import Shape
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.dense import Dense
 from rtamt.signals.regular import merged

@@ -11,13 +11,12 @@ from __future__ import annotations
 from copy import copy
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
 from rtamt.language.formula import own_variables
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.signals.dense_arrays import changes, minimum
 from rtamt.usage_guard import UsageGuard, exclusive
@@ -36,7 +35,9 @@ if TYPE_CHECKING:
 #: A place among the outputs of the parts: the number of the part, and that of its output.
 Place: TypeAlias = tuple[int, int]
 
-_NOTHING: Samples = (np.empty(0, np.int64), np.empty(0))
+
+def _nothing() -> Samples:
+    return np.empty(0, np.int64), np.empty(0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,10 +159,10 @@ class DenseGroups:
         self._counts = dict.fromkeys(self._names, 0)
         self._last: dict[str, tuple[int, float]] = {}
         self._values = [float("inf")] * len(self._requirements)  # so far, as far as the minimum is known
-        self._pending = [_NOTHING] * len(self._requirements)  # known beyond that
+        self._pending = [_nothing()] * len(self._requirements)  # known beyond that
         self._until: int | None = None
         self._minimum = float("nan")  # the last value reported
-        self._results: list[Samples] = [_NOTHING] * (1 + len(self._watched))
+        self._results: list[Samples] = [_nothing()] * (1 + len(self._watched))
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -200,7 +201,7 @@ class DenseGroups:
 
         def finished(part: Part, backend: Any) -> list[Samples]:
             last = [self._last[name] for name in part.names]
-            held = [(np.array([end]), np.array([v])) if tick < end else _NOTHING for tick, v in last]
+            held = [(np.array([end]), np.array([v])) if tick < end else _nothing() for tick, v in last]
             before = _outputs(part, backend, backend.push(held))
             rest = _outputs(part, backend, backend.finish())
             return [changes(*_joined(*both)) for both in zip(before, rest, strict=True)]
@@ -232,7 +233,7 @@ class DenseGroups:
 
     def _known(self, news: Sequence[Sequence[Samples]], until: int | None) -> Samples:
         """Take what became known of every output; return the minimum up to ``until``, as far as that is new."""
-        self._results = [_NOTHING, *(news[part][i] for part, i in self._watched)]
+        self._results = [_nothing(), *(news[part][i] for part, i in self._watched)]
         for number, (part, i) in enumerate(self._requirements):
             self._pending[number] = _joined(self._pending[number], news[part][i])
         if until is None or (self._until is not None and until <= self._until):

@@ -9,10 +9,9 @@ from __future__ import annotations
 from copy import copy
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.engine.dense.monitor import DenseMonitor, push_ticks
 from rtamt.engine.dense.steps import Steps, constant
+from rtamt.lazy_numpy import np
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

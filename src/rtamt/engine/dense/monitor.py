@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.apart import Apart
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
@@ -15,6 +13,7 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.backend import RefusedError
+from rtamt.lazy_numpy import np
 from rtamt.reference.dense import DenseReferenceMonitor
 from rtamt.usage_guard import UsageGuard, exclusive
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.dense.member_executors import Executor, Part, QuantifierExecutor
 from rtamt.engine.dense.monitor import DenseMonitor, known_ticks, push_ticks
 from rtamt.engine.dense.steps import Inputs, member_of
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import check_unit
+from rtamt.lazy_numpy import np
 from rtamt.signals import arrays, dense_arrays, members
 from rtamt.signals.data_errors import missing_field, nan_of_members
 from rtamt.signals.inexact import gaps_of

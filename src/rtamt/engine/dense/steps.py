@@ -5,8 +5,7 @@ from __future__ import annotations
 from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
+from rtamt.lazy_numpy import np
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.shares import rank_of
 from rtamt.language.units.durations import decimal
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.structure import NEVER

@@ -20,7 +20,6 @@ early_python_backend  the definition of bounds behind the interface of the core'
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.discrete.recording import read_discrete
-from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
 from rtamt.engine.engine import Engine
 
-ENGINE = Engine(BACKENDS, Monitor, DiscreteTimeAxis, read_discrete)
+ENGINE = Engine(BACKENDS, Monitor, read_discrete)

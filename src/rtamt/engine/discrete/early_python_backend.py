@@ -9,11 +9,10 @@ import pickle
 from math import floor, inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.backend import RefusedError
 from rtamt.language.definitions.enclosures import Enclosure
+from rtamt.lazy_numpy import np
 from rtamt.reference.causation import NOTHING, causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 from rtamt.signals.outcomes import Causation

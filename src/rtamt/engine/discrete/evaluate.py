@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.compiler.plan import DEFINED, Plan
 from rtamt.compiler.shared import Shape
 from rtamt.engine.cores import threads
@@ -16,6 +14,7 @@ from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:

@@ -8,13 +8,12 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.native import core
 from rtamt.engine.reorder import Reordering, full, place_of, rows_of, sentence
 from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, columns_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.native import MonitorBase
@@ -14,6 +12,7 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Timestamps

@@ -11,9 +11,8 @@ from fractions import Fraction
 from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.backend import RefusedError
+from rtamt.lazy_numpy import np
 from rtamt.reference.discrete import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays

@@ -6,9 +6,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from rtamt.engine.native import read_columns
+from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
 from rtamt.signals.regular import RegularTimes

@@ -5,10 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.structure import settling
 from rtamt.signals.datetimes import nanoseconds_of

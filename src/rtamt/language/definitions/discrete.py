@@ -20,9 +20,8 @@ import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from rtamt.language.definitions.pointwise import div, mul, sub
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -24,9 +24,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-import numpy as np
-
 from rtamt.language.definitions import pointwise as p
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -5,13 +5,12 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
 from rtamt.language.formula import Apply, Const, Var, fold, postorder
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.quantifiers import FieldOf
 from rtamt.language.records import Tense
 from rtamt.language.units.dimensions import UNCHECKED, MisfitError, Number, Quantity, declared
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

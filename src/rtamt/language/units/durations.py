@@ -23,9 +23,8 @@ from numbers import Rational, Real
 from types import MappingProxyType
 from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
-import numpy as np
-
 from rtamt.errors import UsageError, choices, shown
+from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

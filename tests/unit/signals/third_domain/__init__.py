@@ -2,7 +2,6 @@
 
 from rtamt.engine import Engine
 from rtamt.engine.backend import named
-from rtamt.engine.discrete.time_axis import DiscreteTimeAxis
 from tests.unit.signals.third_domain.engine import Definition, TurnMonitor
 
-ENGINE = Engine(named(Definition(), Definition()), TurnMonitor, DiscreteTimeAxis)
+ENGINE = Engine(named(Definition(), Definition()), TurnMonitor)

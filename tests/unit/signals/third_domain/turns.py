@@ -25,7 +25,10 @@ class Turns(TimeDomain):
     held_at_end = False
     unit = PERIODS
     setting = "period"
-    parts: ClassVar = {"engine": "tests.unit.signals.third_domain:ENGINE"}
+    parts: ClassVar = {
+        "engine": "tests.unit.signals.third_domain:ENGINE",
+        "time_axis": "rtamt.engine.discrete.time_axis:DiscreteTimeAxis",
+    }
 
     @classmethod
     def of(cls, period, tolerance, resolution):  # noqa: ARG003
