@@ -23,9 +23,11 @@ from rtamt.specification import Specification
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from fractions import Fraction
 
     from typing_extensions import Unpack
 
+    from rtamt.language.document import Document
     from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics, Settings
     from rtamt.signals.domain_interface import TimeDomain
@@ -82,12 +84,8 @@ def parse(
     check_constants({} if constants is None else constants)
     library = Library(None if folder is None else _folder(folder))
     document = parse_document(text, language=language, unit=unit, constants=constants, library=library)
-    domain = time_domain(time, period, None, resolution)
-    exact = domain.period if period is None else positive_period(period)
+    domain, exact = domain_of(document, time, period, resolution)
     rule = document.sampling
-    if rule is not None and exact is None:
-        exact = rule.period
-        domain = type(domain).of(exact, domain.tolerance, domain.resolution)
     spec = Specification(
         document,
         domain,
@@ -102,6 +100,19 @@ def parse(
     )
     spec._check_bounds()
     return spec
+
+
+def domain_of(
+    document: Document, time: str | TimeDomain, period: Duration | None, resolution: Duration | None
+) -> tuple[TimeDomain, Fraction | None]:
+    """Return the time domain of a text, and its sampling period, which the text may give."""
+    domain = time_domain(time, period, None, resolution)
+    exact = domain.period if period is None else positive_period(period)
+    rule = document.sampling
+    if rule is not None and exact is None:
+        exact = rule.period
+        domain = type(domain).of(exact, domain.tolerance, domain.resolution)
+    return domain, exact
 
 
 def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specification:

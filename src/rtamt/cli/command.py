@@ -201,7 +201,7 @@ def read_specifications(
 
 def read_library(args: argparse.Namespace, time: str, file: str) -> Specification | None:
     """Read a file that only declares what others import, with a formula at its end; None for any other file."""
-    options, (folder, name) = _options(args, time, runs=False), os.path.split(os.path.abspath(file))
+    options, (folder, name) = settings_of(args, time, runs=False), os.path.split(os.path.abspath(file))
     try:
         parse(f'import "{name}"\ntrue', folder=folder, **options)
         with open(file, encoding="utf-8-sig") as text:
@@ -219,7 +219,7 @@ def read_library(args: argparse.Namespace, time: str, file: str) -> Specificatio
     return spec if any(named) or document.groups else None
 
 
-def _options(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:
+def settings_of(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:
     """Return the settings of specifications that the arguments choose."""
     domain = time_domain(time, args.period)
     check_backend(args.backend)
@@ -241,7 +241,7 @@ def _options(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:
 
 
 def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Specification:
-    options = _options(args, time, runs=runs)
+    options = settings_of(args, time, runs=runs)
     if is_trace(spec):
         raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
     name = pack_named(spec)

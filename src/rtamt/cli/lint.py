@@ -18,6 +18,7 @@ from rtamt.cli.command import (
     json_text,
     read_library,
     read_specification,
+    settings_of,
     warn,
     write_output,
 )
@@ -46,10 +47,10 @@ if TYPE_CHECKING:
 _WORTH_A_PROCESS, _AT_ONCE = 300, 25
 
 _DESCRIPTION = """\
-Check specification files without evaluating them. Report each error: what is wrong, where (line, column and a
-caret) and how to fix it. Warn about valid but probably unintended formulas, such as a sum of a speed and a
-distance, or a limit outside the declared range of a signal. A file without formulas is checked as one that others
-import.
+Check specification files without evaluating them. Report every error of each file: what is wrong, where (line,
+column and a caret) and how to fix it. Warn about valid but probably unintended formulas, such as a sum of a speed
+and a distance, or a limit outside the declared range of a signal. A file without formulas is checked as one that
+others import.
 
 Exit code: 0 all files are valid, 2 some have errors; with --strict, 1 if there are only warnings.
 --json prints one object per line: {"file", "severity", "code", "message", "fixable", "line", "column", "end_line",
@@ -130,10 +131,11 @@ def _lint(file: str, args: argparse.Namespace) -> int:
     try:
         found = _findings(file, args)
     except StlError as error:
-        if args.json:
-            say(_as_json(file, "error", None, *_place(error)))
-        else:
-            complain(error)
+        for wrong in _all_errors(error, file, args):
+            if args.json:
+                say(_as_json(file, "error", None, *_place(wrong)))
+            else:
+                complain(wrong)
         return ERROR
     found = [each for each in found if each.code not in args.ignore]
     if args.quiet:
@@ -151,6 +153,22 @@ def _lint(file: str, args: argparse.Namespace) -> int:
     if any(each.severity == "error" for each in found):
         return ERROR
     return VIOLATED if any(each.severity == "warning" for each in found) else OK
+
+
+def _all_errors(error: StlError, file: str, args: argparse.Namespace) -> list[StlError]:
+    """Return all errors of the text that has this one; only this one if it is not about the text alone."""
+    cause = error.__cause__
+    if not isinstance(cause, SpecificationError) or cause.text is None:
+        return [error]
+    from rtamt.text_errors import errors_of
+
+    folder = os.path.dirname(file) or os.curdir
+    found: list[StlError] = [error]
+    for each in errors_of(cause.text, folder=folder, **settings_of(args, args.time, runs=False)):
+        if str(each) != str(cause):
+            found.append(CommandError(f"{file}: {each}"))
+            found[-1].__cause__ = each
+    return found
 
 
 def _place(error: StlError) -> tuple[str, str | None, Span | None]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rtamt.errors import SpecificationError, StlError
+from rtamt.errors import StlError
 from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.lexer import comments
@@ -13,6 +13,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.lint.rules import UNUSED
 from rtamt.lsp.outline import outline
 from rtamt.lsp.places import Lines
+from rtamt.text_errors import errors_of
 from rtamt.texts import parse
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ class Analysis:
     ``folder``: that of the file, for its imports. ``period``: the sampling period, as text, if it is known.
     ``encoding``: of positions.
 
-    >>> Analysis("always(spede > 3) // fast").error is None
-    True
+    >>> [error.message for error in Analysis("always(spede > ) // fast").errors]
+    ["expected an operand after '>', got ')'"]
     """
 
     def __init__(
@@ -48,20 +49,23 @@ class Analysis:
         self.lines = Lines(text, encoding)
         #: Whether it is a text that only declares what others import.
         self.library = False
-        self.error: StlError | None = None
+        #: What is wrong with the text; nothing else is known of a wrong one but its names.
+        self.errors: list[StlError] = []
         self.spec: Specification | None = None
         if len(text) > MOST_CHARACTERS:
             self.text = text[:0]
-            self.error = StlError(
+            too_long = (
                 f"the file is too long to be checked while it is edited ({len(text):,} characters, at most "
                 f"{MOST_CHARACTERS:,}); rtamt lint checks it"
             )
+            self.errors = [StlError(too_long)]
             return
         try:
             self.spec = self._parsed(text)
-        except StlError as error:
-            self.error = error
+        except StlError:
             self._read_library()
+            if self.spec is None:
+                self.errors = errors_of(text, folder=folder, period=self.period)
 
     def _parsed(self, text: str) -> Specification:
         return parse(text, folder=self.folder, period=self.period)
@@ -76,7 +80,7 @@ class Analysis:
         if len(found.assertions) == 1 and (
             found.declarations or found.templates or found.tables or found.enumerations or found.groups
         ):
-            self.spec, self.error, self.library = spec, None, True
+            self.spec, self.library = spec, True
 
     @property
     def document(self) -> Document | None:
@@ -102,11 +106,6 @@ class Analysis:
         if self.spec is None:
             return ()
         return tuple(each for each in self.spec.warnings if not (self.library and each.code == UNUSED))
-
-    @property
-    def place_of_error(self) -> Span | None:
-        """Where the error is, if it is in the text."""
-        return self.error.span if isinstance(self.error, SpecificationError) else None
 
     def read(self, text: str) -> Document:
         """Parse another version of the text, as this one was parsed."""

@@ -17,6 +17,7 @@ from rtamt.lsp.document import ENDING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rtamt.errors import StlError
     from rtamt.language.document import Document
     from rtamt.lint.found import LintWarning, Rule
     from rtamt.lsp.document import Analysis
@@ -44,20 +45,26 @@ class Repair(NamedTuple):
 
 
 def problems(analysis: Analysis) -> list[Problem]:
-    """Return the error of a text, or its findings.
+    """Return the errors of a text, or its findings.
 
     >>> from rtamt.lsp.document import Analysis
     >>> problems(Analysis("always(x >= )"))[0][:3]
     (Span(start=12, end=13), 'error', '')
     """
-    error = analysis.error
-    if error is not None:
-        message = error.message if isinstance(error, SpecificationError) else str(error)
-        return [Problem(_inside(analysis, analysis.place_of_error), "error", "", message)]
+    if analysis.errors:
+        return [
+            Problem(_inside(analysis, place_of(each)), "error", "", getattr(each, "message", str(each)))
+            for each in analysis.errors
+        ]
     return [
         Problem(_inside(analysis, each.span), each.severity, each.code, each.message)
         for each in analysis.findings
     ]
+
+
+def place_of(error: StlError) -> Span | None:
+    """Return where an error is, if it is in the text."""
+    return error.span if isinstance(error, SpecificationError) else None
 
 
 def _inside(analysis: Analysis, span: Span | None) -> Span:
@@ -75,8 +82,8 @@ def repairs(analysis: Analysis, span: Span) -> list[Repair]:
     >>> print(repairs(Analysis("always(not not (x > 3))"), Span(8, 8))[0].title)
     Fix RT503: a double negation
     """
-    if analysis.error is not None:
-        return _suggestions(analysis, span)
+    if analysis.errors:
+        return [each for error in analysis.errors for each in _suggestions(analysis, error, span)]
     found = []
     for each in analysis.findings:
         if not _touch(_inside(analysis, each.span), span):
@@ -114,9 +121,9 @@ def _touch(one: Span, other: Span) -> bool:
     return one.start <= other.end and other.start <= one.end
 
 
-def _suggestions(analysis: Analysis, span: Span) -> list[Repair]:
+def _suggestions(analysis: Analysis, error: StlError, span: Span) -> list[Repair]:
     """Return the name that the message of an error suggests, in place of the one that is there."""
-    error, place = analysis.error, analysis.place_of_error
+    place = place_of(error)
     suggested = _SUGGESTED.search(str(error))
     if suggested is None or place is None or not _touch(place, span):
         return []

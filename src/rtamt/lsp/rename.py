@@ -55,7 +55,7 @@ def renamed_at(analysis: Analysis, offset: int, path: str | None = None) -> tupl
             f"'{symbol.name}' is a {symbol.kind}; only variables, constants, parameters, named formulas and "
             f"templates can be renamed"
         )
-    if analysis.error is not None:
+    if analysis.errors:
         raise UsageError("the text has an error; correct it before a name is changed")
     importer = None if path is None or is_local(symbol) else _importer_of(path)
     if importer is not None:

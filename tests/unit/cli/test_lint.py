@@ -37,6 +37,30 @@ def test_every_file_that_is_wrong_is_told_with_the_place(run, write):
     )
 
 
+def test_every_error_of_a_file_is_told(run, write):
+    write("a.stl", "float x [m\nlow = x < ;\nrequire R: always(low and y > 3)\n")
+    answer = run("lint", "a.stl")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == (
+        "rtamt: a.stl: expected a unit and ']' after 'x [', such as [m/s]\n"
+        "  line 1, column 9:\n"
+        "    float x [m\n"
+        "            ^\n"
+        "rtamt: a.stl: expected an operand after '<', got ';'\n"
+        "  line 2, column 11:\n"
+        "    low = x < ;\n"
+        "              ^\n"
+    )
+    answer = run("lint", "a.stl", "--json")
+    assert [(row["line"], row["column"]) for row in map(json.loads, answer.out.splitlines())] == [
+        (1, 9),
+        (2, 11),
+    ]
+    write("b.stl", "once[0:0.25] x > 3; always[0:0.15] x > 3\n")
+    answer = run("lint", "b.stl", "--period", "100ms", "--json")
+    assert [row["column"] for row in map(json.loads, answer.out.splitlines())] == [5, 27]
+
+
 def test_bounds_are_held_to_the_period(run, write):
     write("a.stl", "once[0:150ms](x >= 3)\n")
     assert run("lint", "a.stl").code == 0

@@ -61,6 +61,19 @@ def test_an_error_has_its_range_and_goes_when_it_is_corrected(editor, folder):
     assert editor.change(path, "float x\nalways(x >= 3)\n") == []
 
 
+def test_every_error_is_shown_once(editor, folder):
+    text = "float x\nfloat y [m\nlow = x < \nrequire A: always(low and y > z)\nrequire B: once(x > 1 adn y > 2)\n"
+    found = editor.open(folder / "errors.stl", text)
+    assert [(span_of(each.range)[:2], each.message) for each in found] == [
+        ((1, 8), "expected a unit and ']' after 'y [', such as [m/s]"),
+        ((3, 0), "expected an operand after '<', got 'require'"),
+        ((3, 30), "'z' is not declared; declared names: low, x, y"),
+        ((4, 22), "expected an operator between '1' and 'adn'; did you mean 'and'?"),
+    ]
+    corrected = text.replace("[m", "[m]").replace("x < ", "x < 2").replace("z", "0").replace("adn", "and")
+    assert editor.change(folder / "errors.stl", corrected) == []
+
+
 def test_positions_are_counted_in_utf_16(editor, folder):
     (error,) = editor.open(folder / "wide.stl", '"\U0001f600" > 3 and and\r\n')
     assert span_of(error.range)[:2] == (0, 13)

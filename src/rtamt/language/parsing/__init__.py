@@ -21,6 +21,7 @@ declarations    what stands before the formulas of a file: declarations, annotat
 groups          the groups of signals in a file, and the fields of their members
 specfile        specification files (``.stl``) to a document, and their grammar
 requirements    ``require ID "text" severity WORD: formula``
+recovery        all errors of a text, not only the first one
 sampling        the sampling rule: ``sample 100ms hold``
 type_rules      what Booleans and enumerations may stand in
 ==============  ========================================================================

@@ -38,6 +38,9 @@ _Kind = Literal["var", "const", "parameter"]
 _KINDS: Mapping[str, _Kind] = MappingProxyType({"const": "const", "parameter": "parameter"})
 _CALLED = MappingProxyType({"var": "variable", "const": "constant", "parameter": "parameter"})
 
+#: The first characters of tokens that no unit has: what closes it, and what follows one that is not closed.
+_BEHIND_UNIT = ("]", "", '"', "[", ";", "=")
+
 ROLES: Mapping[str, Literal["input", "output"]] = MappingProxyType({"input": "input", "output": "output"})
 
 
@@ -84,6 +87,7 @@ class DeclarationParser(ImportParser):
             variables,
             pending or {},
             self._templates,
+            self._unknown,
             parameters=self._parameters,
             types=self._types,
             enumerations=self._enumerations,
@@ -230,7 +234,7 @@ class DeclarationParser(ImportParser):
         if opening.text != "[":
             return ""
         start = self.next().end
-        while self.token.text not in ("]", "", '"', "/*"):
+        while self.token.text[:1] not in _BEHIND_UNIT and not self._begins_a_line(self.index):
             self.next()
         unit = self.text[start : self.token.start].strip()
         if unit.isdigit() and opening.start == name.end:
@@ -337,7 +341,8 @@ class DeclarationParser(ImportParser):
         if self._opening(first.text) is not None or not (self._plain_name(1) and self._plain_name(0)):
             return False
         third = self._at(2)
-        if third.text == ";" and did_you_mean(first.text, self._enumerations):
+        types = (*TYPES, *self._enumerations, *self._imports)
+        if third.text in (";", "[", "") and did_you_mean(first.text, types):
             return True
         return third.text in ("@", "=") or (third.kind == "name" and self.language.infix(third.text) is None)
 

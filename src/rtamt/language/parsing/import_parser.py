@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.operators import Language
     from rtamt.language.parsing.lexer import Token
-    from rtamt.language.parsing.templates import Template
+    from rtamt.language.parsing.templates import Argument, Template
     from rtamt.language.quantifiers import Group
     from rtamt.language.records import Operator
     from rtamt.language.value_types import Enumeration, ValueType
@@ -86,6 +86,8 @@ class ImportParser(RequirementParser):
         self._templates: dict[str, Template] = {}
         self._tables: dict[str, Operator] = {}
         self._groups: dict[str, Group] = dict(scope.groups)
+        #: The names of what is wrong, which stand for anything.
+        self._unknown: dict[str, Argument] = {}
 
     @abstractmethod
     def document(self, *, imported: bool = False) -> Document:

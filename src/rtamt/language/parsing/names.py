@@ -22,6 +22,9 @@ from rtamt.language.value_types import Enumeration
 if TYPE_CHECKING:
     from rtamt.language.parsing.scope import Scope
 
+#: Words with which a statement may begin, and that else are names.
+_BEGINNING = frozenset(("require", "def"))
+
 
 class NameParser:
     """A position in a text, and the production of a name."""
@@ -92,11 +95,17 @@ class NameParser:
         if text[0] == '"':
             self.index += 1
             return self._meaning(unquoted(text), Span(self.starts[first], self.ends[first]), plain=False)
+        if text in _BEGINNING and self._begins_statement():
+            raise self.error(*diagnostics.no_operand(self.tokens, first))
         if text == "/" or self.texts[last + 1] == "/":
             last = self._last_of_path()
             text = self.text[self.starts[first] : self.ends[last]]
         self.index = last + 1
         return self._meaning(text, span_of((self.starts[first], self.ends[last])))
+
+    def _begins_statement(self) -> bool:
+        """Return whether a requirement or a template begins here; a formula alone has none."""
+        return False
 
     def _last_of_path(self) -> int:
         """Return the index of the last token of the name here: ``a/b`` is a name only if it is declared."""

@@ -11,8 +11,13 @@ from rtamt.language.formula import Span, variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.lexer import unquoted
 from rtamt.language.parsing.parser import FormulaParser
+from rtamt.language.parsing.templates import begins_template
+from rtamt.language.parsing.type_rules import type_of
+from rtamt.language.value_types import UNKNOWN
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rtamt.errors import SpecificationError
     from rtamt.language.document import Assertion, Import, Severity
     from rtamt.language.operators import Language
@@ -32,6 +37,8 @@ class RequirementParser(FormulaParser):
         self._definitions = dict(scope.definitions)
         self._explicit: list[Requirement] = []
         self._names: dict[str, Span] = {}  # the position of each name
+        #: The formulas so far.
+        self._found: list[Assertion] = []
 
     def _requirement(self) -> None:
         """``requirement = "require" , id , [ text ] , [ "severity" , word ] , ":" , expression``."""
@@ -66,6 +73,14 @@ class RequirementParser(FormulaParser):
         self._explicit.append(Requirement(name, formula, description, severity, True, whole))
         self._names[name] = span
 
+    def _check_requirement(self, known: Requirement) -> None:
+        """Reject a number."""
+        if is_number(known.formula) and type_of(known.formula) is not UNKNOWN:
+            message = (
+                f"'{known.name}' requires a number, which neither holds nor fails; compare it, such as x >= 0"
+            )
+            raise self.error(message, known.formula.span or self._names[known.name])
+
     def _id_span(self) -> Span:
         """Return the position of the name of a requirement."""
         if self.token.kind == "quoted":
@@ -84,20 +99,23 @@ class RequirementParser(FormulaParser):
             self.next()
         return self.text[span.start : span.end]
 
-    def _requirements(self, assertions: tuple[Assertion, ...]) -> tuple[Requirement, ...]:
-        """Return the requirements in the order of the text."""
-        read = set(variables(*(assertion.formula for assertion in assertions)))
+    def _variables_as_requirements(self) -> Iterator[SpecificationError]:
+        """Yield an error for each requirement with the name of a variable that formulas read."""
+        if not self._names:
+            return
+        read = set(variables(*(assertion.formula for assertion in self._found)))
         for name, span in self._names.items():
             if name in read:
-                raise self.error(
+                yield self.error(
                     f"'{name}' is the name of a variable; give the requirement another one", span
                 )
-        for known in self._explicit:
-            if is_number(known.formula):
-                message = f"'{known.name}' requires a number, which neither holds nor fails; compare it, such as x >= 0"
-                raise self.error(message, known.formula.span or self._names[known.name])
+
+    def _requirements(self) -> tuple[Requirement, ...]:
+        """Return the requirements in the order of the text."""
         if self._explicit:
             return tuple(self._explicit)
+        assertions = tuple(self._found)
+        read = set(variables(*(assertion.formula for assertion in assertions)))
         unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]
         taken = read | {assertion.name for assertion in assertions if assertion.name is not None}
         found = []
@@ -124,6 +142,13 @@ class RequirementParser(FormulaParser):
         ahead += self._at(ahead).kind == "quoted"
         ahead += 2 * (self._at(ahead).text == "severity")
         return self._at(ahead).text == ":"
+
+    def _begins_statement(self) -> bool:
+        return self._requires() or begins_template(self)
+
+    def _begins_a_line(self, at: int) -> bool:
+        between = self.text[self.ends[at - 1] : self.starts[at]]
+        return "\n" in between or "\r" in between
 
     def _word(self, word: str) -> bool:
         return self.texts[self.index] == word

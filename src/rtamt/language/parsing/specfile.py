@@ -51,9 +51,10 @@ from rtamt.language.parsing.template_order import templates_to_come
 from rtamt.language.parsing.templates import begins_template, parse_template
 from rtamt.language.quantifiers import begins_group
 from rtamt.language.tables import begins_table
+from rtamt.language.value_types import UNKNOWN
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping
 
     from rtamt.errors import SpecificationError
     from rtamt.language.parsing.lexer import Token
@@ -89,76 +90,108 @@ def parse_document(
     """
     scope = Scope(constants or {}, definitions or {}, variables or None)
     library = Library() if library is None else library
-    return _DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
+    return DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
 
 
-class _DocumentParser(GroupParser):
-    """The grammar productions of a document, in addition to those of declarations."""
+#: The message for declarations that come too late.
+LATE = "declarations and annotations stand before the first formula"
+
+
+class DocumentParser(GroupParser):
+    """The grammar productions of a document, in addition to those of declarations.
+
+    After an error, ``_begin`` is where the statement begins that has it.
+    """
+
+    _begin = 0
+    _called: str | None = None
+    _sampling: Sampling | None = None
+    #: The names that formulas cannot use yet, with the reason; None before the first formula.
+    _pending: dict[str, str] | None = None
 
     def document(self, *, imported: bool = False) -> Document:
         """``document = [ header ] , { import } , { declaration | annotation } , assertion , ...``."""
-        name = self._header()
-        while self._import():
-            pass
-        sampling: Sampling | None = None
-        while True:
-            if begins_sampling(self):
-                word = self.token
-                if sampling is not None:
-                    raise self.error("the sampling rule is given twice", word.span)
-                sampling = parse_sampling(self)
-            elif not (
-                self._enumeration()
-                or self._table()
-                or self._group()
-                or self._declaration()
-                or self._annotation()
-            ):
-                break
-        declared = tuple(d.name for d in self._declarations.values() if d.kind == "var")
-        variables = tuple(dict.fromkeys((*self._given, *declared)))
-        assertions = self._assertions(variables)
-        if not assertions and not imported:
-            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
-            raise self.error(empty, self.token.span)
-        self._check_imported(assertions, variables)
+        self._statements()
+        for error in self._final_errors(imported=imported):
+            raise error
         return Document(
             self.text,
-            assertions,
-            self._requirements(assertions),
-            name,
+            tuple(self._found),
+            self._requirements(),
+            self._called,
             tuple(self._imports.values()),
             tuple(self._declarations.values()),
             MappingProxyType(self._topics),
             MappingProxyType(self._constants),
             MappingProxyType(self._definitions),
             MappingProxyType(self._templates),
-            variables,
+            self._variables,
             MappingProxyType(self._enumerations),
             MappingProxyType(self._types),
             frozenset(self.used),
             imported=MappingProxyType(self.library.found),
             tables=MappingProxyType(self._tables),
             groups=MappingProxyType(self._groups),
-            sampling=sampling,
+            sampling=self._sampling,
         )
+
+    def _statements(self) -> None:
+        """Take what stands here up to the end: declarations, unless there are formulas before, and formulas."""
+        if self.index == 0:
+            self._called = self._header()
+        while not self._found and self._begins(self._import):
+            pass
+        while not self._found and self._begins(self._declared):
+            pass
+        self._assertions()
+
+    def _final_errors(self, *, imported: bool = False) -> Iterator[SpecificationError]:
+        """Yield the errors of the text as a whole; one that is imported needs no formula."""
+        if not self._found and not imported:
+            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
+            yield self.error(empty, self.token.span)
+        yield from self._undeclared_in_imports()
+        yield from self._variables_as_requirements()
+
+    def _begins(self, production: Callable[[], bool]) -> bool:
+        """Return whether a production begins here, which is taken then."""
+        self._begin = self.index
+        return production()
+
+    def _declared(self) -> bool:
+        """Take a declaration, an annotation or the sampling rule, if there is one here."""
+        if begins_sampling(self):
+            word = self.token
+            if self._sampling is not None:
+                raise self.error("the sampling rule is given twice", word.span)
+            self._sampling = parse_sampling(self)
+            return True
+        return (
+            self._enumeration() or self._table() or self._group() or self._declaration() or self._annotation()
+        )
+
+    @property
+    def _variables(self) -> tuple[str, ...]:
+        """The declared variables."""
+        declared = (d.name for d in self._declarations.values() if d.kind == "var")
+        return tuple(dict.fromkeys((*self._given, *declared)))
 
     # ---- the formulas ----------------------------------------------------------------------------
 
-    def _assertions(self, variables: tuple[str, ...]) -> tuple[Assertion, ...]:
+    def _assertions(self) -> None:
         """``assertion , { separator , assertion } , [ ";" ]``."""
-        pending = self._names_to_come() | templates_to_come(self)
-        names = dict.fromkeys(variables) or None  # a dict for fast lookup
+        if self._pending is None:
+            self._pending = self._names_to_come() | templates_to_come(self)
+        pending, found = self._pending, self._found
+        names = dict.fromkeys(self._variables) or None  # a dict for fast lookup
         self._slashes = self._scope(names).slashes if "/" in self.words else 0
-        found: list[Assertion] = []
         while self.texts[self.index]:
+            self._begin = self.index
             required = self._requires()
             if self._imports_file():
                 raise self.error("imports stand at the beginning, before declarations", self.token.span)
             if (found or self._templates) and not required and self._begins_declaration():
-                raise self.error(
-                    "declarations and annotations stand before the first formula", self.token.span
-                )
+                raise self.error(LATE, self.token.span)
             self.scope = self._scope(names, pending)
             name: str | None
             if begins_template(self):
@@ -194,18 +227,21 @@ class _DocumentParser(GroupParser):
                 or (self._begins_a_line(self.index) and (name or self._requires() or begins_template(self)))
             ):
                 raise self._not_finished()
+            if required:
+                self._check_requirement(self._explicit[-1])
             while self.accept(";"):
                 pass
-        return tuple(found)
 
-    def _check_imported(self, assertions: tuple[Assertion, ...], names: tuple[str, ...]) -> None:
-        """Reject undeclared names in imported formulas, where names must be declared."""
+    def _undeclared_in_imports(self) -> Iterator[SpecificationError]:
+        """Yield an error for each undeclared name in imported formulas, where names must be declared."""
+        names = self._variables
         scope = Scope(variables=names)
         if not names or not self.origins:
             return
-        for node in postorder(*(assertion.formula for assertion in assertions)):
-            if isinstance(node, Var) and node.name not in scope:
-                raise self.error(
+        for node in postorder(*(assertion.formula for assertion in self._found)):
+            known = not isinstance(node, Var) or node.bound or node.type is UNKNOWN or node.name in scope
+            if isinstance(node, Var) and not known:
+                yield self.error(
                     f"'{node.name}', which an imported formula reads, is not declared",
                     node.span or Span(0, 0),
                     NameInFormulaError,
@@ -233,23 +269,23 @@ class _DocumentParser(GroupParser):
             or begins_group(self)
         )
 
-    def _begins_a_line(self, at: int) -> bool:
-        between = self.text[self.ends[at - 1] : self.starts[at]]
-        return "\n" in between or "\r" in between
-
     def _assertion_name(self) -> str | None:
         """``[ name , "=" ]``."""
-        last = self.index
-        if "=" not in self.words or self.token.kind not in ("name", "quoted"):
-            return None
-        token = self.token
-        while (after := self._after_slash(last + 1)) > 0:
-            last = after
-        if self.texts[last + 1] != "=":
+        last, token = self._end_of_name(), self.token
+        if last is None:
             return None
         self._check_nameable(token)
         self.index = last + 2
         return token.name if token.kind == "quoted" else self.text[token.start : self.tokens[last].end]
+
+    def _end_of_name(self) -> int | None:
+        """Return the index of the last token of the name that is defined here; None where no name and no = stand."""
+        last = self.index
+        if "=" not in self.words or self.token.kind not in ("name", "quoted"):
+            return None
+        while (after := self._after_slash(last + 1)) > 0:
+            last = after
+        return last if self.texts[last + 1] == "=" else None
 
     def _names_to_come(self) -> dict[str, str]:
         """Return the names that later assertions define, each with the error message for an earlier use."""

@@ -50,6 +50,11 @@ class Argument(NamedTuple):
     unknown: bool = False
 
 
+def anything(name: str) -> Argument:
+    """Return what stands for any formula or duration."""
+    return Argument(Var(name, type=UNKNOWN), unknown=True)
+
+
 class Parameter(NamedTuple):
     """A parameter of a template, and its default."""
 
@@ -143,10 +148,8 @@ def parse_template(parser: FormulaParser) -> Template:
             f"expected '=' and the formula of '{name.text}', got {parser.token}", parser.token.span
         )
     outer, begin = parser.scope, parser.index
-    unknown = {
-        parameter.name: Argument(Var(parameter.name, type=UNKNOWN), unknown=True) for parameter in parameters
-    }
-    parser.scope = replace(outer, arguments=unknown)
+    unknown = {parameter.name: anything(parameter.name) for parameter in parameters}
+    parser.scope = replace(outer, arguments={**outer.arguments, **unknown})
     parser.formula()
     parser.scope = outer
     return Template(name.text, parameters, parser.text, parser.tokens.between(begin, parser.index), outer)
@@ -162,7 +165,7 @@ def _parameters(parser: FormulaParser, name: Token) -> tuple[Parameter, ...]:
             raise parser.error(f"expected the name of a parameter of '{name.text}', got {token}", token.span)
         if token.text in found:
             raise parser.error(f"'{name.text}' has two parameters called '{token.text}'", token.span)
-        default = _argument(parser) if parser.accept("=") else None
+        default = parse_argument(parser) if parser.accept("=") else None
         if default is None and any(known.default for known in found.values()):
             raise parser.error(
                 f"the parameter '{token.text}' has no default, but one before it has; move it up", token.span
@@ -229,7 +232,7 @@ def _given(parser: FormulaParser, template: Template, first: Token) -> dict[str,
             name = names[len(given)]
         if name in given:
             raise parser.error(f"'{name}' of {template.signature} is given twice", token.span)
-        given[name] = _argument(parser)
+        given[name] = parse_argument(parser)
         if not parser.accept(","):
             break
     if not parser.accept(")"):
@@ -237,7 +240,7 @@ def _given(parser: FormulaParser, template: Template, first: Token) -> dict[str,
     return given
 
 
-def _argument(parser: FormulaParser) -> Argument:
+def parse_argument(parser: FormulaParser) -> Argument:
     """``argument = duration | expression``; a parameter of the template around it is passed on."""
     ahead = [token.text for token in parser.tokens[parser.index : parser.index + 5]] + [""] * 5
     token = parser.token
@@ -295,7 +298,7 @@ def _instance(
     )
     inner.text = template.text
     inner.read(template.tokens)
-    inner.scope = replace(template.scope, arguments=arguments)
+    inner.scope = replace(template.scope, arguments={**template.scope.arguments, **arguments})
     inner.borrowed = {id(argument.formula) for argument in arguments.values()}
     formula = inner.expression()
     assert inner.token.kind == "end", "the definition was read to its end"

@@ -225,3 +225,15 @@ def test_rates_of_variables():
 
 def test_a_variable_called_in_is_no_range():
     assert parse_document("float v; float in  in >= v").declarations[0].range is None
+
+
+def test_a_text_with_groups_may_import_files():
+    text = 'import "patterns.stl"\ngroup cars = "car_*"\nfloat gap\nrequire R: forall c in cars: absence(c.x > gap)'
+    assert [each.name for each in parse_document(text).requirements] == ["R"]
+
+
+@pytest.mark.parametrize("rest", ["\nfloat y [m]; x > y", "; float y [m]; x > y", " = 3]", ""])
+def test_a_unit_ends_before_the_next_declaration(rest):
+    with pytest.raises(ParseError) as caught:
+        parse_document("float x [m/s" + rest)
+    assert caught.value.message == "expected a unit and ']' after 'x [', such as [m/s]"
