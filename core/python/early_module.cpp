@@ -89,14 +89,16 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                          const std::vector<nb::str>& names, const nb::object& ignored,
                          const nb::dict& types, double period, double tolerance,
                          std::optional<Tick> lateness, const nb::object& verdict, bool replays,
-                         const std::optional<EarlyCauses>& causes) {
+                         const std::optional<EarlyCauses>& causes,
+                         const std::optional<std::pair<nb::object, nb::object>>& change) {
                 EarlySettings settings{
-                    period,  tolerance,   lateness.has_value(), lateness.value_or(0),
-                    replays, std::nullopt};
+                    period,  tolerance,    lateness.has_value(), lateness.value_or(0),
+                    replays, std::nullopt, std::nullopt};
                 if (!verdict.is_none()) {
                     settings.verdict.emplace(verdict,
                                              std::array{"time", "satisfied", "decided_at"});
                 }
+                if (change) settings.change.emplace(change->first, change->second);
                 new (self)
                     EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
                                  std::move(outputs), items_of(origin), bounds_of(ranges), names,
@@ -105,7 +107,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored"), nb::arg("types"), nb::arg("period"),
             nb::arg("tolerance"), nb::arg("lateness").none(), nb::arg("verdict").none(),
-            nb::arg("replays") = false, nb::arg("causes").none() = nb::none())
+            nb::arg("replays") = false, nb::arg("causes").none() = nb::none(),
+            nb::arg("change").none() = nb::none())
         .def("take", &EarlyMonitor::take, nb::arg("time"), nb::arg("lower"), nb::arg("upper"),
              nb::arg("after"), "Take bounds of every input at one time, in order.")
         .def("learn", &EarlyMonitor::learn, nb::arg("time"), nb::arg("values"), nb::arg("after"),
@@ -120,6 +123,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "The bounds of an output at a sample, None where they are forgotten.")
         .def("changes", &EarlyMonitor::changes, nb::arg("output"),
              "Runs (first, last, lower, upper) that the last call changed.")
+        .def("reported", &EarlyMonitor::reported, nb::arg("output"),
+             "The same as a list of objects with times.")
         .def("supposed", &EarlyMonitor::supposed, nb::arg("output").none(), nb::arg("sample"),
              nb::arg("later"), "The bounds if later samples had these bounds of all inputs.")
         .def("causation_at_start", &EarlyMonitor::causation_at_start,

@@ -10,6 +10,7 @@
 #include "../early/engine.hpp"
 #include "../early/origin.hpp"
 #include "../early/times.hpp"
+#include "change_class.hpp"
 #include "early_backend.hpp"
 #include "failures.hpp"
 #include "names.hpp"
@@ -34,6 +35,7 @@ struct EarlySettings {
     early::Tick lateness = 0;              // by how many samples at most
     bool replays = false;                  // update() takes nothing by itself
     std::optional<ResultClass<3>> verdict; // of what update() returns; none: bounds
+    std::optional<ChangeClass> change;     // of what reported() returns
 };
 
 class EarlyMonitor : public EarlyBackend {
@@ -66,6 +68,8 @@ class EarlyMonitor : public EarlyBackend {
     // Runs (first, last, lower, upper) of an output that the last call changed.
     [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
     changes(std::size_t output) const;
+    // The same as a list of objects with times; of samples that come in order.
+    [[nodiscard]] nb::object reported(std::size_t output) const;
     // The bounds of an output at a sample, or of the formula at the start, if later samples had
     // these bounds of all inputs: (first, last, lower, upper), counted from the sample after the
     // newest.

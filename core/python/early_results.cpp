@@ -78,6 +78,23 @@ EarlyMonitor::changes(std::size_t output) const {
     return result;
 }
 
+nb::object EarlyMonitor::reported(std::size_t output) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    const auto runs = changes_[output].runs(engine_, outputs_[output]);
+    const Tick settled = early::plus(final_up_to(), -lag(output));
+    auto list = nb::steal(PyList_New(static_cast<Py_ssize_t>(runs.size())));
+    if (!list.is_valid()) throw nb::python_error();
+    Py_ssize_t place = 0;
+    for (const early::Change& run : runs) {
+        const bool is_final = finished_ || run.bounds.lower == run.bounds.upper || run.r <= settled;
+        PyObject* change =
+            settings_.change.value().make(times_.at(run.l), times_.at(run.r), run.bounds, is_final);
+        if (change == nullptr) throw nb::python_error();
+        fill_list(list.ptr(), place++, change);
+    }
+    return list;
+}
+
 nb::object EarlyMonitor::supposed(
     std::optional<std::size_t> output, Tick sample,
     const std::vector<std::tuple<Tick, Tick, std::vector<double>, std::vector<double>>>& later) {

@@ -240,7 +240,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (
             "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
-            "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.verdicts.interval.Change", "Interval",
+            "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.signals.outcomes.Change", "Interval",
             "rtamt.verdicts.discrete_causation.DiscreteCausationMonitor",
             "rtamt.verdicts.dense_causation.DenseCausationMonitor",
             "Causation", "CausationRun", "Cause", "calibrate",

@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
     from rtamt.cli.live_view import Live
     from rtamt.signals.coding import Types
-    from rtamt.signals.outcomes import Causation, Cause, Verdict
+    from rtamt.signals.outcomes import Causation, Cause, Change, Verdict
     from rtamt.verdicts.at_start import StartMonitor
     from rtamt.verdicts.causation import CausationMonitor
     from rtamt.verdicts.dense_early import DenseEagerMonitor
     from rtamt.verdicts.eager import EagerMonitor
     from rtamt.verdicts.early import EarlyMonitor
-    from rtamt.verdicts.interval import Change, IntervalMonitor
+    from rtamt.verdicts.interval import IntervalMonitor
 
 _DISCRETE = DiscreteEarlyMonitor, MemberIntervalMonitor
 

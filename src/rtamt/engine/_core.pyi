@@ -319,7 +319,8 @@ class EarlyMonitor:
     ``nodes``, ``outputs`` and ``origin`` are those of ``compiler.early.Graph``. ``lateness``: by how many samples
     one may come late; None where all come in order. ``verdict``: the class of what update() returns, None for bounds.
     ``replays``: whether update() takes nothing by itself. ``causes``: the parts, outputs and starts of
-    ``compiler.causation.Causes``, and the class of what update() returns.
+    ``compiler.causation.Causes``, and the class of what update() returns. ``change``: the class of what reported()
+    returns, and that of its bounds.
     """
 
     def __init__(
@@ -337,6 +338,7 @@ class EarlyMonitor:
         verdict: type | None,
         replays: bool = False,
         causes: tuple[Any, ...] | None = None,
+        change: tuple[type, type] | None = None,
     ) -> None: ...
     def take(self, time: float, lower: Sequence[float], upper: Sequence[float], after: int) -> Any:
         """Take bounds of every input at one time, in order."""
@@ -361,6 +363,9 @@ class EarlyMonitor:
 
     def changes(self, output: int) -> list[tuple[int, int, float, float]]:
         """Runs (first, last, lower, upper) that the last call changed."""
+
+    def reported(self, output: int) -> list[Any]:
+        """The same as a list of objects with times."""
 
     def supposed(
         self,

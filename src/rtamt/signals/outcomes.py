@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.errors import EvaluationError
 from rtamt.lazy_dataclasses import dataclass
@@ -26,6 +26,20 @@ class Interval:
 
     lower: float
     upper: float
+
+
+class Change(NamedTuple):
+    """The bounds that samples from ``begin`` to ``end`` have now, which changed; ``final`` if they stay.
+
+    In dense time: instants from ``begin`` up to but excluding ``end``. ``retracted``: whether the bounds are
+    outside what they were, after a correction.
+    """
+
+    begin: Any
+    end: Any
+    interval: Interval
+    final: bool
+    retracted: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays, dense_arrays
-from rtamt.signals.outcomes import Interval
+from rtamt.signals.outcomes import Change, Interval
 from rtamt.signals.runs import compared, merged
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.dense_early import DenseEarlyMonitor
-from rtamt.verdicts.interval import Change, IntervalMonitor, LateSampleError
+from rtamt.verdicts.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.prediction import later_steps
 
 if TYPE_CHECKING:

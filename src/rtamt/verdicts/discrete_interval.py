@@ -11,11 +11,11 @@ from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
-from rtamt.signals.outcomes import Interval
+from rtamt.signals.outcomes import Change, Interval
 from rtamt.signals.regular import irregular
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
-from rtamt.verdicts.interval import Change, IntervalMonitor, LateSampleError
+from rtamt.verdicts.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.prediction import Later, later_samples
 
 if TYPE_CHECKING:
@@ -230,7 +230,16 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if self._rest:
             first, values = self._rest[output]
             return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
-        noted, now = self._noted.get(output, ()), super()._changes(output)
+        if self._retracted is not None and output == 0:
+            now = list(self._retracted)
+        else:
+            now = self._backend.reported(output)
+            if not self._clock.plain:
+                time = self._clock.time
+                now = [each._replace(begin=time(each.begin), end=time(each.end)) for each in now]
+        noted = self._noted.get(output)
+        if not noted:
+            return now
         last = {change.begin for change in now}
         before = [self._change(*run, output=output) for run in noted]
         return [*(change for change in before if change.begin not in last), *now]

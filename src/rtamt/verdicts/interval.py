@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
 from rtamt.language.units.durations import duration
@@ -22,27 +22,13 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.language.units.durations import Duration
     from rtamt.signals.domain_interface import TimeDomain
-    from rtamt.signals.outcomes import Interval
+    from rtamt.signals.outcomes import Change, Interval
 
 #: How many samples come between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64
 
 STARTS = ("start", "every")
 CORRECTIONS = ("reject", "replay")
-
-
-class Change(NamedTuple):
-    """The bounds that samples from ``begin`` to ``end`` have now, which changed; ``final`` if they stay.
-
-    In dense time: instants from ``begin`` up to but excluding ``end``. ``retracted``: whether the bounds are
-    outside what they were, after a correction.
-    """
-
-    begin: Any
-    end: Any
-    interval: Interval
-    final: bool
-    retracted: bool = False
 
 
 class LateSampleError(TraceError):

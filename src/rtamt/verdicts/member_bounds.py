@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from rtamt.rewrite.quantifier_streams import Quantified
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.members import Fields
-    from rtamt.signals.outcomes import Interval
-    from rtamt.verdicts.interval import Change
+    from rtamt.signals.outcomes import Change, Interval
 
     Bounds = tuple[float, float]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
-    from rtamt.verdicts.interval import Change
+    from rtamt.signals.outcomes import Change
     from tests.laws.early.cases import Range
 
 from tests.laws.early.definition import DEFINITION, SECONDS, Implementation

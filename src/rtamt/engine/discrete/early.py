@@ -8,7 +8,7 @@ from rtamt.engine.discrete.early_python_backend import PythonEarlyMonitor
 from rtamt.engine.early import EarlyDefinition, EarlyProgram, EarlyQuery, Group
 from rtamt.engine.native import core
 from rtamt.signals.coding import codes_of
-from rtamt.signals.outcomes import Causation, Verdict
+from rtamt.signals.outcomes import Causation, Change, Interval, Verdict
 
 if TYPE_CHECKING:
     from rtamt.signals.discrete import Discrete
@@ -36,13 +36,15 @@ def program_of(query: EarlyQuery, domain: Discrete) -> EarlyProgram:
         Verdict if query.verdicts else None,
         query.replays,
         None if group.causes is None else (*group.causes, Causation),
+        (Change, Interval),
     )
 
 
 def definition_of(query: EarlyQuery, domain: Discrete) -> EarlyDefinition:
     """Return the session of the definition."""
+    group = _group_of(query, domain)
     return EarlyDefinition(
-        [_group_of(query, domain)],
+        [group],
         _places_of(query),
         PythonEarlyMonitor,
         query.formulas,
@@ -53,6 +55,7 @@ def definition_of(query: EarlyQuery, domain: Discrete) -> EarlyDefinition:
         domain.tolerance,
         query.late,
         Verdict if query.verdicts else None,
+        [max(0, group.graph.horizon(output)) for output in group.outputs],
         query.causes,
     )
 

@@ -15,7 +15,7 @@ from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.lazy_numpy import np
 from rtamt.reference.causation import NOTHING, causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
-from rtamt.signals.outcomes import Causation
+from rtamt.signals.outcomes import Causation, Change, Interval
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,11 @@ if TYPE_CHECKING:
 
 
 class PythonEarlyMonitor:
-    """See ``EarlyMonitor`` in ``_core.pyi``. ``outputs`` are formulas, of which the first is that of the start."""
+    """See ``EarlyMonitor`` in ``_core.pyi``.
+
+    ``formulas``: the first is that of the start, and all but the first ``hidden`` are outputs. ``lags``: by how
+    many samples the value of each output is final after its instant at the latest.
+    """
 
     def __init__(
         self,
@@ -39,6 +43,7 @@ class PythonEarlyMonitor:
         tolerance: float,
         lateness: int | None,
         verdict: type | None,
+        lags: Sequence[int],
         causes: bool = False,
     ) -> None:
         self._start, self._outputs = formulas[0], tuple(formulas[hidden:])
@@ -46,6 +51,7 @@ class PythonEarlyMonitor:
         self._names = tuple(names)
         self._period, self._tolerance = period, tolerance
         self._lateness, self._verdict, self._causes = lateness, verdict, causes
+        self._lags = tuple(lags)
         self._known: dict[int, dict[str, Pair]] = {}
         self._times: dict[int, float] = {}
         self.samples, self.newest, self.closed, self.finished = 0, -1, -1, False
@@ -262,6 +268,19 @@ class PythonEarlyMonitor:
     def changes(self, output: int) -> list[Any]:
         """Runs (first, last, lower, upper) that the last call changed."""
         return self._reports[output]
+
+    def reported(self, output: int) -> list[Change]:
+        """The same as a list of changes with times."""
+        settled = min(self.closed, self.newest) - self._lags[output]
+        return [
+            Change(
+                self.time(first),
+                self.time(last),
+                Interval(low, high),
+                self.finished or low == high or last <= settled,
+            )
+            for first, last, low, high in self._reports[output]
+        ]
 
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""
