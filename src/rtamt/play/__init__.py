@@ -9,6 +9,7 @@ messages     requests of the page, validated
 vocabulary   the words that the page completes
 drawn        signals that the user draws, as samples
 recordings   recordings that the user loads, by number
+recent       the last result, which is looked at closer without computing it again
 reduced      long lines, reduced to the range of values in each pixel
 evaluation   robustness, verdict and explanation of a request
 online       what online monitors report while the samples arrive

@@ -91,7 +91,8 @@ class Crew:
 
     def __init__(self, room: str, folder: str | None = None) -> None:
         self._quick, self._replaying, self._thorough = (Worker(room, folder) for _ in range(3))
-        self._workers = {"replay": self._replaying, "moment": self._replaying, "question": self._thorough}
+        replays = dict.fromkeys(("replay", "rewatch", "moment"), self._replaying)
+        self._workers = {**replays, "question": self._thorough}
         self._newest: dict[tuple[str, str], int] = {}
 
     async def ask(

@@ -5,20 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError
-from rtamt.play.evaluation import Sources, evaluated
+from rtamt.lazy_dataclasses import replace
+from rtamt.play.evaluation import Sources, evaluated, redrawn
 from rtamt.play.messages import MessageError, Request
-from rtamt.play.online import known_at, replayed
+from rtamt.play.online import known_at, replayed, rewatched
 from rtamt.play.recordings import File, Recordings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: What the page may ask a worker for.
-KINDS = ("evaluate", "replay", "moment", "question", "recording")
+KINDS = ("evaluate", "redraw", "replay", "rewatch", "moment", "question", "recording")
+_ANSWERS = {
+    "evaluate": evaluated, "redraw": redrawn, "replay": replayed, "rewatch": rewatched, "moment": known_at,
+}  # fmt: skip
 
 
 class Desk:
-    """Answers messages one by one; it keeps recordings in memory and nothing else.
+    """Answers messages one by one; it keeps recordings and the last result in memory, and nothing else.
 
     >>> desk = Desk()
     >>> answer = desk.answer("evaluate", {"text": "always(x >= 3)", "time": "discrete", "duration": 2,
@@ -28,8 +32,7 @@ class Desk:
     """
 
     def __init__(self, folder: str | None = None) -> None:
-        self._recordings = Recordings()
-        self._folder = folder
+        self._sources = Sources(Recordings(), folder=folder)
 
     def answer(
         self, kind: str, message: Mapping[str, Any], file: Mapping[str, Any] | None = None
@@ -41,19 +44,15 @@ class Desk:
         known = None if file is None else File(file["number"], file["path"], file["name"])
         if kind == "recording":
             return self._recording(known)
-        sources = Sources(self._recordings, known, self._folder)
+        sources = replace(self._sources, file=known)
         try:
             request = Request.of(message)
         except MessageError:
             raise
         except StlError as error:
             return {"error": {"message": str(error), "start": None, "end": None}}
-        if kind == "evaluate":
-            return evaluated(request, sources)
-        if kind == "replay":
-            return replayed(request, sources)
-        if kind == "moment":
-            return known_at(request, sources)
+        if kind in _ANSWERS:
+            return _ANSWERS[kind](request, sources)
         if kind == "question":
             from rtamt.play.questions import WANTED, found
 
@@ -66,6 +65,6 @@ class Desk:
         if file is None:
             raise MessageError("there is no recording of that number")
         try:
-            return {"error": None, **self._recordings.summary(file)}
+            return {"error": None, **self._sources.recordings.summary(file)}
         except StlError as error:
             return {"error": {"message": file.said(str(error)), "start": None, "end": None}}

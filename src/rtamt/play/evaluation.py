@@ -10,10 +10,14 @@ from rtamt.language.formula import Apply, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
+<<<<<<< HEAD
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
+=======
+from rtamt.lazy_dataclasses import dataclass, field
+>>>>>>> 51ad186 (Zoom and move the charts of rtamt play)
 from rtamt.play import drawn
-from rtamt.play.recordings import drawn_lines
+from rtamt.play.recent import Recent
 from rtamt.play.reduced import line, number
 from rtamt.plot.clock import Clock
 from rtamt.plot.panels import groups
@@ -27,7 +31,9 @@ if TYPE_CHECKING:
 
     from rtamt.explain.explanation import Explanation, Stretch
     from rtamt.play.messages import Request
+    from rtamt.play.online import Replay
     from rtamt.play.recordings import File, Recordings
+    from rtamt.play.reduced import View
     from rtamt.results import Result
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
@@ -38,11 +44,16 @@ _CAUSES, _STRETCHES, _RUNS = 6, 400, 2000
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """Where a request finds what it names: recordings, and the folder of imported files, None for no folder."""
+    """Where a request finds what it names: recordings, and the folder of imported files, None for no folder.
+
+    ``results``: what was evaluated last. ``replays``: what was replayed last.
+    """
 
     recordings: Recordings
     file: File | None = None
     folder: str | None = None
+    results: Recent[Result] = field(default_factory=Recent)
+    replays: Recent[Replay] = field(default_factory=Recent)
 
 
 def parsed(request: Request, sources: Sources) -> Specification:
@@ -113,16 +124,24 @@ def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
         answer |= _facts(spec, request)
         if answer["missing"] and request.recording is None:
             return answer
-        result = result_of(request, spec, sources)
+        result = sources.results.keep(request, result_of(request, spec, sources))
         name, part = chosen(request, result)
-        answer |= _shown(name, part, request) | {
-            "lines": _lines(result, part, request),
-            "fails": _fails(part),
-            "requirements": [_row(each, one) for each, one in result.requirements.items()],
-        }
+        answer |= _shown(name, part) | _drawn(result, part, request, None)
+        answer["near"] = None if request.view is None else _drawn(result, part, request, request.view)
+        answer["requirements"] = [_row(each, one) for each, one in result.requirements.items()]
     except StlError as error:
         answer["error"] = told(error, sources)
     return answer
+
+
+def redrawn(request: Request, sources: Sources) -> dict[str, Any]:
+    """Return what is seen of the last evaluation, as ``near`` of :func:`evaluated`."""
+    try:
+        result = sources.results.of(request, lambda: result_of(request, parsed(request, sources), sources))
+        near = _drawn(result, chosen(request, result)[1], request, request.view)
+    except StlError as error:
+        return {"error": told(error, sources)}
+    return {"error": None, "near": near}
 
 
 def told(error: StlError, sources: Sources) -> dict[str, Any]:
@@ -185,11 +204,9 @@ def _interval(result: Result) -> list[Any]:
     return [number(result.interval.lower), number(result.interval.upper)]
 
 
-def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
-    """Return what is drawn and said of one requirement."""
+def _shown(name: str, result: Result) -> dict[str, Any]:
+    """Return what is said of one requirement."""
     clock, spec = Clock.of(result.trace), result.specification
-    signal = result.signal
-    positions = clock.positions(signal.times)
     answer: dict[str, Any] = {
         "focus": name,
         "formula": to_text(spec.formula, limit=2000),
@@ -201,22 +218,30 @@ def _shown(name: str, result: Result, request: Request) -> dict[str, Any]:
         "step": None if result.trace.domain.continuous else float(result.trace.step),
         "thresholds": _thresholds(spec),
     }
-    if isinstance(signal, BoundedSignal):
-        both = [line(positions, bound, request.width) for bound in (signal.lower, signal.upper)]
-        return answer | {
-            "robustness": both[0],
-            "upper": both[1],
-            "explanation": None,
-        }
+    if isinstance(result.signal, BoundedSignal):
+        return answer | {"explanation": None}
     violation = first_violation(result)
     return answer | {
-        "robustness": line(positions, signal.values, request.width),
         "first": None if violation is None else clock.position(violation),
         "explanation": _explained(result.explain(), clock),
     }
 
 
-def _fails(part: Result) -> list[list[float]]:
+def _drawn(result: Result, part: Result, request: Request, view: View | None) -> dict[str, Any]:
+    """Return the lines of one requirement, as far as they are seen: robustness, signals, and where it is violated."""
+    signal = part.signal
+    positions = Clock.of(part.trace).positions(signal.times)
+    first, *rest = (signal.lower, signal.upper) if isinstance(signal, BoundedSignal) else (signal.values,)
+    return {
+        "view": view,
+        "robustness": line(positions, first, request.width, view),
+        "upper": line(positions, rest[0], request.width, view) if rest else None,
+        "lines": _lines(result, part, request.width, view),
+        "fails": _fails(part, view),
+    }
+
+
+def _fails(part: Result, view: View | None) -> list[list[float]]:
     """Return the runs of instants at which the monitored formula does not hold, each until the next instant."""
     if part.trace.bounds:
         return []
@@ -225,13 +250,16 @@ def _fails(part: Result) -> list[list[float]]:
     begins = clock.positions(truth.times)
     last = clock.end if part.trace.domain.continuous else clock.end + float(part.trace.step)
     edges = np.diff((truth.values < 0).astype(np.int8), prepend=0, append=0)
-    starts, ends = np.flatnonzero(edges > 0)[:_RUNS], np.flatnonzero(edges < 0)[:_RUNS]
+    starts, ends = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
     until = np.append(begins, last)
-    runs: list[list[float]] = np.column_stack([begins[starts], until[ends]]).tolist()
-    return runs
+    runs = np.column_stack([begins[starts], until[ends]])
+    if view is not None:
+        runs = runs[(runs[:, 1] >= view[0]) & (runs[:, 0] <= view[1])]
+    found: list[list[float]] = runs[:_RUNS].tolist()
+    return found
 
 
-def _lines(result: Result, part: Result, request: Request) -> list[dict[str, Any]]:
+def _lines(result: Result, part: Result, width: int, view: View | None) -> list[dict[str, Any]]:
     """Return the signals that any requirement reads, on the axis of the one that is shown."""
     known = {}
     for name in result.specification.input_names:
@@ -241,7 +269,11 @@ def _lines(result: Result, part: Result, request: Request) -> list[dict[str, Any
         positions = positions + _shift(trace, part.trace)
         seen = positions >= Clock.of(part.trace).start
         known[name] = positions[seen], values[seen]
-    return drawn_lines(known, result.specification.units, request.width)
+    units = result.specification.units
+    return [
+        {"name": name, "unit": units.get(name, ""), **line(*both, width, view)}
+        for name, both in known.items()
+    ]
 
 
 def _shift(trace: DomainTrace, shown: DomainTrace) -> float:
@@ -298,4 +330,4 @@ def name_of(spec: Specification) -> str:
     return excerpt(spec.formula)
 
 
-__all__ = ["Sources", "chosen", "data_of", "evaluated", "name_of", "parsed", "result_of", "told"]
+__all__ = ["Sources", "chosen", "data_of", "evaluated", "name_of", "parsed", "redrawn", "result_of", "told"]

@@ -43,8 +43,8 @@ class Request:
 
     ``signals``: the drawn ones, over ``duration`` seconds. ``recording``: a number; then nothing is drawn.
     ``resample``: how a recording is put on one time base, "" for not at all. ``focus``: the requirement that is
-    explained and monitored, None for the one that the answer chooses. ``width``: of charts, in pixels. ``at``: the
-    position of the cursor.
+    explained and monitored, None for the one that the answer chooses. ``width``: of charts, in pixels. ``view``: begin
+    and end of the time that is seen, None for all of it. ``at``: the position of the cursor.
     """
 
     text: str
@@ -56,6 +56,7 @@ class Request:
     resample: str
     focus: str | None
     width: int
+    view: tuple[float, float] | None
     at: float | None
 
     @property
@@ -90,6 +91,7 @@ class Request:
             resample=resample,
             focus=focus,
             width=int(min(max(_number(message.get("width", 800), "width"), 50), _WIDEST)),
+            view=_view(message.get("view")),
             at=None if at is None else _number(at, "at"),
         )
 
@@ -107,6 +109,17 @@ def _number(value: Any, name: str) -> float:
     if isinstance(value, bool) or not is_number(value) or not isfinite(value):
         raise MessageError(f"'{name}' must be a finite number")
     return float(value)
+
+
+def _view(given: Any) -> tuple[float, float] | None:
+    if given is None:
+        return None
+    if not isinstance(given, list) or len(given) != 2:
+        raise MessageError("'view' must be two times, or null")
+    begin, end = (_number(each, "view") for each in given)
+    if begin >= end:
+        raise MessageError("'view' must begin before it ends")
+    return begin, end
 
 
 def _period(text: str) -> Fraction | None:

@@ -6,9 +6,13 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
+<<<<<<< HEAD
 from rtamt.lazy_numpy import np
+=======
+from rtamt.lazy_dataclasses import dataclass
+>>>>>>> 51ad186 (Zoom and move the charts of rtamt play)
 from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
-from rtamt.play.reduced import extremes, number, numbers, parts
+from rtamt.play.reduced import kept_in, number, numbers, parts
 from rtamt.plot.band import band
 from rtamt.plot.clock import Clock
 
@@ -19,41 +23,88 @@ if TYPE_CHECKING:
 
     from rtamt.play.evaluation import Sources
     from rtamt.play.messages import Request
+    from rtamt.play.reduced import View
+    from rtamt.plot.band import Band
     from rtamt.results import Result
     from rtamt.specification import Specification
+
+    #: Begin and end, the verdict, and the position of the sample that decided it.
+    Run = tuple[float, float, bool, float | None]
 
 #: The longest recording that is replayed, in samples, and the most pending instants whose bounds are drawn.
 MOST_SAMPLES, _MOST_PENDING = 20_000, 200
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Replay:
+    """What monitors reported of a result, sample by sample; ``runs``: see :func:`_runs`."""
+
+    result: Result
+    watched: Specification
+    band: Band
+    runs: list[Run]
+
+
 def replayed(request: Request, sources: Sources) -> dict[str, Any]:
     """Return what was known after each sample: bounds at the start, and when each instant was decided."""
     try:
-        result = _result(request, sources)
-        clock = Clock.of(result.trace)
-        watched = inner(result.specification)
+        replay = sources.replays.keep(request, _replay(request, sources))
+        return {"error": None, "formula": name_of(replay.watched), **_seen(replay, request, None)}
+    except StlError as error:
+        return {"error": told(error, sources)}
+
+
+def rewatched(request: Request, sources: Sources) -> dict[str, Any]:
+    """Return ``near``: what is seen of the last replay."""
+    try:
+        replay = sources.replays.of(request, lambda: _replay(request, sources))
+        return {"error": None, "near": _seen(replay, request, request.view)}
+    except StlError as error:
+        return {"error": told(error, sources)}
+
+
+def _replay(request: Request, sources: Sources) -> Replay:
+    result = _result(request, sources)
+    watched = inner(result.specification)
+    return Replay(result, watched, band(result), _runs(watched, result, Clock.of(result.trace)))
+
+
+def _seen(replay: Replay, request: Request, view: View | None) -> dict[str, Any]:
+    return {
+        "view": view,
+        "bounds": _bounds(replay.band, request.width, view),
+        "runs": _merged(_in_view(replay.runs, view), request.width),
+    }
+
+
+def known_at(request: Request, sources: Sources) -> dict[str, Any]:
+    """Return what is known when the samples up to the cursor have come.
+
+    ``bounds``: of the robustness at the start. ``open``: how many instants have no verdict yet. ``pending``: the bounds
+    of the instants whose robustness is not final; None if they never are.
+    """
+    try:
+        replay = sources.replays.of(request, lambda: _replay(request, sources))
+        clock = Clock.of(replay.result.trace)
+        now = clock.end if request.at is None else request.at
+        known = replay.band
+        last = int(np.searchsorted(known.positions, now, "right")) - 1
         return {
             "error": None,
-            "formula": name_of(watched),
-            "bounds": _bounds(result, request.width),
-            "runs": _runs(watched, result, clock, request.width),
+            "bounds": None if last < 0 else [numbers(each[[last]])[0] for each in (known.lower, known.upper)],
+            "open": sum(
+                begin <= now < (clock.end if decided is None else decided)
+                for begin, _, _, decided in replay.runs
+            ),
+            "pending": _pending(replay, clock, now),
         }
     except StlError as error:
         return {"error": told(error, sources)}
 
 
-def known_at(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return the bounds of the instants that are pending when the samples up to the cursor have come."""
-    try:
-        return {"error": None, "pending": _pending(request, sources)}
-    except StlError as error:
-        return {"error": told(error, sources)}
-
-
-def _pending(request: Request, sources: Sources) -> list[list[Any]] | None:
-    result = _result(request, sources)
-    clock, watched = Clock.of(result.trace), inner(result.specification)
-    now, horizon = clock.end if request.at is None else request.at, watched.horizon
+def _pending(replay: Replay, clock: Clock, now: float) -> list[list[Any]] | None:
+    result, watched = replay.result, replay.watched
+    horizon = watched.horizon
     if not isfinite(horizon):
         return None
     monitor = watched.monitor(verdict="interval", at="every", time=result.trace.domain)
@@ -85,17 +136,12 @@ def _result(request: Request, sources: Sources) -> Result:
     return result
 
 
-def _bounds(result: Result, width: int) -> dict[str, Any]:
-    known = band(result)
-    positions, lower, upper = known.positions, known.lower, known.upper
-    if len(positions) > 2 * width:
-        both = [extremes(positions, each, width) for each in (lower, upper)]
-        kept = np.flatnonzero(np.bincount(np.concatenate(both)))
-        positions, lower, upper = positions[kept], lower[kept], upper[kept]
+def _bounds(known: Band, width: int, view: View | None) -> dict[str, Any]:
+    kept = kept_in(known.positions, (known.lower, known.upper), width, view)
     return {
-        "x": positions.tolist(),
-        "lower": numbers(lower),
-        "upper": numbers(upper),
+        "x": known.positions[kept].tolist(),
+        "lower": numbers(known.lower[kept]),
+        "upper": numbers(known.upper[kept]),
         "decided": known.decided,
     }
 
@@ -121,11 +167,11 @@ def _rows(
         yield position, round(position - start, 9), rows[position]
 
 
-def _runs(watched: Specification, result: Result, clock: Clock, width: int) -> list[list[Any]]:
+def _runs(watched: Specification, result: Result, clock: Clock) -> list[Run]:
     """Return intervals with their verdict and the position of the sample that decided it; None: the end did."""
     domain: Any = result.trace.domain
     monitor: Any = watched.monitor(verdict="eager", time=domain)
-    found: list[tuple[float, float, bool, float | None]] = []
+    found: list[Run] = []
     start, dense = clock.start, result.trace.domain.continuous
     step = 0.0 if dense else float(result.trace.step)
 
@@ -139,10 +185,16 @@ def _runs(watched: Specification, result: Result, clock: Clock, width: int) -> l
         take(monitor.update(seconds, **row), position)
     take(monitor.finish(), None)
     found.sort(key=lambda each: each[:2])
-    return _merged(found, width)
+    return found
 
 
-def _merged(found: list[tuple[float, float, bool, float | None]], width: int) -> list[list[Any]]:
+def _in_view(found: list[Run], view: View | None) -> list[Run]:
+    if view is None:
+        return found
+    return [each for each in found if each[1] >= view[0] and each[0] <= view[1]]
+
+
+def _merged(found: list[Run], width: int) -> list[list[Any]]:
     """Return few runs: of those in one pixel, whether all are satisfied, and when that was known."""
     if len(found) <= 2 * width:
         return [list(each) for each in found]

@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, TraceError
 from rtamt.lazy_dataclasses import dataclass
-from rtamt.play.reduced import line
 from rtamt.readers.read import read
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
 
@@ -67,13 +64,3 @@ class Recordings:
             "signals": [{"name": name, "unit": units.get(name, "")} for name in trace.names],
             "notes": [file.said(note) for note in trace.notes],
         }
-
-
-def drawn_lines(
-    channels: Mapping[str, tuple[Any, Any]], units: Mapping[str, str], width: int
-) -> list[dict[str, Any]]:
-    """Return signals as lines to draw."""
-    return [
-        {"name": name, "unit": units.get(name, ""), **line(positions, values, width)}
-        for name, (positions, values) in channels.items()
-    ]

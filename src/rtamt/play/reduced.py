@@ -8,23 +8,54 @@ from typing import TYPE_CHECKING, Any
 from rtamt.lazy_numpy import np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
+    View = tuple[float, float]
 
-def line(positions: NDArray[np.float64], values: NDArray[np.float64], width: int) -> dict[str, Any]:
+
+def line(
+    positions: NDArray[np.float64], values: NDArray[np.float64], width: int, view: View | None = None
+) -> dict[str, Any]:
     """Return the points to draw: all, or of each of ``width`` parts of the time the lowest and the highest.
 
+    ``view``: begin and end of the time that is seen, None for all of it; see :func:`kept_in`.
+
     >>> import numpy as np
-    >>> line(np.arange(8.0), np.array([0.0, 9, 1, 2, -5, 3, 4, 5]), 2)
-    {'x': [0.0, 1.0, 4.0, 7.0], 'y': [0.0, 9.0, -5.0, 5.0], 'points': 8, 'low': -5.0, 'high': 9.0}
+    >>> values = np.array([0.0, 9, 1, 2, -5, 3, 4, 5])
+    >>> line(np.arange(8.0), values, 2)
+    {'x': [0.0, 1.0, 4.0, 7.0], 'y': [0.0, 9.0, -5.0, 5.0], 'points': 8}
+    >>> line(np.arange(8.0), values, 2, (2.5, 4.5))
+    {'x': [2.0, 3.0, 4.0, 5.0], 'y': [1.0, 2.0, -5.0, 3.0], 'points': 8}
     """
-    finite = values[np.isfinite(values)]
-    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (None, None)
-    count = len(values)
-    if count > 2 * width:
-        kept = extremes(positions, values, width)
-        positions, values = positions[kept], values[kept]
-    return {"x": positions.tolist(), "y": numbers(values), "points": count, "low": low, "high": high}
+    kept = kept_in(positions, (values,), width, view)
+    return {"x": positions[kept].tolist(), "y": numbers(values[kept]), "points": len(values)}
+
+
+def kept_in(
+    positions: NDArray[np.float64], lines: Sequence[NDArray[np.float64]], width: int, view: View | None
+) -> NDArray[np.intp]:
+    """Return the indices of the points to draw of lines over the same positions.
+
+    Beside those in the view they are the one before it and the one after it, to which the lines lead.
+    """
+    first, last = 0, len(positions)
+    if view is not None:
+        first, last = (
+            int(np.searchsorted(positions, view[0])),
+            int(np.searchsorted(positions, view[1], "right")),
+        )
+    inside = np.arange(first, last)
+    if last - first > 2 * width:
+        seen = positions[first:last]
+        shown = np.zeros(last - first, bool)
+        for values in lines:
+            shown[extremes(seen, values[first:last], width)] = True
+        inside = first + np.flatnonzero(shown)
+    beside = [k for k in (first - 1, last) if 0 <= k < len(positions)]
+    kept: NDArray[np.intp] = np.sort(np.append(inside, beside).astype(np.intp))
+    return kept
 
 
 def extremes(positions: NDArray[np.float64], values: NDArray[np.float64], width: int) -> NDArray[np.intp]:

@@ -10,6 +10,7 @@ import importlib.util
 import json
 import os
 import secrets
+from contextlib import suppress
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
@@ -84,7 +85,7 @@ def application(place: Place) -> Any:
     """Return the ASGI application of a server; raises :class:`UsageError` where starlette is not installed."""
     starlette = {
         name: library(f"starlette.{name}", "rtamt play", "play")
-        for name in ("applications", "responses", "routing")
+        for name in ("applications", "requests", "responses", "routing")
     }
     response, route = starlette["responses"].Response, starlette["routing"].Route
 
@@ -127,12 +128,15 @@ def application(place: Place) -> Any:
         if suffix not in SUFFIXES:
             return refused(400, f"'{name}' is no recording: its name ends in none of {', '.join(SUFFIXES)}")
         path = os.path.join(place.folder, f"{place.newest + 1}-{secrets.token_hex(4)}{suffix}")
-        with open(path, "xb") as file:
-            if await _body(request, MOST_UPLOAD, file.write) is None:
+        whole = False
+        try:
+            with open(path, "xb") as file:
+                whole = await _body(request, MOST_UPLOAD, file.write) is not None
+        finally:
+            if not whole:
                 os.unlink(path)
-                return refused(
-                    413, f"'{name}' has more than {MOST_UPLOAD} bytes; give it on the command line"
-                )
+        if not whole:
+            return refused(413, f"'{name}' has more than {MOST_UPLOAD} bytes; give it on the command line")
         found = place.add(path, name, ours=True)
         return answer(*await place.crew.ask("recording", {}, found))
 
@@ -157,15 +161,16 @@ def application(place: Place) -> Any:
             route("/{token}/file/{number:int}", file),
         ]
     )
-    return Guard(app, place)
+    return Guard(app, place, starlette["requests"].ClientDisconnect)
 
 
 class Guard:
     """Passes on requests that bring the token, under the name of the server, from its own page."""
 
-    def __init__(self, app: Any, place: Place) -> None:
+    def __init__(self, app: Any, place: Place, gone: type[Exception]) -> None:
         self._app = app
         self._place = place
+        self._gone = gone
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request; see the ASGI specification."""
@@ -188,7 +193,9 @@ class Guard:
             await with_headers({"type": "http.response.start", "status": 403, "headers": headers})
             await send({"type": "http.response.body", "body": body})
         else:
-            await self._app(scope, receive, with_headers)
+            # A client may leave before the end of its request, such as a page that is closed during an upload.
+            with suppress(self._gone):
+                await self._app(scope, receive, with_headers)
 
     def _wrong(self, scope: Scope) -> str:
         """Return why a request is refused, in one sentence; "" if it is not."""

@@ -132,6 +132,9 @@ def test_of_several_requirements_the_first_violated_one_is_explained_unless_anot
         ({"recording": "../a.csv"}, "'recording' must be a number that the server gave, or null"),
         ({"resample": "cubic"}, "'resample' is 'cubic'; it must be hold, linear or empty"),
         ({"focus": 3}, "'focus' must be the name of a requirement, or null"),
+        ({"view": 3}, "'view' must be two times, or null"),
+        ({"view": [1, "2"]}, "'view' must be a finite number"),
+        ({"view": [2, 2]}, "'view' must begin before it ends"),
         ({"text": "x" * 200_001}, "'text' has 200001 characters; at most 200000 are allowed"),
     ],
 )
@@ -246,6 +249,65 @@ def test_pending_instants_have_intervals_that_contain_their_value(desk):
         assert float(low) <= final.signal.values[int(time)] <= float(high)
 
 
+def test_at_the_cursor_the_bounds_and_the_number_of_open_instants_are_those_of_the_replay(desk):
+    replay = desk.answer("replay", MESSAGE)
+    for at in (-1, 0, 3.5, 20, 30):
+        known = desk.answer("moment", {**MESSAGE, "at": at})
+        bounds = [
+            list(pair)
+            for x, *pair in zip(*(replay["bounds"][name] for name in ("x", "lower", "upper")), strict=True)
+            if x <= at
+        ]
+        assert known["bounds"] == (bounds[-1] if bounds else None)
+        assert known["open"] == sum(
+            begin <= at < (30 if decided is None else decided) for begin, _, _, decided in replay["runs"]
+        )
+
+
+VIEW = {**MESSAGE, "text": "always(x <= 8)", "period": "10ms", "duration": 100, "width": 50}
+VIEW["signals"] = {"x": {"points": [[k / 2, k % 10] for k in range(200)], "hold": False}}
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_part_of_the_time_is_drawn_in_full_detail(desk, time):
+    message = {**VIEW, "time": time}
+    whole = desk.answer("evaluate", message)
+    near = desk.answer("redraw", {**message, "view": [20.005, 20.205]})["near"]
+    assert (whole["error"], whole["near"], near["view"]) == (None, None, (20.005, 20.205))
+    (line,) = near["lines"]
+    assert line["x"] == pytest.approx([20 + k / 100 for k in range(22)])  # one more at each side
+    assert line["points"] == whole["lines"][0]["points"]
+    assert len(whole["lines"][0]["x"]) <= 2 * VIEW["width"]
+    for begin, end in desk.answer("redraw", {**message, "view": [40, 60]})["near"]["fails"]:
+        assert end >= 40
+        assert begin <= 60
+        assert [begin, end] in whole["fails"]
+    # An evaluation has both.
+    assert desk.answer("evaluate", {**message, "view": [20.005, 20.205]}) == {**whole, "near": near}
+
+
+def test_a_part_of_the_replay_is_drawn_in_full_detail(desk):
+    whole = desk.answer("replay", VIEW)
+    near = desk.answer("rewatch", {**VIEW, "view": [20, 20.2]})["near"]
+    assert [begin for begin, *_ in near["runs"]] == pytest.approx([19.99 + k / 100 for k in range(22)])
+    assert near["bounds"]["x"] == pytest.approx([19.99 + k / 100 for k in range(23)])
+    assert near["bounds"]["decided"] == whole["bounds"]["decided"] == 4.01
+    assert len(whole["runs"]) <= VIEW["width"]
+
+
+def test_what_is_drawn_follows_the_text_and_the_signals(desk):
+    for text in ("always(x <= 8)", "always(x <= 7)"):
+        message = {**VIEW, "text": text}
+        view = {**message, "view": [0, 1]}
+        near = desk.answer("redraw", view)["near"]
+        assert near["fails"] == []
+        assert near["robustness"]["y"][0] == pytest.approx(8 - 9 - (text[-2] == "7"))
+        assert desk.answer("rewatch", view)["near"]["bounds"]["lower"][-1] == "-Infinity"
+    wrong = {**VIEW, "text": "always(x <= )"}
+    for kind in ("redraw", "rewatch", "moment"):
+        assert desk.answer(kind, wrong)["error"]["message"] == "expected an operand after '<=', got ')'"
+
+
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_groups_and_enumerations_of_a_recording_are_evaluated_and_replayed(desk, tmp_path, time):
     path = tmp_path / "traffic.csv"
@@ -263,7 +325,7 @@ def test_groups_and_enumerations_of_a_recording_are_evaluated_and_replayed(desk,
         assert (answer["error"], answer["verdict"], answer["first"]) == (None, verdict, first)
         assert answer["fails"][0][0] == first
         assert desk.answer("replay", message, file)["bounds"]["decided"] == first
-        assert desk.answer("moment", message, file) == {"error": None, "pending": []}
+        assert desk.answer("moment", message, file)["pending"] == []
 
 
 def test_missing_samples_leave_bounds_and_maybe_no_verdict(desk, tmp_path):

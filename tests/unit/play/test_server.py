@@ -3,6 +3,7 @@
 import asyncio
 import json
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -41,7 +42,8 @@ class Client:
     def send(self, method, path, body=b"", **headers):
         return self.run(self.sending(method, path, body, **headers))
 
-    async def sending(self, method, path, body=b"", **headers):
+    async def sending(self, method, path, body=b"", *, leaves=False, **headers):
+        """Send a request; a client that ``leaves`` does so before its end."""
         found = []
         names = {"host": HOST, **({"origin": ORIGIN} if method == "POST" else {}), **headers}
         scope = {
@@ -60,8 +62,10 @@ class Client:
         parts = [body[i : i + 65536] for i in range(0, len(body), 65536)] or [b""]
 
         async def receive():
+            if not parts:
+                return {"type": "http.disconnect"}
             part = parts.pop(0)
-            return {"type": "http.request", "body": part, "more_body": bool(parts)}
+            return {"type": "http.request", "body": part, "more_body": leaves or bool(parts)}
 
         async def send(message):
             found.append(message)
@@ -180,6 +184,14 @@ def test_a_recording_is_uploaded_evaluated_and_given_back(client):
     assert (answer["verdict"], answer["interval"]) == ("violated", [-1, -1])
     assert client.send("GET", f"/secret/file/{found['number']}")[2] == data
     assert client.place.folder not in json.dumps([found, answer])
+
+
+def test_a_client_that_leaves_during_its_request_leaves_nothing_behind(client):
+    for path in ("upload", "ask/evaluate"):
+        client.send("POST", f"/secret/{path}", b"time,x\n0,5\n", x_name="half.csv", leaves=True)
+    kept = {each["path"] for each in client.place.files.values() if each["ours"]}
+    assert {str(path) for path in Path(client.place.folder).iterdir()} == kept
+    assert client.ask("evaluate", MESSAGE)[1]["verdict"] == "violated"
 
 
 def test_what_is_no_recording_is_refused_by_its_name(client):

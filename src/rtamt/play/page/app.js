@@ -3,10 +3,11 @@
 import { Editor } from "./editor.js";
 import { decode, encode, fromBase64, toBase64 } from "./link.js";
 import { OverTime } from "./online.js";
-import { Chart, room } from "./chart.js";
+import { Chart, room, seen } from "./chart.js";
 import { bytesOf, cancel, Follower, ask, start, upload } from "./server.js";
 import { Signal } from "./signal.js";
 import { Verdict } from "./verdict.js";
+import { View } from "./view.js";
 
 const $ = (id) => document.getElementById(id);
 const EXAMPLE = {
@@ -21,13 +22,14 @@ const state = { text: "", time: "discrete", period: "1s", duration: 30, signals:
 const named = (signals) => Object.assign(Object.create(null), signals); // any name, even __proto__
 state.signals = named({});
 let answer = null; // the last one without an error
+let changes = 0; // of what is evaluated
 let charts = new Map();
 
 const width = () => Math.max($("charts").clientWidth - 68, 100);
 
 const wish = (more = {}) => ({
   text: state.text, time: state.time, period: state.period, duration: state.duration, resample: state.resample, focus: state.focus,
-  signals: state.recording ? {} : state.signals, recording: state.recording?.number ?? null, width: width(), ...more,
+  signals: state.recording ? {} : state.signals, recording: state.recording?.number ?? null, width: width(), view: view.part, change: changes, ...more,
 });
 
 const toast = (text) => {
@@ -39,17 +41,46 @@ const toast = (text) => {
 
 // ---- answers
 
-const evaluation = new Follower("evaluate", () => wish(), (found, begun, { text }) => {
-  if (text !== state.text) return; // places in another text
+const evaluation = new Follower("evaluate", () => wish(), (found, begun, { text, recording }) => {
+  if (text !== state.text || recording !== (state.recording?.number ?? null)) return; // of another text, or other data
   show(found);
   const { dataset } = document.documentElement; // for measurements
   dataset.took = (performance.now() - begun).toFixed(2);
   dataset.updates = Number(dataset.updates || 0) + 1;
 }, 40);
-const replay = new Follower("replay", () => (answer ? wish() : null), (found) => over.replayed(found), 120);
-const moment = new Follower("moment", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found) => over.known(found), 30);
+const replay = new Follower("replay", () => (answer ? wish({ view: null }) : null), (found) => {
+  over.replayed(found);
+  if (view.part) closer.watched.soon(0);
+  if (state.at !== null) moment.soon(0);
+}, 120);
+const moment = new Follower("moment", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found, _, { at, change }) => { if (change === changes) over.known(found, at); }, 30);
+// What is seen of a part of the time, in full detail.
+const closer = {
+  drawn: new Follower("redraw", () => (answer && view.part ? wish() : null), (found, _, { change }) => {
+    if (found.error || change !== changes) return;
+    answer.near = found.near;
+    arrange(answer.variables);
+    over.draw();
+  }, 50),
+  watched: new Follower("rewatch", () => (answer && over.found && !over.found.error && view.part ? wish() : null), (found, _, { change }) => { if (change === changes) over.rewatched(found); }, 100),
+};
+
+const view = new View({
+  at: () => state.at,
+  whole: () => (state.recording || !answer ? [answer?.clock.start ?? 0, answer?.clock.end ?? 1] : [0, state.duration || 1]),
+  viewed: () => {
+    if (!answer) return;
+    arrange(answer.variables);
+    over.draw();
+    point();
+    remember();
+    closer.drawn.soon();
+    closer.watched.soon();
+  },
+});
 
 const changed = ({ delay, kept = true } = {}) => {
+  changes += 1;
   if (kept) remember();
   evaluation.soon(delay);
 };
@@ -57,8 +88,10 @@ const changed = ({ delay, kept = true } = {}) => {
 const editor = new Editor(() => { state.text = editor.text; changed(); });
 const verdict = new Verdict((name) => { state.focus = name; changed({ delay: 0 }); });
 const over = new OverTime({
-  moved: (at) => { state.at = at; point(); moment.soon(); remember(); },
+  moved: (at) => { state.at = at; view.reveal(at); point(); moment.soon(); remember(); },
   at: () => state.at,
+  drawn: () => drawn(),
+  view,
 });
 
 function show(found) {
@@ -79,14 +112,15 @@ function show(found) {
   if (found.error) {
     problem.textContent = where(found.error) + found.error.message;
     verdict.stale();
-    if (found.variables) arrange(found.variables, []);
+    if (found.variables) arrange(found.variables);
     return;
   }
   problem.textContent = found.warnings.length ? found.warnings.map((each) => `${each.code}: ${each.message}`).join("\n") : `Horizon ${found.horizon === "Infinity" ? "∞" : found.horizon} · ${found.samples} samples`;
   answer = found;
+  view.fit();
   $("period").placeholder = found.step === null ? "inferred" : `${Number(found.step.toPrecision(6))} s`;
   verdict.show(found);
-  arrange(found.variables, found.lines);
+  arrange(found.variables);
   over.evaluated(found);
   point();
   replay.soon();
@@ -117,6 +151,8 @@ function provide(names) {
 // ---- signals
 
 const page = {
+  view,
+  get times() { return view.times; },
   get duration() { return state.duration; },
   get period() { return state.time === "dense" ? (answer?.period ?? 1) / 10 : answer?.period ?? 1; },
   cursor: () => state.at,
@@ -124,7 +160,10 @@ const page = {
   change: (name, model, final) => { provided.delete(name); state.signals[name] = model; changed({ delay: 0, kept: final }); },
 };
 
-function arrange(names, lines) {
+// What is drawn: in detail as far as that is known, else of all of the time.
+const drawn = () => (answer && view.has(answer.near) ? answer.near : answer);
+
+function arrange(names) {
   const key = JSON.stringify([names, state.recording?.number ?? null]);
   if (arrange.key !== key) {
     arrange.key = key;
@@ -140,7 +179,7 @@ function arrange(names, lines) {
   for (const [name, chart] of charts) {
     chart.levels = answer?.thresholds?.[name] || [];
     chart.because = answer?.explanation?.because?.[name] || [];
-    if (state.recording) chart.data = lines.find((each) => each.name === name) || chart.data;
+    if (state.recording) chart.data = drawn()?.lines.find((each) => each.name === name) || chart.data;
     chart.draw();
   }
   $("source").textContent = state.recording ? `${state.recording.name} · ${state.recording.samples} samples${since()}` : "";
@@ -169,7 +208,8 @@ class Recorded {
   draw() {
     if (!this.data || !answer) return;
     this.unit.textContent = this.data.unit;
-    this.chart.frame([answer.clock.start, answer.clock.end], room([...this.data.y.map(Number), ...this.levels]));
+    const part = seen(this.data.x, view.times);
+    this.chart.frame(view.times, room([...this.data.y.slice(...part).map(Number), ...this.levels]));
     for (const [from, to] of this.because) this.chart.band(from, to, "because");
     for (const level of this.levels) this.chart.level(level);
     this.chart.line(this.data.x, this.data.y, { held: answer.dense, dots: true });
@@ -188,6 +228,7 @@ function use(recording) {
   state.recording = recording;
   state.period = "";
   state.at = null;
+  view.take(null);
   settings();
   changed({ delay: 0 });
 }
@@ -223,7 +264,7 @@ function settings() {
 
 // ---- the link
 
-const kept = () => ({ ...state, recording: state.recording && { number: state.recording.number, name: state.recording.name } });
+const kept = () => ({ ...state, view: view.part, recording: state.recording && { number: state.recording.number, name: state.recording.name } });
 
 const remember = () => {
   clearTimeout(remember.timer);
@@ -261,6 +302,7 @@ async function restore(saved) {
     else state.recording = found;
   }
   for (const name of ["period", "at", "focus"]) if (name in saved) state[name] = saved[name];
+  view.take(saved.view ?? null);
 }
 
 // ---- the controls
@@ -269,7 +311,7 @@ for (const each of document.querySelectorAll("input[name=time]")) each.addEventL
 $("period").addEventListener("input", () => { state.period = $("period").value; changed(); });
 $("duration").addEventListener("input", () => {
   const seconds = $("duration").valueAsNumber;
-  if (seconds >= 0) { state.duration = seconds; state.at = null; changed(); }
+  if (seconds >= 0) { state.duration = seconds; state.at = null; view.take(null); changed(); }
 });
 $("resample").addEventListener("change", () => { state.resample = $("resample").value; changed({ delay: 0 }); });
 $("upload").addEventListener("change", async (event) => {
@@ -281,6 +323,7 @@ $("draw").addEventListener("click", () => {
   state.recording = null;
   state.period ||= "1s";
   state.at = null;
+  view.take(null);
   settings();
   changed({ delay: 0 });
 });
@@ -293,9 +336,12 @@ addEventListener("drop", (event) => {
   if (file) load(file);
 });
 new ResizeObserver(() => {
+  for (const { chart } of charts.values()) chart.measure();
+  over.measure();
   if (!answer) return;
-  arrange(answer.variables, answer.lines);
+  arrange(answer.variables);
   over.draw();
+  point();
 }).observe($("charts"));
 
 for (const button of document.querySelectorAll("[data-wanted]")) {
@@ -311,6 +357,7 @@ for (const button of document.querySelectorAll("[data-wanted]")) {
     if (!found.signals) return;
     Object.assign(state, { recording: null, period: `${found.period}s`, duration: found.duration, at: null, focus: null });
     Object.assign(state.signals, found.signals);
+    view.take(null);
     settings();
     changed({ delay: 0 });
   });

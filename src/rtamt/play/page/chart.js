@@ -40,6 +40,20 @@ export const room = (values) => {
   return [low - pad, high + pad];
 };
 
+// Enough digits to tell neighbouring ticks apart.
+const digitsOf = (times) => {
+  const [low, high] = [times[0], times.at(-1)], step = (high - low) / Math.max(times.length - 1, 1);
+  return Math.min(Math.max(Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (step || 1))) + 2, 6), 15);
+};
+
+// The points of a line in a part of the time, with the one before it and the one after it.
+export const seen = (x, [from, to]) => {
+  const first = Math.max(x.findIndex((each) => each >= from) - 1, 0), last = x.findLastIndex((each) => each <= to) + 2;
+  return x.length && x[x.length - 1] < from ? [x.length - 1, x.length] : [first, last];
+};
+
+let charts = 0;
+
 export class Chart {
   // `options`: height, label, axis (whether there are times under it).
   constructor(host, { height, label, axis = false }) {
@@ -48,21 +62,29 @@ export class Chart {
     this.axis = axis;
     this.svg = svg("svg", { class: "chart", height: this.height, role: "group", "aria-label": label });
     this.layers = {};
+    this.hole = svg("rect", { y: 0, height: this.height });
+    const clip = svg("clipPath", { id: `clip-${++charts}` });
+    clip.append(this.hole);
+    this.svg.append(clip);
     for (const name of ["grid", "under", "lines", "over", "handles"]) {
       this.layers[name] = svg("g", { class: name });
       this.svg.append(this.layers[name]);
     }
+    for (const name of ["under", "lines"]) this.layers[name].setAttribute("clip-path", `url(#${clip.id})`);
     this.cursor = svg("line", { class: "cursor" });
     this.layers.over.before(this.cursor);
     host.append(this.svg);
     this.times = [0, 1];
     this.values = [0, 1];
+    this.measure();
   }
 
-  get width() { return Math.max(this.host.clientWidth, 160); }
-
-  get plot() {
-    return { left: GUTTER, right: this.width - RIGHT, top: TOP, bottom: this.height - BOTTOM - (this.axis ? AXIS : 0) };
+  // Take the width of the place; reading it while charts are drawn would lay out the page for each of them.
+  measure() {
+    this.width = Math.max(this.host.clientWidth, 160);
+    this.plot = { left: GUTTER, right: this.width - RIGHT, top: TOP, bottom: this.height - BOTTOM - (this.axis ? AXIS : 0) };
+    this.svg.setAttribute("width", this.width);
+    for (const [key, value] of Object.entries({ x: this.plot.left - 1, width: this.plot.right - this.plot.left + 2 })) this.hole.setAttribute(key, value);
   }
 
   x(time) {
@@ -90,13 +112,13 @@ export class Chart {
   // Begin a drawing: the grid of times and values.
   frame(times, values, names = true) {
     Object.assign(this, { times, values });
-    this.svg.setAttribute("width", this.width);
     for (const layer of ["grid", "under", "lines", "over", "handles"]) this.layers[layer].replaceChildren();
     const { left, right, top, bottom } = this.plot, { grid } = this.layers;
-    for (const time of ticks(...times, (right - left) / 90)) {
+    const marks = ticks(...times, (right - left) / 90), digits = marks.length ? digitsOf(marks) : 6;
+    for (const time of marks) {
       const x = this.x(time);
       grid.append(svg("line", { x1: x, x2: x, y1: top, y2: bottom }));
-      if (this.axis) grid.append(svg("text", { x, y: bottom + 16, class: "time" }, number(time, 6)));
+      if (this.axis) grid.append(svg("text", { x, y: bottom + 16, class: "time" }, number(time, digits)));
     }
     if (names) {
       for (const value of ticks(...values, (bottom - top) / 26)) {
@@ -142,8 +164,11 @@ export class Chart {
     this.layers.under.append(svg("rect", { x, y: top, width: Math.max(Math.min(this.x(to), this.plot.right) - x, 1.5), height: bottom - top, class: kind }));
   }
 
+  // Whether a time is in view.
+  has(time) { return this.times[0] <= time && time <= this.times[1]; }
+
   point(time) {
-    const { top, bottom } = this.plot, shown = time !== null;
+    const { top, bottom } = this.plot, shown = time !== null && this.has(time);
     this.cursor.classList.toggle("shown", shown);
     if (!shown) return;
     const x = this.x(time);

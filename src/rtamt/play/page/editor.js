@@ -114,7 +114,6 @@ export class Editor {
     const place = this.placeOf(this.from);
     this.list.style.left = `${Math.max(0, Math.min(place.left, this.mirror.clientWidth - this.list.offsetWidth))}px`;
     this.list.style.top = `${place.bottom + 4}px`;
-    this.area.setAttribute("aria-expanded", "true");
     this.area.setAttribute("aria-activedescendant", `word-${this.chosen}`);
   }
 
@@ -137,7 +136,6 @@ export class Editor {
   close() {
     this.found = [];
     this.list.hidden = true;
-    this.area.setAttribute("aria-expanded", "false");
     this.area.removeAttribute("aria-activedescendant");
   }
 

@@ -47,6 +47,7 @@ const KINDS = {
   recording: (value) => isNothing(value) || (typeof value === "object" && isRecording(value)),
   focus: (value) => isNothing(value) || isText(value),
   at: (value) => isNothing(value) || isNumber(value),
+  view: (value) => isNothing(value) || (Array.isArray(value) && value.length === 2 && value.every(isNumber) && value[0] < value[1]),
 };
 const isState = (data) => data !== null && typeof data === "object" && Object.entries(KINDS).every(([name, is]) => !(name in data) || is(data[name]));
 

@@ -1,19 +1,20 @@
 // Robustness over time, and what an online monitor knows while the samples arrive.
 
-import { Chart, number, room, svg } from "./chart.js";
+import { Chart, number, room, seen, svg } from "./chart.js";
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 1000;
 const LASTS = 8000; // milliseconds in which a recording is played
 
 export class OverTime {
-  // `page`: moved(at) and at().
+  // `page`: moved(at), at(), drawn() and view.
   constructor(page) {
     this.page = page;
     this.values = new Chart($("robustness"), { height: 110, label: "Robustness of the formula over time" });
     this.strip = new Chart($("online"), { height: 34, label: "Verdict of each instant" });
     this.bounds = new Chart($("online"), { height: 110, label: "Bounds of the robustness at the start", axis: true });
-    this.answer = this.found = this.pending = null;
+    // The last evaluation; the replay, all of it and what is seen of it; and what was known at the cursor.
+    this.answer = this.found = this.near = this.moment = null;
     for (const chart of [this.values, this.strip, this.bounds]) this.listen(chart);
     $("at").addEventListener("input", () => { this.stop(); this.move(this.timeOf($("at").value / STEPS)); });
     $("play").addEventListener("click", () => (this.playing ? this.stop() : this.start()));
@@ -23,8 +24,8 @@ export class OverTime {
   listen(chart) {
     let pressed = false;
     const move = (event) => { if (pressed) { this.stop(); this.move(chart.timeAt(event.clientX)); } };
-    chart.svg.style.cursor = "ew-resize";
-    chart.svg.style.touchAction = "pan-y";
+    chart.svg.classList.add("moving");
+    this.page.view.listen(chart, () => { pressed = false; });
     chart.svg.addEventListener("pointerdown", (event) => { pressed = true; chart.svg.setPointerCapture(event.pointerId); move(event); });
     chart.svg.addEventListener("pointermove", move);
     for (const end of ["pointerup", "pointercancel"]) chart.svg.addEventListener(end, () => { pressed = false; });
@@ -37,7 +38,7 @@ export class OverTime {
   }
 
   move(at) {
-    this.pending = null;
+    this.moment = null;
     const end = this.answer?.clock.end;
     this.page.moved(at === null || at >= end ? null : at);
   }
@@ -66,21 +67,25 @@ export class OverTime {
 
   // ---- answers
 
-  evaluated(answer) { this.answer = answer; this.pending = null; this.draw(); }
+  evaluated(answer) { this.answer = answer; this.moment = null; this.draw(); }
 
-  replayed(found) { this.found = found; this.drawOnline(); this.tell(); }
+  replayed(found) { this.found = found; this.near = null; this.drawOnline(); this.tell(); }
 
-  known(found) { this.pending = found.error ? null : found.pending; this.drawOnline(); }
+  rewatched(found) { this.near = found.error ? null : found.near; this.drawOnline(); }
+
+  known(found, at) { this.moment = found.error ? null : { ...found, at }; this.drawOnline(); this.tell(); }
 
   // ---- drawing
 
-  get times() { return [this.answer.clock.start, this.answer.clock.end]; }
+  get times() { return this.page.view.times; }
+
+  measure() { for (const chart of [this.values, this.strip, this.bounds]) chart.measure(); }
 
   draw() {
     if (!this.answer) return;
-    const { robustness, upper, fails, explanation } = this.answer, { values } = this;
-    const all = [...robustness.y, ...(upper ? upper.y : []), 0].map(Number);
-    values.frame(this.times, room(all));
+    const { robustness, upper, fails } = this.page.drawn(), { explanation } = this.answer, { values } = this;
+    const part = seen(robustness.x, this.times);
+    values.frame(this.times, room([...robustness.y.slice(...part), ...(upper ? upper.y.slice(...part) : []), 0].map(Number)));
     for (const [from, to] of fails) values.band(from, to, "fails");
     values.level(0, "zero");
     if (upper) values.area(robustness.x, robustness.y, upper.y, "known");
@@ -90,6 +95,7 @@ export class OverTime {
   }
 
   diamond(chart, time, { x: times, y: values }) {
+    if (!chart.has(time)) return;
     const last = Math.max(times.findLastIndex((each) => each <= time), 0);
     const x = chart.x(time), y = chart.y(Number(values[last]));
     chart.layers.over.append(svg("path", { d: `M${x} ${y - 5}l5 5l-5 5l-5 -5Z`, class: "critical" }));
@@ -97,7 +103,7 @@ export class OverTime {
 
   drawOnline() {
     if (!this.answer) return;
-    const { found, strip, bounds } = this, [, end] = this.times, now = this.page.at() ?? Infinity;
+    const { found, strip, bounds } = this, { end } = this.answer.clock, now = this.page.at() ?? Infinity;
     strip.frame(this.times, [0, 1], false);
     if (!found || found.error) {
       bounds.frame(this.times, [-1, 1], false);
@@ -105,21 +111,23 @@ export class OverTime {
       return;
     }
     $("watched").textContent = found.formula;
-    for (const [from, to, good, decided] of found.runs) {
+    const [first, last] = this.times, shown = this.page.view.has(this.near) ? this.near : found;
+    for (const [from, to, good, decided] of shown.runs) {
+      if (to < first || from > last) continue;
       if (from > now) { strip.band(from, Math.min(to, end), "run-later"); continue; }
       const open = decided === null ? now < end : decided > now;
       strip.band(from, Math.min(to, end), open ? "run-open" : good ? "run-good" : "run-bad");
     }
-    this.drawBounds(now);
+    this.drawBounds(shown.bounds, now);
     this.point();
   }
 
-  drawBounds(now) {
-    const { x, lower, upper } = this.found.bounds, { bounds } = this;
+  drawBounds({ x, lower, upper }, now) {
+    const { bounds } = this;
     const until = x.findLastIndex((each) => each <= now) + 1;
     const low = lower.slice(0, until), high = upper.slice(0, until);
-    const waiting = this.pending || [];
-    bounds.frame(this.times, room([...lower, ...upper, ...waiting.flatMap(([, a, b]) => [a, b]), 0].map(Number)));
+    const waiting = (this.moment?.pending || []).filter(([time]) => bounds.has(time)), part = seen(x, this.times);
+    bounds.frame(this.times, room([...lower.slice(...part), ...upper.slice(...part), ...waiting.flatMap(([, a, b]) => [a, b]), 0].map(Number)));
     bounds.level(0, "zero");
     if (until > 0) bounds.area(x.slice(0, until), low, high, "known");
     for (const [time, a, b] of waiting) {
@@ -130,7 +138,7 @@ export class OverTime {
 
   point() {
     if (!this.answer) return;
-    const at = this.page.at(), [start, end] = this.times;
+    const at = this.page.at(), { start, end } = this.answer.clock;
     for (const chart of [this.values, this.strip, this.bounds]) chart.point(at);
     $("at").value = at === null ? STEPS : Math.round(((at - start) / (end - start || 1)) * STEPS);
     this.tell();
@@ -141,10 +149,13 @@ export class OverTime {
     const { found } = this;
     if (!found) return;
     if (found.error) { $("now").textContent = found.error.message; $("watched").textContent = ""; return; }
-    const at = this.page.at(), [, end] = this.times, now = at ?? end;
+    const at = this.page.at(), { end } = this.answer.clock, now = at ?? end;
     const { x, lower, upper, decided } = found.bounds, last = x.findLastIndex((each) => each <= now);
-    const open = found.runs.filter(([from, , , known]) => from <= now && (known === null ? now < end : known > now)).length;
-    const between = last < 0 ? "nothing is known" : lower[last] === upper[last] ? `robustness ${number(lower[last])}` : `robustness between ${number(lower[last])} and ${number(upper[last])}`;
+    // Of long recordings, the replay has some of the samples, and this moment is exact.
+    const exact = this.moment?.at === at ? this.moment : null;
+    const known = exact ? exact.bounds : last < 0 ? null : [lower[last], upper[last]];
+    const open = exact ? exact.open : found.runs.filter(([from, , , settled]) => from <= now && now < (settled ?? end)).length;
+    const between = known === null ? "nothing is known" : known[0] === known[1] ? `robustness ${number(known[0])}` : `robustness between ${number(known[0])} and ${number(known[1])}`;
     const settled = decided !== null && decided <= now ? `decided at ${number(decided, 6)} s` : at === null ? "decided by the end of the trace" : "not decided yet";
     const text = at === null
       ? `All samples: robustness ${number(this.answer.interval[0])}, ${settled}`

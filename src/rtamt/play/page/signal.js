@@ -18,7 +18,7 @@ export const SHAPES = {
 };
 
 export class Signal {
-  // `page`: duration, period, changed(name, final) and remove(name).
+  // `page`: duration, period, times, cursor(), model(name), change(name, model, final) and view.
   constructor(name, host, page) {
     Object.assign(this, { name, host, page, chosen: 0, levels: [], because: [], drag: null });
     this.build();
@@ -31,13 +31,15 @@ export class Signal {
     space.className = "spacer";
     head.append(title, space);
     for (const shape of Object.keys(SHAPES)) head.append(this.button(shape, `${shape}: replace ${this.name} by a ${shape}`, () => this.reshape(shape)));
-    this.holding = this.button("", `how values of ${this.name} continue between points`, () => this.toggle());
+    this.holding = this.button("", "", () => this.toggle());
     head.append(this.holding);
     this.place = document.createElement("div");
     this.host.append(head, this.place);
     this.chart = new Chart(this.place, { height: 96, label: `Signal ${this.name}` });
     const { svg: root } = this.chart;
     root.classList.add("drawn");
+    root.setAttribute("tabindex", -1);
+    this.page.view.listen(this.chart, () => this.cancel());
     root.addEventListener("pointerdown", (event) => this.down(event));
     root.addEventListener("pointermove", (event) => this.move(event));
     root.addEventListener("pointerup", () => this.up());
@@ -63,24 +65,31 @@ export class Signal {
 
   draw() {
     const { points, hold } = this.model, end = this.page.duration, { chart } = this;
-    const focused = chart.layers.handles.contains(document.activeElement);
+    const focused = chart.svg.contains(document.activeElement);
     this.holding.textContent = hold ? "held" : "lines";
+    this.holding.setAttribute("aria-label", `${this.holding.textContent}: how values of ${this.name} continue between points`);
     if (!this.drag) this.range = room([...points.map((point) => point[1]), ...this.levels, ...(points.length === 1 ? [0] : [])]);
-    chart.frame([0, end || 1], this.range);
+    chart.frame(this.page.times, this.range);
     for (const [from, to] of this.because) chart.band(from, to, "because");
     for (const level of this.levels) chart.level(level);
     const first = points[0], last = points[points.length - 1];
     const shown = [...(first[0] > 0 ? [[0, first[1]]] : []), ...points.filter(([time]) => time <= end), ...(last[0] < end ? [[end, last[1]]] : [])];
     chart.line(shown.map(([time]) => time), shown.map(([, value]) => value), { held: hold });
     chart.point(this.page.cursor());
-    if (points.length <= HANDLES) this.handles(points);
+    this.handles(points);
     if (focused) this.focus();
   }
 
+  // Whether points are few enough in view to be dragged.
+  get few() { return this.model.points.filter(([time]) => this.chart.has(time)).length <= HANDLES; }
+
   handles(points) {
     this.chosen = Math.min(this.chosen, points.length - 1);
-    points.forEach(([time, value], index) => {
-      if (time > this.page.duration) return;
+    if (!this.few) return;
+    const shown = points.map((_, index) => index).filter((index) => points[index][0] <= this.page.duration && this.chart.has(points[index][0]));
+    if (!shown.includes(this.chosen)) this.chosen = shown[0] ?? this.chosen; // what keys change is in view
+    shown.forEach((index) => {
+      const [time, value] = points[index];
       const handle = svg("circle", {
         cx: this.chart.x(time), cy: this.chart.y(value), r: 5, class: "handle", "data-index": index,
         tabindex: index === this.chosen ? 0 : -1, role: "slider",
@@ -91,7 +100,11 @@ export class Signal {
     });
   }
 
-  focus() { this.chart.layers.handles.querySelector(`[data-index="${this.chosen}"]`)?.focus(); }
+  // Without a point in view, the chart itself keeps the focus and so the keys that zoom.
+  focus() {
+    const { svg: root, layers } = this.chart;
+    (layers.handles.querySelector(`[data-index="${this.chosen}"]`) ?? root).focus({ preventScroll: true });
+  }
 
   // ---- changes
 
@@ -160,8 +173,9 @@ export class Signal {
     const box = this.chart.svg.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
     const { points } = this.model;
     let near = -1, least = NEAR;
-    if (points.length <= HANDLES) {
+    if (this.few) {
       points.forEach(([time, value], index) => {
+        if (!this.chart.has(time)) return;
         const distance = Math.hypot(this.chart.x(time) - x, this.chart.y(value) - y);
         if (distance < least) { near = index; least = distance; }
       });
@@ -169,7 +183,7 @@ export class Signal {
     if (near < 0 && x < this.chart.plot.left - NEAR) return;
     event.preventDefault();
     this.chart.svg.setPointerCapture(event.pointerId);
-    this.drag = { index: near, last: null };
+    this.drag = { index: near, last: null, before: this.model };
     if (near < 0) this.pencil(event);
     else this.chosen = near;
     this.focus();
@@ -202,6 +216,14 @@ export class Signal {
     this.focus();
   }
 
+  // What a first finger has drawn is undone when a second one comes.
+  cancel() {
+    if (!this.drag) return;
+    const { before } = this.drag;
+    this.drag = null;
+    this.change(before.points, { hold: before.hold });
+  }
+
   // ---- keys
 
   key(event) {
@@ -219,6 +241,7 @@ export class Signal {
       Backspace: () => this.remove(index),
     }[event.key];
     if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target === this.chart.svg && !/^(Arrow(Left|Right)|Home|End)$/.test(event.key)) return; // no point is in view
     event.preventDefault();
     act();
     this.focus();
@@ -226,6 +249,7 @@ export class Signal {
 
   choose(index) {
     this.chosen = Math.min(Math.max(index, 0), this.model.points.length - 1);
+    this.page.view.reveal(this.model.points[this.chosen][0]);
     this.draw();
   }
 
