@@ -10,12 +10,8 @@ from rtamt.language.formula import Apply, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
-<<<<<<< HEAD
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-=======
 from rtamt.lazy_dataclasses import dataclass, field
->>>>>>> 51ad186 (Zoom and move the charts of rtamt play)
+from rtamt.lazy_numpy import np
 from rtamt.play import drawn
 from rtamt.play.recent import Recent
 from rtamt.play.reduced import line, number

@@ -6,11 +6,8 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
-<<<<<<< HEAD
-from rtamt.lazy_numpy import np
-=======
 from rtamt.lazy_dataclasses import dataclass
->>>>>>> 51ad186 (Zoom and move the charts of rtamt play)
+from rtamt.lazy_numpy import np
 from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
 from rtamt.play.reduced import kept_in, number, numbers, parts
 from rtamt.plot.band import band
