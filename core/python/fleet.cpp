@@ -5,11 +5,17 @@
 #include "calls.hpp"
 #include "fleet_batches.hpp"
 #include "locked_class.hpp"
+#include "numbers.hpp"
+#include "numpy.hpp"
+#include "recording.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <new>
 #include <span>
 #include <string>
@@ -49,6 +55,77 @@ struct OutArrays {
     const fleet::Batch batch{given.span(), times.data(), pointers};
     const auto rejected = without_gil(count, [&] { return self.update(batch, outputs); });
     return rejection_of(rejected);
+}
+
+// What a batch has made known of an output, as numpy has it.
+struct MadeArrays {
+    nb::tuple arrays;
+    fleet::Output output;
+
+    MadeArrays(const NumPy& numpy, std::size_t count) {
+        const NewArray values = numpy.make(count);
+        const NewBools known = numpy.make_bools(count);
+        const NewArray when = numpy.make(count);
+        const NewBools warming = numpy.make_bools(count);
+        arrays = nb::make_tuple(values.array, known.array, when.array, warming.array);
+        output = {values.values(), known.memory, when.values(), warming.memory};
+    }
+};
+
+// Numbers as Python gave them, copied only if they are no doubles one after another.
+class Doubles {
+  public:
+    Doubles(const NumPy& numpy, nb::object object, std::size_t count)
+        : given_(numpy, std::move(object)) {
+        if (given_.count() != count) return;
+        values_ = given_.in_place();
+        if (values_ != nullptr) return;
+        copy_ = std::make_unique_for_overwrite<double[]>(count);
+        if (given_.copy(copy_.get())) values_ = copy_.get();
+    }
+
+    // Null for what has to be converted or rejected.
+    [[nodiscard]] const double* values() const noexcept { return values_; }
+
+  private:
+    Given given_;
+    std::unique_ptr<double[]> copy_;
+    const double* values_ = nullptr;
+};
+
+// The same as update() for numbers that need no conversion, and times that are seconds. Returns
+// what became known of each output, or None, with nothing changed: for other data, and for a batch
+// that update() rejects.
+[[nodiscard]] nb::object take(Fleet& self, const NumPy& numpy, const nb::object& keys,
+                              const nb::object& times, const nb::list& columns) {
+    const GivenKeys given(keys);
+    const std::size_t count = given.span().size();
+    const Doubles moments(numpy, times, count);
+    if (moments.values() == nullptr || columns.size() != self.program().inputs) return nb::none();
+    const std::span seconds(moments.values(), count);
+    if (!std::ranges::all_of(seconds, [](double t) { return std::fabs(t) < implausible; })) {
+        return nb::none();
+    }
+    std::vector<Doubles> held;
+    std::vector<const double*> pointers;
+    held.reserve(columns.size());
+    pointers.reserve(columns.size());
+    for (const nb::handle column : columns) {
+        held.emplace_back(numpy, nb::borrow(column), count);
+        pointers.push_back(held.back().values());
+        if (pointers.back() == nullptr) return nb::none();
+    }
+    nb::list made;
+    std::vector<fleet::Output> outputs;
+    outputs.reserve(self.program().outputs.size());
+    for (std::size_t i = 0; i < self.program().outputs.size(); ++i) {
+        const MadeArrays arrays(numpy, count);
+        made.append(arrays.arrays);
+        outputs.push_back(arrays.output);
+    }
+    const fleet::Batch batch{given.span(), seconds.data(), pointers};
+    if (without_gil(count, [&] { return self.update(batch, outputs); })) return nb::none();
+    return made;
 }
 
 [[nodiscard]] nb::bytes snapshot(const Fleet& self) {
@@ -91,6 +168,16 @@ void add_fleet(const nb::module_& m) {
              nb::arg("outputs"),
              "Take a batch and fill the arrays of each output: values, known, when, warming. "
              "Returns None, or why it was rejected.")
+        .def(
+            "take",
+            [numpy = NumPy()](Fleet& self, const nb::object& keys, const nb::object& times,
+                              const nb::list& columns) {
+                return take(self, numpy, keys, times, columns);
+            },
+            nb::arg("keys"), nb::arg("times").none(), nb::arg("columns"),
+            "Take a batch of arrays or lists of numbers. Returns the same arrays of each output; "
+            "None, "
+            "with nothing changed, for data that has to be converted or rejected.")
         .def(
             "drop",
             [](Fleet& self, const nb::object& keys) { return self.drop(GivenKeys(keys).span()); },

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <utility>
 #include <vector>
@@ -43,6 +44,12 @@ class Buffer {
     [[nodiscard]] explicit operator bool() const noexcept { return held_; }
     [[nodiscard]] const Py_buffer& view() const noexcept { return view_; }
 
+    // Its items, of which the caller knows the type.
+    template <class Item>
+    [[nodiscard]] Item* values() const noexcept {
+        return static_cast<Item*>(view_.buf);
+    }
+
     // The only character of the format of its items; 0 if there are others.
     [[nodiscard]] char format() const noexcept {
         const char* format = view_.format;
@@ -62,6 +69,12 @@ struct NewArray {
     [[nodiscard]] double* values() const noexcept { return memory; }
 };
 
+// The same of truths, a byte each.
+struct NewBools {
+    nb::object array;
+    std::uint8_t* memory = nullptr;
+};
+
 class NumPy {
   public:
     // Whether this is an array, and of no derived class, whose values may mean something else.
@@ -71,7 +84,15 @@ class NumPy {
     }
 
     [[nodiscard]] NewArray make(std::size_t count) const {
+        if (count * sizeof(double) < LargeMemory::least) return make_small(count);
         return std::move(make(1, count).front());
+    }
+
+    [[nodiscard]] NewBools make_bools(std::size_t count) const {
+        static constinit NumPyAttribute truth("bool_");
+        nb::object array = empty()(count, nb::handle(truth.get()));
+        const Buffer buffer = writable(array);
+        return {std::move(array), buffer.values<std::uint8_t>()};
     }
 
     // Several of the same length. Where they are small, but not together, some share a piece of
@@ -101,12 +122,19 @@ class NumPy {
     }
 
   private:
-    [[nodiscard]] NewArray make_small(std::size_t count) const {
-        static constinit NumPyAttribute empty("empty");
-        nb::object array = nb::handle(empty.get())(count);
-        const Buffer buffer(array.ptr(), PyBUF_WRITABLE);
+    [[nodiscard]] static Buffer writable(const nb::object& array) {
+        Buffer buffer(array.ptr(), PyBUF_WRITABLE);
         if (!buffer) throw nb::python_error();
-        return {std::move(array), static_cast<double*>(buffer.view().buf)};
+        return buffer;
+    }
+    [[nodiscard]] static nb::handle empty() {
+        static constinit NumPyAttribute empty("empty");
+        return empty.get();
+    }
+    [[nodiscard]] static NewArray make_small(std::size_t count) {
+        nb::object array = empty()(count);
+        const Buffer buffer = writable(array);
+        return {std::move(array), buffer.values<double>()};
     }
 };
 

@@ -108,6 +108,14 @@ bool Given::copy(double* out) const noexcept {
     return true;
 }
 
+const double* Given::in_place() const noexcept {
+    const Py_buffer& view = buffer_.view();
+    const bool plain = buffer_ && buffer_.format() == 'd' &&
+                       std::cmp_equal(view.strides[0], sizeof(double)) &&
+                       reinterpret_cast<std::uintptr_t>(view.buf) % alignof(double) == 0;
+    return plain ? buffer_.values<double>() : nullptr;
+}
+
 std::optional<GivenColumns> GivenColumns::of(const NumPy& numpy, const nb::handle& data,
                                              std::span<const nb::str> names,
                                              const nb::handle& time) {

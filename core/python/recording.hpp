@@ -28,6 +28,9 @@ class Given {
     // Whether all are numbers that are read here, and none is NaN.
     [[nodiscard]] bool copy(double* out) const noexcept;
 
+    // The numbers where they are, NaN included; null unless they are doubles one after another.
+    [[nodiscard]] const double* in_place() const noexcept;
+
   private:
     nb::object object_;
     Buffer buffer_;

@@ -50,8 +50,13 @@ def exclusive(method: Callable[Concatenate[G, P], R]) -> Callable[Concatenate[G,
 
     @wraps(method)
     def guarded(self: G, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        with self._usage:
+        lock = self._usage._lock  # in half the time of ``with self._usage``
+        if not lock.acquire(False):
+            raise in_use()
+        try:
             return method(self, *args, **kwargs)
+        finally:
+            lock.release()
 
     return guarded
 

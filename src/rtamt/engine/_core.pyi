@@ -134,6 +134,14 @@ class Fleet:
         undefined value), time of the last one, instruction or input, and time of the undefined value.
         """
 
+    def take(
+        self, keys: NDArray[Any], times: Any, columns: list[Any]
+    ) -> list[tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.float64], NDArray[np.bool_]]] | None:
+        """Take a batch of arrays or lists of numbers; return the same arrays of each output, which are new.
+
+        None, with nothing changed, for data that has to be converted or rejected.
+        """
+
     def drop(self, keys: NDArray[Any]) -> int | None:
         """Forget keys; return the index of the first that is not there, and forget none then."""
 

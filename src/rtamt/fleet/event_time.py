@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from functools import lru_cache
 from math import isfinite, isnan, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,7 +16,7 @@ from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import timestamps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -94,6 +95,13 @@ class InOrder:
 
     def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
         """Take a batch as a user gives it; return what it made known."""
+        known = self.records.take(keys, times, columns)
+        if known is None:
+            return self._take_carefully(keys, times, columns)
+        return self._updated(_all_in_order(keys, known))
+
+    def _take_carefully(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
+        """Take a batch that has to be converted, checked or put in order first."""
         seconds, found = self.records.columns(times, columns)
         if len(keys) != len(seconds):
             raise TraceError(
@@ -111,11 +119,15 @@ class InOrder:
 
     def _updated(self, taken: Taken) -> FleetUpdate:
         outputs = taken.outputs
-        released = Released(
-            np.concatenate([each.keys for each in outputs]),
-            np.concatenate([each.at for each in outputs]),
-            np.concatenate([each.found for each in outputs]),
-            np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
+        released = (
+            Released(
+                np.concatenate([each.keys for each in outputs]),
+                np.concatenate([each.at for each in outputs]),
+                np.concatenate([each.found for each in outputs]),
+                np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
+            )
+            if any(len(each.at) for each in outputs)
+            else _nothing_released(outputs[0].keys.dtype)
         )
         if not self._requirements:
             (one,) = outputs
@@ -135,12 +147,7 @@ class InOrder:
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
         """Take a batch. Raises for wrong data, and nothing has changed."""
         self.records.check(keys, times, columns)
-        nothing = np.empty(0)
-        outputs = [
-            Output(each.values, each.known, each.times, each.warming, keys[:0], nothing, nothing)
-            for each in self.records.update(keys, times, columns)
-        ]
-        return Taken(np.zeros(len(times), np.bool_), outputs)
+        return _all_in_order(keys, self.records.update(keys, times, columns))
 
     def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002
         """Release what waits up to a time in seconds."""
@@ -198,6 +205,10 @@ class EventTime(InOrder):
         super().__init__(records, requirements)
         self._lateness = lateness
         self._buffer = records.reordering(lateness, gaps.filled, state)
+
+    def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
+        """See :class:`InOrder`."""
+        return self._take_carefully(keys, times, columns)
 
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
         """See :class:`InOrder`."""
@@ -271,6 +282,21 @@ class EventTime(InOrder):
         """See :class:`InOrder`."""
         waiting = self._buffer.snapshot()
         return packed(EventState(gaps, self._lateness, waiting, bytes(self.records.snapshot())))
+
+
+def _all_in_order(keys: NDArray[Any], known: Iterable[Sequence[NDArray[Any]]]) -> Taken:
+    """Return what a batch has done of which no sample waits or is late; ``known``: arrays of each output."""
+    nothing = np.empty(0)
+    outputs = [
+        Output(values, final, times, warming, keys[:0], nothing, nothing)
+        for values, final, times, warming in known
+    ]
+    return Taken(np.zeros(len(keys), np.bool_), outputs)
+
+
+@lru_cache(16)
+def _nothing_released(keys: np.dtype[Any]) -> Released:
+    return Released(np.empty(0, keys), np.empty(0), np.empty(0), np.empty(0, np.int64))
 
 
 def _sorted_out(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices, shown
@@ -11,11 +10,14 @@ from rtamt.fleet.keys import capacity_of, keys_of
 from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
+from rtamt.signals.arrays import is_mapping
 from rtamt.specification import Specification
 from rtamt.usage_guard import UsageGuard, exclusive
 from rtamt.verdicts.modes import DELAYED, mode_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rtamt.engine import OnlineMonitor
     from rtamt.fleet.event_time import EventState, Gaps
     from rtamt.fleet.per_key import MonitorPerKey
@@ -114,7 +116,7 @@ class Fleet:
         key and the index in the batch; no key has changed then.
         """
         given = keys_of(keys)
-        if not isinstance(columns, Mapping):
+        if not is_mapping(columns):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
         found = self._binding.applied(dict(columns), partial=self._partial)
         return self._samples.take(given, times, found)

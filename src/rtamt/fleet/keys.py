@@ -29,6 +29,9 @@ def capacity_of(given: Any) -> int:
 
 def keys_of(keys: Any) -> NDArray[Any]:
     """Return keys as an array of int64, texts or bytes; raise :class:`TraceError` for anything else."""
+    if keys.__class__ is np.ndarray and keys.dtype == np.int64 and keys.ndim == 1 and keys.flags.c_contiguous:
+        plain: NDArray[Any] = keys
+        return plain
     given = keys
     if isinstance(keys, np.ma.MaskedArray):
         masked = np.ma.getmaskarray(keys)

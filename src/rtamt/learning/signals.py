@@ -74,7 +74,11 @@ class SignalReader:
         value, part = roots[path[0]], None
         try:
             for part in path[1:]:
-                if not self._batched or isinstance(value, Mapping | tuple):
+                if (
+                    value.__class__ is np.ndarray and self._batched
+                ):  # first, because the other checks take longer
+                    value = value[:, part]
+                elif not self._batched or isinstance(value, Mapping | tuple):
                     self._require_all(name, value, part, rows)
                     value = value[part]
                 else:

@@ -81,6 +81,7 @@ class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-
         self._fleet = Fleet(self._settings.rated, count)
         self._judges: list[Any] = [spec.monitor(verdict="eager") for _ in range(count)] if terminate else []
         self._names = spec.input_names
+        self._period = self._settings.period
         self._read = SignalReader(signals, self._names, batched=True)
         self._samples = np.zeros(count)
         self._potentials = np.zeros(count)
@@ -106,49 +107,76 @@ class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-
         if self._ended is None:
             raise UsageError("there is no episode: call reset() before step()")
         before = self._ended
-        if before.any() and not self._next_step:
+        some_ended = np.count_nonzero(before) > 0
+        if some_ended and not self._next_step:
             raise UsageError(
                 f"the episode of environment {int(before.argmax())} has ended: reset it by "
                 "options={'reset_mask': ...}"
             )
         observations, rewards, terminations, truncations, infos = self.env.step(actions)
         done = np.logical_or(terminations, truncations)
-        rows = np.flatnonzero(~before) if before.any() else self._every
+        some_done = np.count_nonzero(done) > 0
         last, details = observations, infos
-        if self._same_step and done.any():
+        if self._same_step and some_done:
             last, details = _before_reset(observations, infos, np.flatnonzero(done))
-        found = np.full(self._count, np.nan)
-        if len(rows):
-            sample = self._read(last, actions, details, rows)
-            assert sample is not None
-            found[rows] = self._take(rows, sample)
+        rows = np.flatnonzero(~before) if some_ended else self._every
+        found, reported = self._found_in(rows, last, actions, details)
         if self._judges:
             known = ~np.isnan(self._satisfied)
             infos = {**infos, "satisfied": self._satisfied > 0, "_satisfied": known}
             terminations = np.logical_or(terminations, known)
             done = np.logical_or(done, known)
-        worth = self._worth(found, np.asarray(rewards, float), terminations, before)
-        reported = ~np.isnan(found)
-        infos = {**infos, "robustness": np.where(reported, found, 0.0), "_robustness": reported}
-        if before.any():
+            some_done = np.count_nonzero(done) > 0
+        worth = self._worth(found, reported, rewards, terminations, before if some_ended else None)
+        infos = {**infos, "robustness": found, "_robustness": reported}
+        if some_ended:
             self._start(np.flatnonzero(before), observations, infos)
-        if self._same_step and done.any():
+        if self._same_step and some_done:
             self._start(np.flatnonzero(done), observations, infos)
             self._ended = np.zeros(self._count, bool)
         else:
             self._ended = done
         return observations, worth, terminations, truncations, infos
 
+    def _found_in(
+        self, rows: NDArray[Any], observations: Any, actions: Any, infos: Any
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Take the samples of a step; return the robustness that became known of each environment, or 0, and where."""
+        if len(rows) < self._count:
+            found, reported = np.zeros(self._count), np.zeros(self._count, bool)
+            if len(rows):
+                found[rows], reported[rows] = self._take(
+                    rows, self._sample(rows, observations, actions, infos)
+                )
+            return found, reported
+        return self._take(rows, self._sample(rows, observations, actions, infos))
+
+    def _sample(self, rows: NDArray[Any], observations: Any, actions: Any, infos: Any) -> Mapping[str, Any]:
+        sample = self._read(observations, actions, infos, rows)
+        assert sample is not None
+        return sample
+
     def _worth(
-        self, found: NDArray[np.float64], rewards: NDArray[np.float64], terminations: Any, restarted: Any
+        self,
+        found: NDArray[np.float64],
+        reported: NDArray[np.bool_],
+        rewards: Any,
+        terminations: Any,
+        restarted: NDArray[np.bool_] | None,
     ) -> NDArray[np.float64]:
-        reported = ~np.isnan(found)
+        """Return the rewards of a step; ``restarted``: the environments that were reset instead, None without any."""
+        after: NDArray[np.float64] = found.copy()
         if self._settings.reward != SHAPING:
-            return np.where(reported, found, 0.0)
-        after = np.where(reported, found, self._potentials)
-        shaping = self._settings.gamma * np.where(terminations, 0.0, after) - self._potentials
+            return after
+        if np.count_nonzero(reported) < self._count:
+            after = np.where(reported, found, self._potentials)
+        ahead = np.where(terminations, 0.0, after) if np.count_nonzero(terminations) else after
+        shaping = self._settings.gamma * ahead - self._potentials
         self._potentials = after
-        return rewards + np.where(restarted, 0.0, shaping)
+        if restarted is not None:
+            shaping[restarted] = 0.0
+        worth: NDArray[np.float64] = np.asarray(rewards, float) + shaping
+        return worth
 
     def _start(self, rows: NDArray[Any], observations: Any, infos: Mapping[str, Any]) -> None:
         """Start the traces of environments with the samples of their resets, if there are any."""
@@ -161,12 +189,14 @@ class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-
                 self._judges[row].reset()
         sample = self._read(observations, None, infos, rows)
         if sample is not None:
-            self._potentials[rows] = np.nan_to_num(self._take(rows, sample))
+            self._potentials[rows], _ = self._take(rows, sample)
 
-    def _take(self, rows: NDArray[Any], sample: Mapping[str, Any]) -> NDArray[np.float64]:
-        """Take a sample of each environment; return what it made final, NaN where nothing."""
-        times = self._samples[rows] * self._settings.period
+    def _take(
+        self, rows: NDArray[Any], sample: Mapping[str, Any]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Take a sample of each environment; return the robustness that it made final, 0 where none, and where."""
         every = len(rows) == self._count
+        times = (self._samples if every else self._samples[rows]) * self._period
         columns = {}
         for name in self._names:
             if name not in sample:
@@ -182,14 +212,20 @@ class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-
                 )
             columns[name] = column if every else column[rows]
         update = self._fleet.update_many(rows, times, columns)
-        self._samples[rows] += 1
+        if every:
+            self._samples += 1
+        else:
+            self._samples[rows] += 1
         if self._judges:
             self._judge(rows, times, columns)
-        wrong = update.known & ~np.isfinite(update.values)
-        if wrong.any():
-            first = int(wrong.argmax())
-            raise not_finite(float(update.values[first]), float(times[first]))
-        return np.where(update.known, update.values, np.nan)
+        values, known = update.values, update.known
+        if np.count_nonzero(known) < len(rows):
+            values = np.where(known, values, 0.0)
+        finite = np.isfinite(values)
+        if np.count_nonzero(finite) < len(rows):
+            first = int(finite.argmin())
+            raise not_finite(float(values[first]), float(times[first]))
+        return values, known
 
     def _judge(self, rows: NDArray[Any], times: NDArray[np.float64], columns: Mapping[str, Any]) -> None:
         """Take the same samples for the verdicts that are open."""

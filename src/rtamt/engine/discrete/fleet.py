@@ -23,7 +23,7 @@ from rtamt.signals.regular import irregular
 from rtamt.signals.samples import read_time
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -79,6 +79,24 @@ class DiscreteFleet:
             raise UsageError("this is not the state of a fleet: a key is no UTF-8") from None
         except ValueError as error:
             raise UsageError(sentence(error)) from None
+
+    def take(
+        self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]
+    ) -> Sequence[Sequence[NDArray[Any]]] | None:
+        """Take a batch that needs no conversion, in one call of the core; None for any other, which is not taken.
+
+        Return the arrays of :class:`Known` of each output.
+        """
+        names = self._monitor.input_names
+        if self._monitor._types or len(columns) != len(names):
+            return None
+        try:
+            taken: Sequence[Any] | None = self._core.take(
+                rows_of(keys), times, [columns.get(name) for name in names]
+            )
+        except ValueError as error:
+            raise UsageError(sentence(error)) from None
+        return taken
 
     def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[FloatArray, dict[str, FloatArray]]:
         """Return a batch as arrays; raise :class:`TraceError` for data that is not one."""
