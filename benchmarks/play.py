@@ -16,9 +16,9 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.unit.report.browser import chromium
+from tests.unit.html_report.browser import chromium
 
-from rtamt.play.desk import Desk
+from rtamt.play.request_handler import RequestHandler
 
 TEXT = "always(req >= 3 -> eventually[0:5](gnt >= 3))"
 ROUNDS = 40
@@ -45,13 +45,13 @@ def shown(what: str, *times: float) -> None:
 
 def alone(path: Path) -> list[tuple[float, float]]:
     """Return the times of the answers without a server, in milliseconds: of the clock, and of the processor."""
-    desk, file = Desk(), {"number": 1, "path": str(path), "name": path.name}
+    handler, file = RequestHandler(), {"number": 1, "path": str(path), "name": path.name}
     message = {"text": TEXT, "time": "discrete", "duration": 0, "recording": 1, "width": 700}
-    desk.answer("evaluate", message, file)  # reads the file
+    handler.answer("evaluate", message, file)  # reads the file
     found = []
     for _ in range(ROUNDS):
         begun, used = time.perf_counter(), time.process_time()
-        desk.answer("evaluate", message, file)
+        handler.answer("evaluate", message, file)
         found.append(((time.perf_counter() - begun) * 1e3, (time.process_time() - used) * 1e3))
     return found
 

@@ -25,7 +25,7 @@ from confluent_kafka import Consumer, Producer, TopicPartition
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.brokers import broker
+from tests.support.brokers import broker
 
 import rtamt
 

@@ -7,7 +7,7 @@
 // sample. What is measured of that is a lower bound, without taking it back. Both compute
 // always[0,k](a >= -2), and the same below eventually[0,k].
 #include "discrete/executor.hpp"
-#include "early/engine.hpp"
+#include "early/bounds_engine.hpp"
 #include "programs.hpp"
 #include "values/interval.hpp"
 
@@ -25,7 +25,7 @@ using rtamt::Bounds;
 using rtamt::Interval;
 using rtamt::Opcode;
 using rtamt::discrete::BasicExecutor;
-using rtamt::early::Engine;
+using rtamt::early::BoundsEngine;
 using rtamt::early::Graph;
 using rtamt::early::Kind;
 using rtamt::early::Node;
@@ -70,7 +70,7 @@ double best_of(std::size_t samples, Work&& work) {
 
 double delta(Tick k, bool nested, std::span<const double> samples) {
     return best_of(samples.size(), [&] {
-        Engine engine(graph(k, nested), {}, false);
+        BoundsEngine engine(graph(k, nested), {}, false);
         std::vector<Tick> wanted(engine.size(), rtamt::early::forever);
         const Tick horizon = nested ? 2 * k : k;
         for (std::size_t i = 0; i < samples.size(); ++i) {

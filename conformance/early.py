@@ -19,9 +19,9 @@ from rtamt.errors import EvaluationError
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.language.parsing.parser import parse_formula
-from rtamt.reference import dense_bounds, dense_causation, discrete_bounds, earliest
-from rtamt.reference.causation import causation
+from rtamt.reference import dense_bounds, dense_causation, discrete_bounds, eager_verdicts
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
+from rtamt.reference.discrete_causation import causation
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.early import causeless
 
@@ -99,7 +99,9 @@ def answered(case: EarlyCase) -> EarlyCase:
         known = Knowledge(columns, n, ranges, finished=True)
         stages = [known.until(k) for k in range(1, n + 1)] + [known]
         case.bounds = [_filled(discrete_bounds.bounds(formula, stage, case.seconds), n) for stage in stages]
-        case.verdicts = [list(map(list, news)) for news in earliest.verdicts(formula, known, case.seconds)]
+        case.verdicts = [
+            list(map(list, news)) for news in eager_verdicts.verdicts(formula, known, case.seconds)
+        ]
         if case.exact and causeless(formula) is None:
             caused = (causation(formula, stage, case.seconds, 1)[0] for stage in stages[:-1])
             case.causation = list(map(_ends, caused))
@@ -111,7 +113,7 @@ def answered(case: EarlyCase) -> EarlyCase:
     before: dense_bounds.DenseKnowledge | None = None
     has_causes = case.exact and causeless(formula) is None
     for k in range(1, len(updates) + 2):
-        stage_ = earliest.after(updates[:k], names, limits, finished=k > len(updates))
+        stage_ = eager_verdicts.after(updates[:k], names, limits, finished=k > len(updates))
         found = dense_bounds.bounds(formula, stage_, case.seconds)
         rows = [list(row) for row in zip(found.times, found.lower, found.upper, strict=True) if row[0] <= end]
         case.bounds.append(None if stage_.start is None else rows)
@@ -123,8 +125,8 @@ def answered(case: EarlyCase) -> EarlyCase:
             )
             case.causation.append(None if event is None else _ends(event.causes[0]))
             before = None if event is None else stage_
-    told = earliest.dense_verdicts(formula, updates, names, case.seconds, limits, finished=True)
-    case.verdicts = [[list(run) for run in earliest.runs(news)] for news in told]
+    told = eager_verdicts.dense_verdicts(formula, updates, names, case.seconds, limits, finished=True)
+    case.verdicts = [[list(run) for run in eager_verdicts.runs(news)] for news in told]
     return case
 
 
@@ -132,7 +134,7 @@ def _ends(caused: Causation) -> list[float]:
     return [caused.violation + 0.0, caused.satisfaction + 0.0]  # no minus before a zero
 
 
-def updates_of(case: EarlyCase) -> list[earliest.Update]:
+def updates_of(case: EarlyCase) -> list[eager_verdicts.Update]:
     """Return the samples of a dense case in the order of their ticks."""
     ticks = sorted({t for samples in case.signals.values() for t, _ in samples})
     return [

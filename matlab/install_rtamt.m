@@ -35,7 +35,7 @@ end
 
 function [python, library, header] = locate(python)
 % Return the full path of the interpreter, the C library and its header.
-    question = ['import sys, rtamt.runtime as r; ' ...
+    question = ['import sys, rtamt.c_api as r; ' ...
                 'print(sys.executable, r.library(), r.header(), sep=chr(10))'];
     [status, said] = run_python(python, ['-c "' question '"']);
     lines = strsplit(strtrim(said), sprintf('\n'));

@@ -21,7 +21,7 @@ from rtamt.cli import main
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.unit.docs.pages import FILES, Page
-from tests.unit.report.browser import chromium
+from tests.unit.html_report.browser import chromium
 from tools import patterns, signal_patterns, walkthrough
 
 from rtamt.analysis import diff

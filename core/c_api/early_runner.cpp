@@ -240,9 +240,9 @@ void EarlyRunner::finish() {
 }
 
 void EarlyRunner::reset() {
-    early::Engine engine(graph_.graph, graph_.ranges, false);
-    robustness_ = early::Origin(graph_.robustness, engine);
-    truth_ = early::Origin(graph_.truth, engine);
+    early::BoundsEngine engine(graph_.graph, graph_.ranges, false);
+    robustness_ = early::BoundsAtStart(graph_.robustness, engine);
+    truth_ = early::BoundsAtStart(graph_.truth, engine);
     engine_ = std::move(engine);
     limit();
     bounds_ = robustness_.value();

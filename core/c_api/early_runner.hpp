@@ -16,8 +16,8 @@
 // Step k has the meaning of instruction `inputs` + k, and a constant has its value.
 #pragma once
 
-#include "../early/engine.hpp"
-#include "../early/origin.hpp"
+#include "../early/bounds_at_start.hpp"
+#include "../early/bounds_engine.hpp"
 #include "runner.hpp"
 
 #include <cstdint>
@@ -67,9 +67,9 @@ class EarlyRunner final : public SampledRunner {
     Program program_;
     double period_;
     EarlyGraph graph_;
-    early::Engine engine_;
-    early::Origin robustness_;
-    early::Origin truth_;
+    early::BoundsEngine engine_;
+    early::BoundsAtStart robustness_;
+    early::BoundsAtStart truth_;
     std::vector<std::uint32_t> steps_before_; // by node
     std::vector<early::Tick> wanted_;
     Bounds bounds_{};

@@ -1,7 +1,7 @@
 #include "causation.hpp"
 
 #include "../program/snapshot.hpp"
-#include "caused_until.hpp"
+#include "causation_until.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -18,14 +18,15 @@ namespace {
 
 } // namespace
 
-Causes::Causes(CauseGraph graph, const Engine& engine, const Origin& origin, bool dense)
+Causes::Causes(CauseGraph graph, const BoundsEngine& engine, const BoundsAtStart& at_start,
+               bool dense)
     : causes_(std::move(graph.parts)), outputs_(std::move(graph.outputs)),
       starts_(std::move(graph.starts)), dense_(dense), parts_(causes_.size()),
       known_(outputs_.size()), items_(starts_.size()) {
-    check(engine, origin);
+    check(engine, at_start);
 }
 
-void Causes::check(const Engine& engine, const Origin& origin) {
+void Causes::check(const BoundsEngine& engine, const BoundsAtStart& at_start) {
     const auto require = [](bool holds) {
         if (!holds) throw std::invalid_argument("This is no causation that an engine can compute.");
     };
@@ -46,29 +47,30 @@ void Causes::check(const Engine& engine, const Origin& origin) {
     }
     for (const std::uint32_t output : outputs_)
         require(earlier(output, causes_.size()));
-    require(starts_.size() == origin.size());
+    require(starts_.size() == at_start.size());
     for (std::size_t i = 0; i < starts_.size(); ++i) {
         const StartingCause& start = starts_[i];
-        const Item::Kind kind = origin.item(i).kind;
+        const Item::Kind kind = at_start.item(i).kind;
         for (const std::uint32_t ref : {start.a, start.b})
             require(ref == none || earlier(ref, causes_.size()));
         require((start.b == none || start.a != none) && (start.before < i || start.rest == none));
         require(start.rest == none || (start.rest < i && start.b != none &&
-                                       origin.item(start.rest).kind == Item::Kind::until));
+                                       at_start.item(start.rest).kind == Item::Kind::until));
         require(start.a != none || (kind != Item::Kind::all && kind != Item::Kind::some));
     }
 }
 
-void Causes::read(const Engine& engine, const Origin& origin, Tick newest) {
-    read(engine, origin, NewData{.newest = newest, .observations = {}});
+void Causes::read(const BoundsEngine& engine, const BoundsAtStart& at_start, Tick newest) {
+    read(engine, at_start, NewData{.newest = newest, .observations = {}});
 }
 
-void Causes::read(const Engine& engine, const Origin& origin,
-                  std::span<const Engine::Observation> observations) {
-    read(engine, origin, NewData{.newest = 0, .observations = observations});
+void Causes::read(const BoundsEngine& engine, const BoundsAtStart& at_start,
+                  std::span<const BoundsEngine::Observation> observations) {
+    read(engine, at_start, NewData{.newest = 0, .observations = observations});
 }
 
-void Causes::read(const Engine& engine, const Origin& origin, const NewData& new_data) {
+void Causes::read(const BoundsEngine& engine, const BoundsAtStart& at_start,
+                  const NewData& new_data) {
     for (std::size_t i = 0; i < causes_.size(); ++i) {
         for (int reg = 0; reg < 2; ++reg)
             compute(engine, i, reg, new_data);
@@ -80,14 +82,15 @@ void Causes::read(const Engine& engine, const Origin& origin, const NewData& new
         }
     }
     for (std::size_t i = 0; i < starts_.size(); ++i) {
-        items_[i] = {item(engine, origin, i, 0), item(engine, origin, i, 1)};
-        if (origin.item(i).negated) std::swap(items_[i][0], items_[i][1]);
+        items_[i] = {item(engine, at_start, i, 0), item(engine, at_start, i, 1)};
+        if (at_start.item(i).negated) std::swap(items_[i][0], items_[i][1]);
     }
     if (!items_.empty()) start_ = {items_.back()[0], -items_.back()[1]};
 }
 
 // Hold from an open tick on: the engine keeps it from there on plus low.
-void Causes::settle(const Engine& engine, Tick closed, std::span<Tick> wanted) const noexcept {
+void Causes::settle(const BoundsEngine& engine, Tick closed,
+                    std::span<Tick> wanted) const noexcept {
     for (const Cause& cause : causes_) {
         if (cause.kind != Cause::Kind::until) continue;
         const Tick open = plus(closed + 1, -engine.horizon(cause.ref));
@@ -101,7 +104,8 @@ Tick Causes::last(const NewData& new_data) const noexcept {
     return dense_ ? forever : new_data.newest + 2 * reach_;
 }
 
-void Causes::compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data) {
+void Causes::compute(const BoundsEngine& engine, std::size_t index, int reg,
+                     const NewData& new_data) {
     const Cause& cause = causes_[index];
     Pieces& pieces = parts_[index][static_cast<std::size_t>(reg)];
     const Runs& own = engine.runs(cause.ref, reg);
@@ -111,7 +115,7 @@ void Causes::compute(const Engine& engine, std::size_t index, int reg, const New
     case Cause::Kind::atom:
         if (!dense_)
             append(pieces, new_data.newest, new_data.newest, own.at(new_data.newest).value);
-        for (const Engine::Observation& observation : new_data.observations) {
+        for (const BoundsEngine::Observation& observation : new_data.observations) {
             if (engine.reads(cause.ref, observation.input))
                 append(pieces, own, observation.l, observation.r);
         }
@@ -143,7 +147,7 @@ void Causes::compute(const Engine& engine, std::size_t index, int reg, const New
 
 // Where one part is as good as it is because of what is new, and all others are as good as their
 // bounds.
-Pieces Causes::together(const Engine& engine, const Cause& cause, Tick last) const {
+Pieces Causes::together(const BoundsEngine& engine, const Cause& cause, Tick last) const {
     using Recursion = CausedUntil::Kind;
     const bool back = cause.kind == Cause::Kind::since;
     const std::uint32_t hold = causes_[cause.a / 2].ref ^ (cause.a & 1U);
@@ -189,15 +193,15 @@ Pieces Causes::apart(const Cause& cause) const {
 
 // ---- the start of the trace ---------------------------------------------------------------------
 
-double Causes::item(const Engine& engine, const Origin& origin, std::size_t index,
+double Causes::item(const BoundsEngine& engine, const BoundsAtStart& at_start, std::size_t index,
                     int reg) const noexcept {
-    const Item& item = origin.item(index);
+    const Item& item = at_start.item(index);
     const StartingCause& start = starts_[index];
-    const double own = origin.value(index, reg);
+    const double own = at_start.value(index, reg);
     if (start.rest != none || item.kind == Item::Kind::until) {
         if (start.b == none) return -infinity; // a part of the item of both
-        if (reg == 0) return until_item(engine, origin, index);
-        const Tick from = origin.item(start.rest == none ? index : start.rest).tick;
+        if (reg == 0) return until_item(engine, at_start, index);
+        const Tick from = at_start.item(start.rest == none ? index : start.rest).tick;
         return Real::meet(own, Real::join(most(of(start.b, 1), from), most(of(start.a, 1), 0)));
     }
     const auto r = static_cast<std::size_t>(reg);
@@ -216,15 +220,15 @@ double Causes::item(const Engine& engine, const Origin& origin, std::size_t inde
     }
 }
 
-double Causes::until_item(const Engine& engine, const Origin& origin,
+double Causes::until_item(const BoundsEngine& engine, const BoundsAtStart& at_start,
                           std::size_t index) const noexcept {
     const StartingCause& start = starts_[index];
     const std::size_t recursion = start.rest == none ? index : start.rest;
-    const Item& item = origin.item(recursion);
-    const double before = start.before == none ? infinity : origin.value(start.before, 0);
-    const Tick next = origin.next(recursion);
+    const Item& item = at_start.item(recursion);
+    const double before = start.before == none ? infinity : at_start.value(start.before, 0);
+    const Tick next = at_start.next(recursion);
     const auto held = [&](Tick end) { // over [0, end)
-        double value = Real::meet(before, origin.held(recursion, 0));
+        double value = Real::meet(before, at_start.held(recursion, 0));
         if (end > next) value = Real::meet(value, engine.runs(item.b, 0).least(next, end - 1));
         return value;
     };
@@ -248,11 +252,12 @@ Bounds Causes::at(std::size_t output, Tick t) const noexcept {
     return {value_at(known_[output][0], t), -value_at(known_[output][1], t)};
 }
 
-std::vector<Change> Causes::runs(std::size_t output, Tick last) const {
+std::vector<BoundChange> Causes::runs(std::size_t output, Tick last) const {
     return caused_runs(known_[output][0], known_[output][1], last);
 }
 
-std::vector<Change> caused_runs(const Pieces& satisfaction, const Pieces& violation, Tick last) {
+std::vector<BoundChange> caused_runs(const Pieces& satisfaction, const Pieces& violation,
+                                     Tick last) {
     std::vector<Tick> borders;
     for (const Pieces& pieces : {std::cref(satisfaction), std::cref(violation)}) {
         for (const Run& run : pieces) {
@@ -263,7 +268,7 @@ std::vector<Change> caused_runs(const Pieces& satisfaction, const Pieces& violat
     std::ranges::sort(borders);
     const auto twice = std::ranges::unique(borders);
     borders.erase(twice.begin(), twice.end());
-    std::vector<Change> result;
+    std::vector<BoundChange> result;
     for (std::size_t i = 0; i + 1 < borders.size() && borders[i] <= last; ++i) {
         const Bounds bounds{value_at(satisfaction, borders[i]), -value_at(violation, borders[i])};
         if (bounds == bounds::anything) continue;

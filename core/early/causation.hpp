@@ -12,10 +12,10 @@
 // and for until to those of its operands as far as it reaches.
 #pragma once
 
-#include "caused.hpp"
-#include "changes.hpp"
-#include "engine.hpp"
-#include "origin.hpp"
+#include "bound_changes.hpp"
+#include "bounds_at_start.hpp"
+#include "bounds_engine.hpp"
+#include "causation_runs.hpp"
 
 #include <array>
 #include <cstdint>
@@ -49,34 +49,34 @@ struct StartingCause {
 };
 
 // The ticks at which something is caused, up to a tick, in order; the violation is negated.
-[[nodiscard]] std::vector<Change> caused_runs(const Pieces& satisfaction, const Pieces& violation,
-                                              Tick last);
+[[nodiscard]] std::vector<BoundChange> caused_runs(const Pieces& satisfaction,
+                                                   const Pieces& violation, Tick last);
 
 struct CauseGraph {
     std::vector<Cause> parts;
     std::vector<std::uint32_t> outputs;
-    std::vector<StartingCause> starts; // of the items of the origin
+    std::vector<StartingCause> starts; // of the items at the start
 };
 
 class Causes {
   public:
-    Causes(CauseGraph graph, const Engine& engine, const Origin& origin, bool dense);
+    Causes(CauseGraph graph, const BoundsEngine& engine, const BoundsAtStart& at_start, bool dense);
 
     // Looks at the newest sample in discrete time, or at what has become known in dense time. The
-    // engine and the origin know it.
-    void read(const Engine& engine, const Origin& origin, Tick newest);
-    void read(const Engine& engine, const Origin& origin,
-              std::span<const Engine::Observation> observations);
+    // engine and the items at the start know it.
+    void read(const BoundsEngine& engine, const BoundsAtStart& at_start, Tick newest);
+    void read(const BoundsEngine& engine, const BoundsAtStart& at_start,
+              std::span<const BoundsEngine::Observation> observations);
 
     // Asks for what is read of operands beside what the engine itself reads; `wanted`: by node.
-    void settle(const Engine& engine, Tick closed, std::span<Tick> wanted) const noexcept;
+    void settle(const BoundsEngine& engine, Tick closed, std::span<Tick> wanted) const noexcept;
 
     // Violation is the upper end, satisfaction the lower.
     [[nodiscard]] Bounds at(std::size_t output, Tick t) const noexcept;
     [[nodiscard]] Bounds at_start() const noexcept { return start_; }
 
     // The ticks at which something is caused, up to a tick, in order.
-    [[nodiscard]] std::vector<Change> runs(std::size_t output, Tick last) const;
+    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output, Tick last) const;
 
     void transfer(Snapshot& snapshot);
 
@@ -86,7 +86,7 @@ class Causes {
     // What has become known: at the newest tick, or by observations.
     struct NewData {
         Tick newest = 0;
-        std::span<const Engine::Observation> observations;
+        std::span<const BoundsEngine::Observation> observations;
     };
 
     std::vector<Cause> causes_;
@@ -102,16 +102,16 @@ class Causes {
     [[nodiscard]] const Pieces& of(std::uint32_t ref, int reg) const noexcept {
         return parts_[ref / 2][static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
-    void check(const Engine& engine, const Origin& origin);
+    void check(const BoundsEngine& engine, const BoundsAtStart& at_start);
     [[nodiscard]] Tick last(const NewData& new_data) const noexcept;
-    void read(const Engine& engine, const Origin& origin, const NewData& new_data);
-    void compute(const Engine& engine, std::size_t index, int reg, const NewData& new_data);
+    void read(const BoundsEngine& engine, const BoundsAtStart& at_start, const NewData& new_data);
+    void compute(const BoundsEngine& engine, std::size_t index, int reg, const NewData& new_data);
     // Of until and since, register 0 and 1.
-    [[nodiscard]] Pieces together(const Engine& engine, const Cause& cause, Tick last) const;
+    [[nodiscard]] Pieces together(const BoundsEngine& engine, const Cause& cause, Tick last) const;
     [[nodiscard]] Pieces apart(const Cause& cause) const;
-    [[nodiscard]] double item(const Engine& engine, const Origin& origin, std::size_t index,
-                              int reg) const noexcept;
-    [[nodiscard]] double until_item(const Engine& engine, const Origin& origin,
+    [[nodiscard]] double item(const BoundsEngine& engine, const BoundsAtStart& at_start,
+                              std::size_t index, int reg) const noexcept;
+    [[nodiscard]] double until_item(const BoundsEngine& engine, const BoundsAtStart& at_start,
                                     std::size_t index) const noexcept;
 };
 

@@ -30,17 +30,17 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     for (const std::uint32_t output : settings.outputs) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
-    if (!settings.origin.empty() || settings.causes) {
-        origin_.emplace(std::move(settings.origin), engine_, settings.causes.has_value());
-        engine_.find_beyond(origin_->read_forever());
+    if (!settings.at_start.empty() || settings.causes) {
+        at_start_.emplace(std::move(settings.at_start), engine_, settings.causes.has_value());
+        engine_.find_beyond(at_start_->read_forever());
     }
     if (settings.causes) {
-        causes_.emplace(std::move(*settings.causes), engine_, origin_.value(), true);
+        causes_.emplace(std::move(*settings.causes), engine_, at_start_.value(), true);
     } else { // causes are of every value, needed or not
         std::vector<Tick> last(engine_.size(), -1);
         for (const std::uint32_t output : settings.outputs)
             last[output / 2] = forever;
-        if (origin_) origin_->limit(last);
+        if (at_start_) at_start_->limit(last);
         engine_.limit(last);
     }
     for (const std::uint32_t output : settings.outputs)
@@ -119,8 +119,8 @@ void DenseMonitor::accept() {
     if (!begun_) return;
     for (DenseOutput& output : outputs_)
         output.collect(engine_, start(), at_, begins_ ? -1 : *before_ - start(), newest());
-    if (origin_) origin_->read(engine_);
-    if (causes_) causes_->read(engine_, *origin_, observations_);
+    if (at_start_) at_start_->read(engine_);
+    if (causes_) causes_->read(engine_, *at_start_, observations_);
     if (finished_) return; // what was kept can still be read
     closed_ = std::ranges::min(samples_.settled());
     if (++calls_ % pause == 0) settle();
@@ -128,18 +128,18 @@ void DenseMonitor::accept() {
 
 // ---- results ------------------------------------------------------------------------------------
 
-std::vector<Change> DenseMonitor::changes(std::size_t output) const {
+std::vector<BoundChange> DenseMonitor::changes(std::size_t output) const {
     return outputs_[output].changes(engine_, start());
 }
 
-std::vector<Change> DenseMonitor::runs(std::size_t output) const {
+std::vector<BoundChange> DenseMonitor::runs(std::size_t output) const {
     if (!begun_) return {};
     return outputs_[output].runs(engine_, start(), newest());
 }
 
 std::optional<Bounds> DenseMonitor::at_start() const {
-    if (!origin_ || origin_->size() == 0) return std::nullopt;
-    return origin_->value();
+    if (!at_start_ || at_start_->size() == 0) return std::nullopt;
+    return at_start_->value();
 }
 
 std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) const {
@@ -153,7 +153,7 @@ std::optional<Bounds> DenseMonitor::caused(std::size_t output, std::optional<Tic
     return causes_.value().at(output, std::min(tick - start(), forever));
 }
 
-std::vector<Change> DenseMonitor::caused(std::size_t output) const {
+std::vector<BoundChange> DenseMonitor::caused(std::size_t output) const {
     if (!begun_) return {};
     return timed(causes_.value().runs(output, finished_ ? newest() : forever), start());
 }
@@ -161,7 +161,7 @@ std::vector<Change> DenseMonitor::caused(std::size_t output) const {
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
                                                                   Tick time,
                                                                   std::span<const Supposed> later) {
-    std::vector<Engine::Observation> observations;
+    std::vector<BoundsEngine::Observation> observations;
     for (std::size_t k = 0; k < later.size(); ++k) {
         const Supposed& each = later[k];
         const bool last = k + 1 == later.size() || later[k + 1].input != each.input;
@@ -179,9 +179,9 @@ std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<
     if (output) {
         value = engine_.at(ref(*output), std::min(time - start(), forever));
     } else {
-        Origin origin = origin_.value();
-        origin.read(engine_);
-        value = origin.value();
+        BoundsAtStart at_start = at_start_.value();
+        at_start.read(engine_);
+        value = at_start.value();
     }
     engine_.revert();
     return value;
@@ -205,7 +205,7 @@ void DenseMonitor::settle() {
         Tick& wanted = wanted_[output.ref() / 2];
         wanted = std::min(wanted, output.settle(engine_, closed_));
     }
-    if (origin_) origin_->settle(engine_, closed_, wanted_);
+    if (at_start_) at_start_->settle(engine_, closed_, wanted_);
     if (causes_) causes_->settle(engine_, closed_, wanted_);
     engine_.settle(closed_, wanted_);
 }
@@ -219,7 +219,7 @@ std::size_t DenseMonitor::bytes() const noexcept {
 
 void DenseMonitor::transfer(Snapshot& snapshot) {
     engine_.transfer(snapshot);
-    if (origin_) origin_->transfer(snapshot);
+    if (at_start_) at_start_->transfer(snapshot);
     if (causes_) causes_->transfer(snapshot);
     for (DenseOutput& output : outputs_)
         output.transfer(snapshot);

@@ -6,10 +6,10 @@
 // Cost: that of the engine. Memory: its runs, and samples as Samples keeps them.
 #pragma once
 
+#include "bounds_at_start.hpp"
+#include "bounds_engine.hpp"
 #include "causation.hpp"
 #include "dense_output.hpp"
-#include "engine.hpp"
-#include "origin.hpp"
 #include "samples.hpp"
 
 #include <cstddef>
@@ -23,7 +23,7 @@ namespace rtamt::early {
 
 struct DenseSettings {
     std::vector<std::uint32_t> outputs; // references
-    std::vector<Item> origin;           // of the bounds at the start; none: not reported
+    std::vector<Item> at_start;         // of the bounds at the start; none: not reported
     std::vector<Bounds> ranges;         // of the inputs
     std::optional<Tick> lateness;       // see Samples
     bool decides = false;               // verdicts; if not, bounds
@@ -34,7 +34,7 @@ struct DenseSettings {
 
 class DenseMonitor {
   public:
-    using Failure = Engine::Failure;
+    using Failure = BoundsEngine::Failure;
 
     DenseMonitor(Graph graph, DenseSettings settings);
 
@@ -73,9 +73,9 @@ class DenseMonitor {
     [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept {
         return outputs_[output].decisions();
     }
-    [[nodiscard]] std::vector<Change> changes(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
 
-    // The bounds at the start, where there is an origin.
+    // The bounds at the start, where they are computed.
     [[nodiscard]] std::optional<Bounds> at_start() const;
 
     // What the last call caused, where that is required: at the start of the trace, of an output
@@ -84,7 +84,7 @@ class DenseMonitor {
         return causes_ ? causes_->at_start() : bounds::anything;
     }
     [[nodiscard]] std::optional<Bounds> caused(std::size_t output, std::optional<Tick> time) const;
-    [[nodiscard]] std::vector<Change> caused(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> caused(std::size_t output) const;
 
     // An output, or none for the start, at a tick that is held, if an input had these bounds from a
     // time on: behind its newest sample, and up to the next one of them.
@@ -99,11 +99,11 @@ class DenseMonitor {
     // The bounds of an output at a tick; none before the first that is held, or before the trace
     // has started. All of them, up to the newest sample. What is final is held for some more calls.
     [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time) const;
-    [[nodiscard]] std::vector<Change> runs(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output) const;
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
 
     // What an output is in ticks from the start of the trace on.
-    [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
+    [[nodiscard]] const BoundsEngine& engine() const noexcept { return engine_; }
     [[nodiscard]] std::uint32_t ref(std::size_t output) const noexcept {
         return outputs_[output].ref();
     }
@@ -120,13 +120,13 @@ class DenseMonitor {
     void transfer(Snapshot& snapshot);
 
   private:
-    Engine engine_;
+    BoundsEngine engine_;
     Samples samples_;
     std::vector<DenseOutput> outputs_;
-    std::optional<Origin> origin_;
+    std::optional<BoundsAtStart> at_start_;
     std::optional<Causes> causes_;
     std::vector<Tick> wanted_; // by node
-    std::vector<Engine::Observation> observations_;
+    std::vector<BoundsEngine::Observation> observations_;
     std::int64_t calls_ = 0;
     Tick closed_ = -1; // the last tick of the trace before its end that is final
     bool begun_ = false;

@@ -6,20 +6,21 @@
 
 namespace rtamt::early {
 
-std::vector<Change> timed(std::vector<Change> runs, Tick start) {
-    for (Change& change : runs) {
+std::vector<BoundChange> timed(std::vector<BoundChange> runs, Tick start) {
+    for (BoundChange& change : runs) {
         change.l = plus(change.l, start);
         change.r = plus(change.r, start);
     }
     return runs;
 }
 
-DenseOutput::DenseOutput(std::uint32_t ref, bool decides, const Engine& engine)
+DenseOutput::DenseOutput(std::uint32_t ref, bool decides, const BoundsEngine& engine)
     : ref_(ref), decides_(decides) {
     if (decides_) decisions_.begin(engine, ref_);
 }
 
-void DenseOutput::collect(const Engine& engine, Tick start, Tick at, Tick before, Tick newest) {
+void DenseOutput::collect(const BoundsEngine& engine, Tick start, Tick at, Tick before,
+                          Tick newest) {
     if (!decides_) {
         changes_.collect(engine, ref_, before, newest);
         return;
@@ -43,27 +44,28 @@ void DenseOutput::collect(const Engine& engine, Tick start, Tick at, Tick before
     decided_.resize(count);
 }
 
-std::vector<Change> DenseOutput::changes(const Engine& engine, Tick start) const {
+std::vector<BoundChange> DenseOutput::changes(const BoundsEngine& engine, Tick start) const {
     return timed(changes_.runs(engine, ref_), start);
 }
 
-std::vector<Change> DenseOutput::runs(const Engine& engine, Tick start, Tick newest) const {
-    Changes all;
+std::vector<BoundChange> DenseOutput::runs(const BoundsEngine& engine, Tick start,
+                                           Tick newest) const {
+    BoundChanges all;
     all.add(held_, newest);
     return timed(all.runs(engine, ref_), start);
 }
 
-std::optional<Bounds> DenseOutput::at(const Engine& engine, Tick t) const noexcept {
+std::optional<Bounds> DenseOutput::at(const BoundsEngine& engine, Tick t) const noexcept {
     if (t < held_) return std::nullopt;
     return engine.at(ref_, std::min(t, forever));
 }
 
-Tick DenseOutput::settle(const Engine& engine, Tick closed) noexcept {
+Tick DenseOutput::settle(const BoundsEngine& engine, Tick closed) noexcept {
     const Tick horizon = std::max<Tick>(0, engine.horizon(ref_));
     // The first tick that may still change, or might before the end of the trace.
     const Tick first_open = std::max<Tick>(0, plus(closed + 1, -horizon));
     if (decides_) {
-        open_ = Decisions::open(engine, ref_, open_);
+        open_ = EagerVerdicts::open(engine, ref_, open_);
         return std::max(first_open, open_);
     }
     held_ = std::min(next_held_, changes_.first());

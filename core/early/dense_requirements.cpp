@@ -72,7 +72,7 @@ DenseRequirements::DenseRequirements(std::vector<Group> groups, std::size_t requ
             const DenseMonitor& monitor = monitors_[place.group];
             horizons.push_back(monitor.engine().horizon(monitor.ref(place.output)));
         }
-        Engine engine(minimum_of(horizons), {}, true);
+        BoundsEngine engine(minimum_of(horizons), {}, true);
         const auto last = static_cast<std::uint32_t>(engine.size() - 1);
         DenseOutput output(2 * last, decides, engine);
         std::vector<Tick> wanted(engine.size());
@@ -237,12 +237,12 @@ const std::vector<Decision>& DenseRequirements::decisions(std::size_t output) co
     return of(output).decisions(outputs_[output].output);
 }
 
-std::vector<Change> DenseRequirements::changes(std::size_t output) const {
+std::vector<BoundChange> DenseRequirements::changes(std::size_t output) const {
     if (!is_minimum(output)) return of(output).changes(outputs_[output].output);
     return minimum_->output.changes(minimum_->engine, minimum_->start);
 }
 
-std::vector<Change> DenseRequirements::runs(std::size_t output) const {
+std::vector<BoundChange> DenseRequirements::runs(std::size_t output) const {
     if (!is_minimum(output)) return of(output).runs(outputs_[output].output);
     if (!minimum_->begun) return {};
     const Tick newest = *this->newest() - minimum_->start;
@@ -289,7 +289,7 @@ std::array<Pieces, 2> DenseRequirements::caused_pieces() const {
     std::array<Pieces, 2> pieces;
     if (!minimum_->begun) return pieces;
     for (const Place& place : minimum_->places) {
-        for (const Change& run : monitors_[place.group].caused(place.output)) {
+        for (const BoundChange& run : monitors_[place.group].caused(place.output)) {
             const Tick l = plus(run.l, -minimum_->start);
             const Tick r = plus(run.r, -minimum_->start);
             if (run.bounds.lower > -infinity) pieces[0].push_back({l, r, run.bounds.lower});
@@ -312,7 +312,7 @@ std::optional<Bounds> DenseRequirements::caused(std::size_t output,
     return Bounds{value_at(pieces[0], t), -value_at(pieces[1], t)};
 }
 
-std::vector<Change> DenseRequirements::caused(std::size_t output) const {
+std::vector<BoundChange> DenseRequirements::caused(std::size_t output) const {
     if (!is_minimum(output)) return of(output).caused(outputs_[output].output);
     const Tick last = finished() ? *newest() - minimum_->start : forever;
     const auto pieces = caused_pieces();
@@ -358,7 +358,7 @@ DenseRequirements::suppose(std::optional<std::size_t> output, Tick time,
             }
             const auto asked = output ? std::optional<std::size_t>(place) : std::nullopt;
             const auto found = monitor.suppose(asked, time, own);
-            if (const auto* failure = std::get_if<Engine::Failure>(&found)) {
+            if (const auto* failure = std::get_if<BoundsEngine::Failure>(&found)) {
                 return Failure{group, *failure};
             }
             value = std::get<Bounds>(found);

@@ -36,7 +36,7 @@ class DenseRequirements {
     };
     struct Failure {
         std::uint32_t group;
-        Engine::Failure operation;
+        BoundsEngine::Failure operation;
     };
     using Given = DenseMonitor::Given;
     using Supposed = DenseMonitor::Supposed;
@@ -61,14 +61,14 @@ class DenseRequirements {
     [[nodiscard]] bool finished() const noexcept { return monitors_.front().finished(); }
     [[nodiscard]] std::size_t outputs() const noexcept { return outputs_.size(); }
     [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept;
-    [[nodiscard]] std::vector<Change> changes(std::size_t output) const;
-    [[nodiscard]] std::vector<Change> runs(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output) const;
     [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time) const;
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
     [[nodiscard]] std::optional<Bounds> at_start() const;
     [[nodiscard]] Bounds caused_at_start() const noexcept;
     [[nodiscard]] std::optional<Bounds> caused(std::size_t output, std::optional<Tick> time) const;
-    [[nodiscard]] std::vector<Change> caused(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> caused(std::size_t output) const;
     // None where nothing is held.
     [[nodiscard]] std::variant<std::optional<Bounds>, Failure>
     suppose(std::optional<std::size_t> output, Tick time, std::span<const Supposed> later);
@@ -80,7 +80,7 @@ class DenseRequirements {
   private:
     // The minimum of values of several groups, in ticks from the first start.
     struct Minimum {
-        Engine engine;
+        BoundsEngine engine;
         DenseOutput output;
         std::vector<Place> places;
         std::vector<Tick> wanted; // by node
@@ -96,7 +96,7 @@ class DenseRequirements {
     std::vector<Place> outputs_;
     std::optional<Minimum> minimum_; // the first output, where it is not one of a group
     std::vector<Given> given_;
-    std::vector<Engine::Observation> observations_;
+    std::vector<BoundsEngine::Observation> observations_;
 
     [[nodiscard]] bool is_minimum(std::size_t output) const noexcept {
         return minimum_.has_value() && output == 0;

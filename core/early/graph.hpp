@@ -20,7 +20,8 @@
 //     pulses       at how many ticks of w, behind t, a is positive: in dense time, where a is a
 //     pulse
 //                  of one tick; a run of which w has more than one tick counts as infinitely many
-//     sum          the sum of a over w, behind t and cut at the start, in the order of totals.hpp
+//     sum          the sum of a over w, behind t and cut at the start, in the order of
+//     window_sums.hpp
 #pragma once
 
 #include "../program/opcodes.hpp"

@@ -1,24 +1,24 @@
 // How nodes follow what their operands change. Every kernel raises one register; where a value
 // rises, the maps of all operands are those after the whole change.
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <algorithm>
 
 namespace rtamt::early {
 
-void Engine::change(State& state, int reg, Runs::Place place, Run run, double now) {
+void BoundsEngine::change(State& state, int reg, Runs::Place place, Run run, double now) {
     Runs& own = state.own[static_cast<std::size_t>(reg)];
     if (journaling_) journal_.push_back({&own, run.begin, run.end, run.value});
     own.set(place, run.begin, run.end, now);
     state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
 }
 
-void Engine::change(State& state, int reg, Run run, double now) {
+void BoundsEngine::change(State& state, int reg, Run run, double now) {
     change(state, reg, state.own[static_cast<std::size_t>(reg)].find(run.begin), run, now);
 }
 
 // Raises what is below.
-void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
+void BoundsEngine::lift(State& state, int reg, Tick l, Tick r, double now) {
     l = std::max(l, state.from);
     r = std::min(r, state.to);
     if (l > r || l >= forever || now == -infinity) return; // nothing reads it, or it is no rise
@@ -36,7 +36,7 @@ void Engine::lift(State& state, int reg, Tick l, Tick r, double now) {
     }
 }
 
-void Engine::pass(std::uint32_t index, int reg) {
+void BoundsEngine::pass(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
     if (state.from >= forever) return; // nothing reads it
@@ -85,7 +85,7 @@ void Engine::pass(std::uint32_t index, int reg) {
 
 // ---- two operands at one instant ----------------------------------------------------------------
 
-void Engine::combine(std::uint32_t index, int reg, bool up) {
+void BoundsEngine::combine(std::uint32_t index, int reg, bool up) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& a = runs(own.a, reg);
@@ -124,7 +124,7 @@ void Engine::combine(std::uint32_t index, int reg, bool up) {
 
 // ---- windows ------------------------------------------------------------------------------------
 
-void Engine::slide(std::uint32_t index, int reg, bool up) {
+void BoundsEngine::slide(std::uint32_t index, int reg, bool up) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);
@@ -142,8 +142,8 @@ void Engine::slide(std::uint32_t index, int reg, bool up) {
 }
 
 // What a piece of truth decides are the windows that lie in its run.
-void Engine::slide_truth(State& state, int reg, const Node& node, const Runs& operand,
-                         Piece piece) {
+void BoundsEngine::slide_truth(State& state, int reg, const Node& node, const Runs& operand,
+                               Piece piece) {
     const Run run = operand.at(piece.l);
     const Tick l = run.begin <= 0 ? 0 : plus(run.begin, -node.low);
     const Tick r = plus(run.end, -node.high);
@@ -154,8 +154,8 @@ void Engine::slide_truth(State& state, int reg, const Node& node, const Runs& op
 // The least value of a window can rise only where it was that of the piece and no other value in
 // the window is as small; the new one holds for as long as it stays in the window and nothing
 // smaller comes in.
-void Engine::slide_least(State& state, int reg, const Node& node, const Runs& operand,
-                         Piece piece) {
+void BoundsEngine::slide_least(State& state, int reg, const Node& node, const Runs& operand,
+                               Piece piece) {
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
     Tick t = std::max(state.from, plus(piece.l, -node.high));
     Tick last = std::min(state.to, plus(piece.r, -node.low));
@@ -199,7 +199,8 @@ void Engine::slide_least(State& state, int reg, const Node& node, const Runs& op
 }
 
 // The least value since the start: min(own value before, the operand now).
-void Engine::run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece) {
+void BoundsEngine::run_least(State& state, int reg, const Node& node, const Runs& operand,
+                             Piece piece) {
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
     Tick t = std::max(state.from, plus(piece.l, -node.high));
     while (const auto run = own.first<AtLeast>(t, state.to, piece.old)) {
@@ -221,7 +222,8 @@ void Engine::run_least(State& state, int reg, const Node& node, const Runs& oper
 // From the right: max(goal, min(hold, next)), or the dual. A stretch on which hold and goal let the
 // next value through is passed at once.
 template <bool up>
-void Engine::until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r) {
+void BoundsEngine::until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l,
+                         Tick r) {
     using Less = std::conditional_t<up, Below, Above>;
     using More = std::conditional_t<up, Above, Below>;
     const Runs& own = state.own[static_cast<std::size_t>(reg)];
@@ -257,7 +259,8 @@ void Engine::until(State& state, int reg, const Runs& hold, const Runs& goal, Ti
 
 // From the left: max(goal, min(hold, before)), of dense time min(hold, max(goal, before)).
 template <bool up, bool dense>
-void Engine::since(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r) {
+void BoundsEngine::since(State& state, int reg, const Runs& hold, const Runs& goal, Tick l,
+                         Tick r) {
     using Less = std::conditional_t<up, Below, Above>;
     using More = std::conditional_t<up, Above, Below>;
     const auto join = [](double a, double b) { return up ? Real::join(a, b) : Real::meet(a, b); };

@@ -1,5 +1,5 @@
 // How the number of pulses in a window follows what its operand changes.
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <algorithm>
 
@@ -31,7 +31,7 @@ void add_steps(std::vector<Shift>& steps, const Run& run, const Node& node) {
 // Looks again at every tick whose window meets a piece, in one pass over the runs there. A sum
 // since the start goes on from the tick before, at which no pulse of several ticks is cut: what is
 // known there is known for good, or the piece begins a run.
-void Engine::pulses(std::uint32_t index, int reg) {
+void BoundsEngine::pulses(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);

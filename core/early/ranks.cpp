@@ -2,7 +2,7 @@
 // order while it passes over the ticks that can have changed.
 #include "../values/components.hpp"
 #include "../values/weighted.hpp"
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <algorithm>
 
@@ -88,7 +88,7 @@ class Ranking {
 } // namespace
 
 // Every tick whose window meets a piece is looked at again.
-void Engine::rank(std::uint32_t index, int reg, bool up) {
+void BoundsEngine::rank(std::uint32_t index, int reg, bool up) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);

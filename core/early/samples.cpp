@@ -91,7 +91,7 @@ Tick Samples::certain(std::size_t input) const noexcept {
     return std::max(now_.closed, column.back().time);
 }
 
-void Samples::collect(std::vector<Engine::Observation>& observations) {
+void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
     observations.clear();
     if (!now_.start) return;
     const bool starts = !committed_.start;

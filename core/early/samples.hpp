@@ -9,7 +9,7 @@
 // behind what is known, and one more for each input.
 #pragma once
 
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ class Samples {
     void commit();
 
     // What has become known since the last commit; ticks count from the start of the trace.
-    void collect(std::vector<Engine::Observation>& observations);
+    void collect(std::vector<BoundsEngine::Observation>& observations);
 
     // The bounds of an input at a time, as far as they are known.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick time) const noexcept;

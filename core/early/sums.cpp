@@ -4,18 +4,18 @@
 // As far as samples have been seen, bounds are sums of bounds. Where a whole window lies beyond and
 // has the same bounds at every tick, the place of the window is open; a sum since the start is
 // bounded there by what was seen, or not at all.
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <algorithm>
 
 namespace rtamt::early {
 
-void Engine::lift(State& state, Tick l, Tick r, const Bounds& now) {
+void BoundsEngine::lift(State& state, Tick l, Tick r, const Bounds& now) {
     lift(state, 0, l, r, now.lower);
     lift(state, 1, l, r, -now.upper);
 }
 
-std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
+std::optional<BoundsEngine::Failure> BoundsEngine::add_up(std::uint32_t index, bool first) {
     const Node& own = node(index);
     const State& state = nodes_[index];
     if (state.from >= forever) return std::nullopt; // nothing reads it
@@ -25,7 +25,7 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
     } else {
         for (int reg = 0; reg < 2; ++reg) {
             for (const Piece& piece : new_data(own.a, reg)) {
-                totals_[index].change(piece.l, piece.r);
+                sums_[index].change(piece.l, piece.r);
                 spans_.emplace_back(plus(piece.l, -own.high), plus(piece.r, -own.low));
             }
         }
@@ -46,7 +46,8 @@ std::optional<Engine::Failure> Engine::add_up(std::uint32_t index, bool first) {
 }
 
 // The sums at [t, r].
-std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, Tick r) {
+std::optional<BoundsEngine::Failure> BoundsEngine::add_windows(std::uint32_t index, Tick t,
+                                                               Tick r) {
     const Node& own = node(index);
     State& state = nodes_[index];
     const Runs& lower = runs(own.a, 0);
@@ -55,7 +56,7 @@ std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, 
         const Tick end = t + own.high;
         if (end < 0) { // nothing is in the window yet
             const Tick last = std::min(r, -own.high - 1);
-            lift(state, t, last, Totals::Add::identity);
+            lift(state, t, last, WindowSums::Add::identity);
             t = last + 1;
             continue;
         }
@@ -74,11 +75,11 @@ std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, 
         same = std::min(low.end, high.end);
         if (t + own.low >= 0 && end > seen_ && same >= end) {
             const Tick last = std::min(r, plus(same, -own.high));
-            lift(state, t, last, totals_[index].anywhere({low.value, -high.value}));
+            lift(state, t, last, sums_[index].anywhere({low.value, -high.value}));
             t = plus(last, 1);
             continue;
         }
-        const Bounds sum = totals_[index].at(end, [&](Tick i) { return at(own.a, i); });
+        const Bounds sum = sums_[index].at(end, [&](Tick i) { return at(own.a, i); });
         if (!Interval::undefined(sum)) {
             lift(state, t, t, sum);
         } else if (const auto failure = fails(index, 0, t, true)) {
@@ -90,17 +91,17 @@ std::optional<Engine::Failure> Engine::add_windows(std::uint32_t index, Tick t, 
 }
 
 // The sums since the start, from t on.
-std::optional<Engine::Failure> Engine::add_all(std::uint32_t index, Tick t) {
+std::optional<BoundsEngine::Failure> BoundsEngine::add_all(std::uint32_t index, Tick t) {
     const Node& own = node(index);
     State& state = nodes_[index];
     if (t + own.high < 0) {
-        lift(state, t, -own.high - 1, Totals::Add::identity);
+        lift(state, t, -own.high - 1, WindowSums::Add::identity);
         t = -own.high;
     }
     t = std::min(t, seen_ + 1 - own.high); // what is unseen takes what was seen further
-    Bounds sum = t + own.high > 0 ? at(2 * index, t - 1) : Totals::Add::identity;
+    Bounds sum = t + own.high > 0 ? at(2 * index, t - 1) : WindowSums::Add::identity;
     for (; t + own.high <= seen_; ++t) {
-        sum = Totals::Add::join(at(own.a, t + own.high), sum);
+        sum = WindowSums::Add::join(at(own.a, t + own.high), sum);
         if (Interval::undefined(sum)) {
             if (const auto failure = fails(index, 0, t, true)) return failure;
             sum = bounds::anything;

@@ -1,13 +1,13 @@
 // Operations without a value. They are an error at a tick that the trace has reached, or that is
 // read when it ends, where their operands are known exactly or will not be known better; until then
 // nothing is known of the value. What has none for some bounds has none for narrower ones either.
-#include "engine.hpp"
+#include "bounds_engine.hpp"
 
 #include <algorithm>
 
 namespace rtamt::early {
 
-std::optional<Engine::Failure> Engine::fails(std::uint32_t index) const noexcept {
+std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index) const noexcept {
     const auto& [exact, any, step] = nodes_[index].undefined;
     if (reached(index, exact)) return Failure{index, step, exact};
     const Tick horizon = std::max<Tick>(0, node(index).horizon);
@@ -15,8 +15,8 @@ std::optional<Engine::Failure> Engine::fails(std::uint32_t index) const noexcept
     return std::nullopt;
 }
 
-std::optional<Engine::Failure> Engine::fails(std::uint32_t index, std::uint32_t step, Tick t,
-                                             bool exact) noexcept {
+std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index, std::uint32_t step,
+                                                         Tick t, bool exact) noexcept {
     auto& undefined = nodes_[index].undefined;
     if (exact) undefined.exact = std::min(undefined.exact, t);
     undefined.any = std::min(undefined.any, t);
@@ -28,7 +28,7 @@ std::optional<Engine::Failure> Engine::fails(std::uint32_t index, std::uint32_t 
 // How far behind the newest sample each node is read when the trace ends, after which every input
 // holds its last value. `forever`: nodes that something else reads so far. The recursion of until
 // ends where the window does that is above it.
-void Engine::find_beyond(std::span<const std::uint32_t> read_forever) {
+void BoundsEngine::find_beyond(std::span<const std::uint32_t> read_forever) {
     std::vector<Tick> within(nodes_.size(), -1); // the last tick of such a window
     for (State& state : nodes_)
         state.beyond = 0;

@@ -10,7 +10,7 @@
 #include "offline.hpp"
 #include "online.hpp"
 #include "recording.hpp"
-#include "reorder.hpp"
+#include "reorder_buffer.hpp"
 #include "tick_points.hpp"
 
 #include <nanobind/nanobind.h>
@@ -68,7 +68,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_evaluator(m, exceptions);
     rtamt::python::add_direct_evaluator(m);
     rtamt::python::add_fleet(m);
-    rtamt::python::add_reorder(m);
+    rtamt::python::add_reorder_buffer(m);
     rtamt::python::add_recording(m);
     rtamt::python::add_tick_points(m);
 

@@ -26,15 +26,15 @@ namespace {
 constexpr Tick never = -forever;
 
 [[nodiscard]] std::vector<std::tuple<Tick, Tick, double, double>>
-tuples_of(const std::vector<early::Change>& runs) {
+tuples_of(const std::vector<early::BoundChange>& runs) {
     std::vector<std::tuple<Tick, Tick, double, double>> result;
     result.reserve(runs.size());
-    for (const early::Change& run : runs)
+    for (const early::BoundChange& run : runs)
         result.emplace_back(run.l, run.r + 1, run.bounds.lower, run.bounds.upper);
     return result;
 }
 
-// (nodes, outputs, origin, inputs, causes)
+// (nodes, outputs, at_start, inputs, causes)
 using EarlyGroup =
     std::tuple<std::vector<EarlyNode>, std::vector<std::uint32_t>, std::vector<EarlyItem>,
                std::vector<std::uint32_t>, std::optional<EarlyCauses>>;
@@ -200,7 +200,7 @@ DenseEarlyMonitor::Runs DenseEarlyMonitor::runs(std::size_t output) const {
     return tuples_of(monitor_.runs(output));
 }
 
-std::optional<std::pair<double, double>> DenseEarlyMonitor::origin() const {
+std::optional<std::pair<double, double>> DenseEarlyMonitor::at_start() const {
     const auto bounds = monitor_.at_start();
     if (!bounds) return std::nullopt;
     return pair_of(*bounds);
@@ -246,7 +246,7 @@ DenseEarlyMonitor::causation(std::size_t output, std::optional<Tick> tick) const
 DenseEarlyMonitor::Runs DenseEarlyMonitor::caused(std::size_t output) const {
     require_output(output);
     Runs result;
-    for (const early::Change& run : monitor_.caused(output)) {
+    for (const early::BoundChange& run : monitor_.caused(output)) {
         const auto [violation, satisfaction] = caused_of(run.bounds);
         result.emplace_back(run.l, early::plus(run.r, 1), violation, satisfaction);
     }
@@ -330,9 +330,9 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
                 std::vector<early::DenseRequirements::Group> all;
                 std::vector<std::vector<std::uint32_t>> steps;
                 std::uint32_t before = 0;
-                for (const auto& [nodes, refs, origin, inputs, causes] : groups) {
+                for (const auto& [nodes, refs, at_start, inputs, causes] : groups) {
                     const auto count = static_cast<std::uint32_t>(inputs.size());
-                    early::DenseSettings own{refs, items_of(origin), {}, lateness, verdicts, {}};
+                    early::DenseSettings own{refs, items_of(at_start), {}, lateness, verdicts, {}};
                     for (const std::uint32_t input : inputs)
                         own.ranges.push_back(settings.ranges.at(input));
                     if (causes) {
@@ -368,7 +368,7 @@ void add_dense_early_monitor(const nb::module_& module, const Exceptions& except
              "Runs (begin, end, lower, upper) that the last call changed.")
         .def("runs", &DenseEarlyMonitor::runs, nb::arg("output"),
              "All runs that are held, up to the newest sample.")
-        .def("origin", &DenseEarlyMonitor::origin, "The bounds at the start of the trace.")
+        .def("at_start", &DenseEarlyMonitor::at_start, "The bounds at the start of the trace.")
         .def("bounds", &DenseEarlyMonitor::bounds, nb::arg("output"), nb::arg("tick"),
              "The bounds of an output at a tick, None where they are not held.")
         .def("supposed", &DenseEarlyMonitor::supposed, nb::arg("output").none(), nb::arg("tick"),

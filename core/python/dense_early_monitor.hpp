@@ -59,7 +59,7 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] Runs changes(std::size_t output) const;
     [[nodiscard]] Runs runs(std::size_t output) const;
 
-    [[nodiscard]] std::optional<std::pair<double, double>> origin() const;
+    [[nodiscard]] std::optional<std::pair<double, double>> at_start() const;
     [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output,
                                                                   Tick tick) const;
     // Of an output, or none for the start; suppositions (input, from, lower, upper) in order.

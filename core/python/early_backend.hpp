@@ -1,8 +1,8 @@
 // What the monitors of verdicts and bounds before the horizon have in common, as Python sees them.
 #pragma once
 
+#include "../early/bounds_at_start.hpp"
 #include "../early/causation.hpp"
-#include "../early/origin.hpp"
 #include "names.hpp"
 #include "result_class.hpp"
 

@@ -84,7 +84,7 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
         .def(
             "__init__",
             [exceptions](EarlyMonitor* self, const std::vector<EarlyNode>& nodes,
-                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& origin,
+                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& at_start,
                          const std::vector<std::pair<double, double>>& ranges,
                          const std::vector<nb::str>& names, const nb::object& ignored,
                          const nb::dict& types, double period, double tolerance,
@@ -101,10 +101,10 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                 if (change) settings.change.emplace(change->first, change->second);
                 new (self)
                     EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                 std::move(outputs), items_of(origin), bounds_of(ranges), names,
+                                 std::move(outputs), items_of(at_start), bounds_of(ranges), names,
                                  ignored, types, std::move(settings), causes, exceptions);
             },
-            nb::arg("nodes"), nb::arg("outputs"), nb::arg("origin"), nb::arg("ranges"),
+            nb::arg("nodes"), nb::arg("outputs"), nb::arg("at_start"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored"), nb::arg("types"), nb::arg("period"),
             nb::arg("tolerance"), nb::arg("lateness").none(), nb::arg("verdict").none(),
             nb::arg("replays") = false, nb::arg("causes").none() = nb::none(),
@@ -118,7 +118,7 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
         .def("finish", &EarlyMonitor::finish, "End the trace; return what that makes known.")
         .def("verdicts", &EarlyMonitor::verdicts, nb::arg("output"),
              "The verdicts of an output that the last call decided.")
-        .def("origin", &EarlyMonitor::origin, "The bounds at the start of the trace.")
+        .def("at_start", &EarlyMonitor::at_start, "The bounds at the start of the trace.")
         .def("bounds", &EarlyMonitor::bounds, nb::arg("output"), nb::arg("sample"),
              "The bounds of an output at a sample, None where they are forgotten.")
         .def("changes", &EarlyMonitor::changes, nb::arg("output"),

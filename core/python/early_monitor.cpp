@@ -19,22 +19,22 @@ namespace {
 // How many samples come between two looks at what is not needed any more.
 constexpr std::int64_t pause = 64;
 
-[[nodiscard]] std::optional<early::Origin> origin_of(std::vector<early::Item> items,
-                                                     const early::Engine& engine, bool follows) {
+[[nodiscard]] std::optional<early::BoundsAtStart>
+at_start_of(std::vector<early::Item> items, const early::BoundsEngine& engine, bool follows) {
     if (items.empty()) return std::nullopt;
-    return early::Origin(std::move(items), engine, follows);
+    return early::BoundsAtStart(std::move(items), engine, follows);
 }
 
 } // namespace
 
 EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
-                           std::vector<early::Item> origin, std::vector<Bounds> ranges,
+                           std::vector<early::Item> at_start, std::vector<Bounds> ranges,
                            const std::vector<nb::str>& names, const nb::object& ignored,
                            const nb::dict& types, EarlySettings settings,
                            const std::optional<EarlyCauses>& causes, Exceptions exceptions)
     : engine_(graph, ranges, settings.late), outputs_(std::move(outputs)),
       decisions_(outputs_.size()),
-      origin_(origin_of(std::move(origin), engine_, causes.has_value())),
+      at_start_(at_start_of(std::move(at_start), engine_, causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
       settings_(std::move(settings)), exceptions_(std::move(exceptions)),
       guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
@@ -47,14 +47,14 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
     if (causes) {
-        causes_.emplace(causes_of(*causes), engine_, origin_.value(), false);
+        causes_.emplace(causes_of(*causes), engine_, at_start_.value(), false);
         causation_.emplace(causation_of(*causes));
     }
     if (!causes) { // which are of every value, needed or not
         std::vector<Tick> last(engine_.size(), -1);
         for (const std::uint32_t output : outputs_)
             last[output / 2] = forever;
-        if (origin_) origin_->limit(last);
+        if (at_start_) at_start_->limit(last);
         engine_.limit(last);
     }
     // What is known before any sample came, such as the truth of constants, waits for the first.
@@ -210,8 +210,8 @@ void EarlyMonitor::note(Tick before) {
         }
         changes_[i].collect(engine_, outputs_[i], before, newest);
     }
-    if (origin_) origin_->read(engine_);
-    if (causes_) causes_->read(engine_, *origin_, newest);
+    if (at_start_) at_start_->read(engine_);
+    if (causes_) causes_->read(engine_, *at_start_, newest);
 }
 
 Tick EarlyMonitor::lag(std::size_t output) const {
@@ -231,7 +231,7 @@ void EarlyMonitor::settle() {
         Tick& wanted = wanted_[outputs_[i] / 2];
         Tick from = 0;
         if (settings_.verdict) {
-            open_[i] = early::Decisions::open(engine_, outputs_[i], open_[i]);
+            open_[i] = early::EagerVerdicts::open(engine_, outputs_[i], open_[i]);
             from = std::max(early::plus(closed + 1, -lag(i)), open_[i]);
         } else {
             from = std::min(held(i), changes_[i].first());
@@ -239,7 +239,7 @@ void EarlyMonitor::settle() {
         wanted = std::min(wanted, from);
         oldest = std::min(oldest, wanted);
     }
-    if (origin_) origin_->settle(engine_, closed, wanted_);
+    if (at_start_) at_start_->settle(engine_, closed, wanted_);
     if (causes_) causes_->settle(engine_, closed, wanted_);
     engine_.settle(closed, wanted_);
     times_.drop_before(oldest);
@@ -274,8 +274,8 @@ nb::object EarlyMonitor::finish() {
         all.append(nb::make_tuple(rest.first, values));
     }
     nb::object start = nb::none();
-    if (origin_ && end > 0) {
-        const Bounds value = origin_->ended(engine_, end);
+    if (at_start_ && end > 0) {
+        const Bounds value = at_start_->ended(engine_, end);
         start = nb::make_tuple(value.lower, value.upper);
     }
     finished_ = true;

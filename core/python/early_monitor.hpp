@@ -4,12 +4,12 @@
 // caller brings it in the form of take() or learn().
 #pragma once
 
+#include "../early/bound_changes.hpp"
+#include "../early/bounds_at_start.hpp"
+#include "../early/bounds_engine.hpp"
 #include "../early/causation.hpp"
-#include "../early/changes.hpp"
-#include "../early/decisions.hpp"
-#include "../early/engine.hpp"
-#include "../early/origin.hpp"
-#include "../early/times.hpp"
+#include "../early/eager_verdicts.hpp"
+#include "../early/sample_times.hpp"
 #include "change_class.hpp"
 #include "early_backend.hpp"
 #include "failures.hpp"
@@ -41,7 +41,7 @@ struct EarlySettings {
 class EarlyMonitor : public EarlyBackend {
   public:
     EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
-                 std::vector<early::Item> origin, std::vector<Bounds> ranges,
+                 std::vector<early::Item> at_start, std::vector<Bounds> ranges,
                  const std::vector<nb::str>& names, const nb::object& ignored,
                  const nb::dict& types, EarlySettings settings,
                  const std::optional<EarlyCauses>& causes, Exceptions exceptions);
@@ -62,7 +62,7 @@ class EarlyMonitor : public EarlyBackend {
 
     // The verdicts of an output that the last call decided.
     [[nodiscard]] nb::object verdicts(std::size_t output);
-    [[nodiscard]] std::optional<std::pair<double, double>> origin() const;
+    [[nodiscard]] std::optional<std::pair<double, double>> at_start() const;
     [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output,
                                                                   early::Tick sample) const;
     // Runs (first, last, lower, upper) of an output that the last call changed.
@@ -99,15 +99,15 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] std::size_t state_bytes() const;
 
   private:
-    using Failure = early::Engine::Failure;
+    using Failure = early::BoundsEngine::Failure;
 
-    early::Engine engine_;
+    early::BoundsEngine engine_;
     std::vector<std::uint32_t> outputs_;
-    std::vector<early::Decisions> decisions_; // by output
-    std::optional<early::Origin> origin_;
+    std::vector<early::EagerVerdicts> decisions_; // by output
+    std::optional<early::BoundsAtStart> at_start_;
     std::optional<early::Causes> causes_;
     std::optional<ResultClass<2>> causation_; // of what update() returns
-    early::Times times_;
+    early::SampleTimes times_;
     std::vector<Bounds> ranges_;
     EarlySettings settings_;
     Exceptions exceptions_;
@@ -118,10 +118,10 @@ class EarlyMonitor : public EarlyBackend {
     std::vector<double> row_;
     std::vector<bool> given_;
     std::vector<std::vector<early::Decision>> news_; // by output
-    std::vector<early::Changes> changes_;            // by output
+    std::vector<early::BoundChanges> changes_;       // by output
     std::vector<early::Tick> open_;                  // by output, the first tick without a verdict
     std::vector<early::Tick> wanted_;
-    std::vector<early::Engine::Observation> observations_;
+    std::vector<early::BoundsEngine::Observation> observations_;
     early::Tick closed_ = -1; // nothing up to here will come
     std::int64_t samples_ = 0;
     bool finished_ = false;

@@ -51,9 +51,9 @@ nb::object EarlyMonitor::verdicts(std::size_t output) {
     return checked(new_data(output));
 }
 
-std::optional<std::pair<double, double>> EarlyMonitor::origin() const {
-    if (!origin_) return std::nullopt;
-    const Bounds value = origin_->value();
+std::optional<std::pair<double, double>> EarlyMonitor::at_start() const {
+    if (!at_start_) return std::nullopt;
+    const Bounds value = at_start_->value();
     return std::pair{value.lower, value.upper};
 }
 
@@ -73,7 +73,7 @@ std::vector<std::tuple<Tick, Tick, double, double>>
 EarlyMonitor::changes(std::size_t output) const {
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     std::vector<std::tuple<Tick, Tick, double, double>> result;
-    for (const early::Change& run : changes_[output].runs(engine_, outputs_[output]))
+    for (const early::BoundChange& run : changes_[output].runs(engine_, outputs_[output]))
         result.emplace_back(run.l, run.r, run.bounds.lower, run.bounds.upper);
     return result;
 }
@@ -85,7 +85,7 @@ nb::object EarlyMonitor::reported(std::size_t output) const {
     auto list = nb::steal(PyList_New(static_cast<Py_ssize_t>(runs.size())));
     if (!list.is_valid()) throw nb::python_error();
     Py_ssize_t place = 0;
-    for (const early::Change& run : runs) {
+    for (const early::BoundChange& run : runs) {
         const bool is_final = finished_ || run.bounds.lower == run.bounds.upper || run.r <= settled;
         PyObject* change =
             settings_.change.value().make(times_.at(run.l), times_.at(run.r), run.bounds, is_final);
@@ -104,12 +104,12 @@ nb::object EarlyMonitor::supposed(
     }
     if (output && sample < held(*output)) return nb::none();
     const Tick next = times_.newest() + 1;
-    std::vector<early::Engine::Supposition> suppositions;
+    std::vector<early::BoundsEngine::Supposition> suppositions;
     for (const auto& [first, last, lower, upper] : later) {
         if (lower.size() != row_.size() || upper.size() != row_.size() || first < 0) {
             throw std::invalid_argument("There is a bound of every input.");
         }
-        early::Engine::Supposition supposed{next + first, early::plus(next, last), {}};
+        early::BoundsEngine::Supposition supposed{next + first, early::plus(next, last), {}};
         for (std::size_t i = 0; i < lower.size(); ++i)
             supposed.row.push_back({lower[i], upper[i]});
         suppositions.push_back(std::move(supposed));
@@ -122,9 +122,9 @@ nb::object EarlyMonitor::supposed(
     if (output) {
         value = engine_.at(outputs_[*output], sample);
     } else {
-        early::Origin origin = origin_.value();
-        origin.read(engine_);
-        value = origin.value();
+        early::BoundsAtStart at_start = at_start_.value();
+        at_start.read(engine_);
+        value = at_start.value();
     }
     engine_.revert();
     return nb::make_tuple(value.lower, value.upper);
@@ -143,7 +143,7 @@ std::vector<std::tuple<Tick, Tick, double, double>> EarlyMonitor::caused(std::si
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     std::vector<std::tuple<Tick, Tick, double, double>> result;
     const Tick last = finished_ ? times_.newest() : forever;
-    for (const early::Change& run : causes_.value().runs(output, last)) {
+    for (const early::BoundChange& run : causes_.value().runs(output, last)) {
         const auto [violation, satisfaction] = caused_of(run.bounds);
         result.emplace_back(run.l, run.r, violation, satisfaction);
     }
@@ -184,7 +184,7 @@ void EarlyMonitor::restore(const nb::bytes& state) {
 
 void EarlyMonitor::transfer(Snapshot& snapshot) {
     engine_.transfer(snapshot);
-    if (origin_) origin_->transfer(snapshot);
+    if (at_start_) at_start_->transfer(snapshot);
     if (causes_) causes_->transfer(snapshot);
     for (auto& decisions : decisions_)
         decisions.transfer(snapshot);

@@ -112,12 +112,12 @@ from rtamt.signals.signal import Signal as Signal
 from rtamt.signals.trace import Channel as Channel
 from rtamt.signals.trace import Trace as Trace
 from rtamt.specification import Specification as Specification
-from rtamt.texts import load as load
-from rtamt.texts import pack as pack
-from rtamt.texts import parse as parse
-from rtamt.texts import robustness as robustness
+from rtamt.specification_loader import load as load
+from rtamt.specification_loader import pack as pack
+from rtamt.specification_loader import parse as parse
+from rtamt.specification_loader import robustness as robustness
 from rtamt.verdicts.chunks import StreamResult as StreamResult
-from rtamt.verdicts.prediction import calibrate as calibrate
+from rtamt.verdicts.early.prediction import calibrate as calibrate
 from rtamt.verdicts.streaming import check_stream as check_stream
 
 __version__: str

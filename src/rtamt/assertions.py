@@ -11,7 +11,7 @@ from rtamt.results import first_violation
 from rtamt.signals.arrays import is_number
 from rtamt.signals.listing import show_time
 from rtamt.specification import Specification
-from rtamt.texts import load, parse
+from rtamt.specification_loader import load, parse
 
 if TYPE_CHECKING:
     from rtamt.results import Result

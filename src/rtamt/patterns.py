@@ -20,7 +20,7 @@ from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.english import to_english
 from rtamt.language.units.durations import NUMBER, UNITS
 from rtamt.lazy_dataclasses import dataclass
-from rtamt.texts import parse
+from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -32,11 +32,11 @@ if TYPE_CHECKING:
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
     from rtamt.signals.domain_interface import TimeDomain
-    from rtamt.verdicts.dense_causation import DenseCausationMonitor
-    from rtamt.verdicts.dense_early import DenseEagerMonitor
-    from rtamt.verdicts.discrete_causation import DiscreteCausationMonitor
-    from rtamt.verdicts.eager import EagerMonitor
-    from rtamt.verdicts.interval import IntervalMonitor
+    from rtamt.verdicts.early.dense_causation import DenseCausationMonitor
+    from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
+    from rtamt.verdicts.early.discrete_causation import DiscreteCausationMonitor
+    from rtamt.verdicts.early.discrete_eager import EagerMonitor
+    from rtamt.verdicts.early.interval import IntervalMonitor
 
 
 class OnlineSpecification(QuantifiedText):

@@ -14,7 +14,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.lazy_dataclasses import replace
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DEFAULT
-from rtamt.texts import domain_of, parse
+from rtamt.specification_loader import domain_of, parse
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack

@@ -15,7 +15,7 @@ from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.latex import to_latex
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import UNITS
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 CORPUS = Path(__file__).parent / "corpus" / "text"
 

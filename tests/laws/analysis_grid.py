@@ -17,7 +17,7 @@ from rtamt.analysis.encoder import Encoder
 from rtamt.analysis.solver import Solver
 from rtamt.language.formula import Var, variables
 from rtamt.language.operators import Pointwise
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

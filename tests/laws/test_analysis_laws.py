@@ -5,14 +5,14 @@ from hypothesis import assume, given, settings
 
 import rtamt
 from rtamt.analysis.arithmetic import ENCODED, NONLINEAR
+from rtamt.analysis.bounded_checker import BoundedChecker, Part
 from rtamt.analysis.encoder import NotCoveredError
-from rtamt.analysis.study import Part, Study
 from rtamt.errors import StlError
 from rtamt.language.formula import variables
 from rtamt.language.operators import STL, Pointwise
 from rtamt.language.unwritten import UNWRITTEN
 from tests.laws.analysis_grid import COVERED, by_force, by_solver, encoded
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 
 def _real(op):
@@ -35,8 +35,8 @@ def test_the_solver_finds_what_every_trace_over_three_values_and_six_samples_sho
 def test_the_engine_confirms_each_trace_that_the_solver_finds(formula):
     part = Part("", rtamt.parse("x").with_formula(formula))
     try:
-        study = Study([part.spec], samples=5)
-        answers = [study.satisfiable(part), study.valid(part)]
+        checker = BoundedChecker([part.spec], samples=5)
+        answers = [checker.satisfiable(part), checker.valid(part)]
     except (NotCoveredError, StlError):
         assume(False)
     for answer in answers:
@@ -47,13 +47,13 @@ def test_the_engine_confirms_each_trace_that_the_solver_finds(formula):
 @pytest.mark.parametrize("op", [op for op in STL if isinstance(op.kernel, Pointwise)], ids=lambda op: op.name)
 def test_an_operator_is_encoded_or_named_as_not_covered(op):
     spec = rtamt.parse(op.example)
-    study = Study([spec], samples=3)
+    checker = BoundedChecker([spec], samples=3)
     assert (op.kernel.opcode in ENCODED) is not (op.kernel.opcode in NONLINEAR)
     if op.kernel.opcode in ENCODED and op.name not in ("mul", "div", "radians"):
-        study.require_covered(spec.formula, spec)
+        checker.require_covered(spec.formula, spec)
     elif op.kernel.opcode in NONLINEAR:
         with pytest.raises(NotCoveredError, match=f"'{op.spellings[0]}' is not linear"):
-            study.require_covered(spec.formula, spec)
+            checker.require_covered(spec.formula, spec)
 
 
 def test_no_opcode_of_the_analysis_is_unknown_to_the_table():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import StlError
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,9 +14,9 @@ from rtamt.compiler.program import Program
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Var, fold, variables
 from rtamt.language.printing.printer import to_text
-from rtamt.verdicts.at_start import StartMonitor
-from tests import c_api
-from tests.strategies import formulas, traces
+from rtamt.verdicts.early.at_start import StartMonitor
+from tests.support import c_api
+from tests.support.strategies import formulas, traces
 
 
 def _continued(monitor, code, how):

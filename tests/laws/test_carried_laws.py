@@ -21,8 +21,8 @@ from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.standalone import carried_program
-from tests import c_api
-from tests.strategies import dense_chunkings, dense_traces, formulas, traces
+from tests.support import c_api
+from tests.support.strategies import dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from rtamt.signals.domain_interface import TimeDomain

@@ -24,7 +24,7 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
 from rtamt.rewrite.truth import is_part_of_a_condition
 from tests.laws.test_engine_laws import by_definition
-from tests.strategies import formulas, traces
+from tests.support.strategies import formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

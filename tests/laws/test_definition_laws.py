@@ -14,12 +14,12 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, children, fold, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.language.shares import Share, ShareKind
-from rtamt.reference.discrete import ReferenceMonitor, evaluate, evaluate_all, history
+from rtamt.reference.discrete_robustness import ReferenceMonitor, evaluate, evaluate_all, history
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.truth import with_truths
 from tests.oracle import boolean
-from tests.strategies import chunkings, formulas, traces
+from tests.support.strategies import chunkings, formulas, traces
 
 PERIOD = Fraction(1, 2)
 

@@ -15,14 +15,14 @@ from rtamt.language.definitions.dense import QUARTERS, Steps, critical, lifted
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.language.shares import Share, ShareKind, is_share, rank_arguments, rank_of
-from rtamt.reference import discrete as reference
-from rtamt.reference.dense import DenseReferenceMonitor, StepFunction, evaluate
+from rtamt.reference import discrete_robustness as reference
+from rtamt.reference.dense_robustness import DenseReferenceMonitor, StepFunction, evaluate
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from rtamt.rewrite.truth import with_truths
 from tests.laws.test_pastify_laws import formulas_over_numbers_ahead, of_numbers
 from tests.oracle import dense_grid
-from tests.strategies import dense_chunkings, dense_traces, formulas, traces
+from tests.support.strategies import dense_chunkings, dense_traces, formulas, traces
 
 TICK = Fraction(1, 2)
 

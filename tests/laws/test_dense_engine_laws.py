@@ -14,11 +14,11 @@ from rtamt.engine import Evaluators
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, variables
-from rtamt.reference import dense as dense_reference
+from rtamt.reference import dense_robustness as dense_reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.dense import Dense, DenseTrace, record_dense
-from tests.strategies import dense_chunkings, dense_traces, formulas
+from tests.support.strategies import dense_chunkings, dense_traces, formulas
 
 TICK = Fraction(1)
 NAMES = ("x", "y")

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from tests.laws.test_recording_laws import bits, columns, outcome, stamps
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 if TYPE_CHECKING:
     from collections.abc import Callable

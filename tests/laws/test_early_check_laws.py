@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.printing.printer import to_text
-from rtamt.verdicts.dense_early_check import DenseEarlyCheck
-from rtamt.verdicts.early_check import DiscreteEarlyCheck, holds_at_end
-from tests.strategies import dense_chunkings, dense_traces, formulas, traces
+from rtamt.verdicts.early.check import DiscreteEarlyCheck, holds_at_end
+from rtamt.verdicts.early.dense_check import DenseEarlyCheck
+from tests.support.strategies import dense_chunkings, dense_traces, formulas, traces
 
 FORMULAS = formulas(unbounded_future=True)
 

@@ -20,14 +20,14 @@ from rtamt.language.formula import Apply, Formula, Var, fold, variables
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import rank_arguments
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
 from rtamt.rewrite.truth import with_truths
 from rtamt.signals.discrete import record_discrete
 from tests.oracle.boolean import satisfied
-from tests.strategies import chunkings, formulas, traces
+from tests.support.strategies import chunkings, formulas, traces
 
 ONE = Fraction(1)
 PERIODS = st.sampled_from([Fraction(1), Fraction(1, 10), Fraction(3)])

@@ -24,13 +24,13 @@ from rtamt.explain.explain import explain
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
 from rtamt.language.operators import STL
 from rtamt.language.records import Sort
-from rtamt.reference import dense as dense_reference
-from rtamt.reference import discrete as reference
+from rtamt.reference import dense_robustness as dense_reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import record_dense
 from rtamt.signals.discrete import record_discrete
 from tests.oracle import boolean
 from tests.oracle.dense_grid import on_grid
-from tests.strategies import dense_traces, formulas, traces
+from tests.support.strategies import dense_traces, formulas, traces
 
 ONE = Fraction(1)
 BACKENDS = st.sampled_from(["cpp", "cpp", "cpp", "python"])

@@ -21,7 +21,7 @@ from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import to_text
 from rtamt.signals.discrete import Discrete
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

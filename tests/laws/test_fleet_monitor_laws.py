@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError, SpecificationError, TraceError
 from rtamt.language.printing.printer import to_text
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 #: Whether time is dense, whether samples are late, whether values may be missing or uncertain; and the settings.
 MODES: dict[str, tuple[bool, bool, bool, dict[str, Any]]] = {

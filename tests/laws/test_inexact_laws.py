@@ -14,7 +14,7 @@ from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder, variables
 from rtamt.language.printing.printer import to_text
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import DenseTrace
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.ticks import TimeScale

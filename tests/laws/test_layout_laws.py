@@ -13,7 +13,7 @@ from rtamt.language.parsing.lexer import comments, quoted, tokenize
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
 from rtamt.layout import _meaning, formatted
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 HEADS = ["", "specification s\n", 'import "patterns.stl"\n', "sample 100ms hold for 1s\n"]
 DECLARED = [

@@ -17,7 +17,7 @@ from rtamt.lint.fix import mended
 from rtamt.lint.found import Text
 from rtamt.lint.ranges import Decided
 from rtamt.lint.report import findings
-from tests.strategies import formulas, traces
+from tests.support.strategies import formulas, traces
 
 RANGES = "float x in [-1, 2]; float y in [0.5, 3]; "
 

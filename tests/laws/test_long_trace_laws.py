@@ -19,7 +19,7 @@ from rtamt.language.operators import STL, Bounds
 from rtamt.language.printing.printer import to_text
 from rtamt.language.shares import Share, ShareKind
 from tests.laws.test_engine_laws import by_definition, by_engine, online
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 BLOCK = 256
 CHUNKS = (0, 1, 2, 100, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK, 700)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import StlError, UsageError
 from rtamt.mining import directions, mine
-from tests.strategies import formulas, traces
+from tests.support.strategies import formulas, traces
 
 #: A number in the text of a formula: a constant or a bound.
 _LITERAL = re.compile(r"(?<![\w.%])\d+(?:\.\d+)?(?![\w.%])")

@@ -19,10 +19,10 @@ from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Formula, postorder, variables
-from rtamt.reference import dense as dense_reference
-from rtamt.reference import discrete as reference
+from rtamt.reference import dense_robustness as dense_reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import Dense
-from tests.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
+from tests.support.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Callable

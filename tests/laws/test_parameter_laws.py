@@ -15,7 +15,7 @@ from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
 from rtamt.language.printing.printer import number, to_text
 from rtamt.language.units.durations import UNITS
-from tests.strategies import dense_traces, formulas, traces
+from tests.support.strategies import dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -17,7 +17,7 @@ from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import StlError
 from rtamt.language.formula import Formula, variables
 from rtamt.rewrite.desugar import desugar
-from tests.strategies import chunkings, formulas, traces
+from tests.support.strategies import chunkings, formulas, traces
 
 if TYPE_CHECKING:
     from rtamt.compiler.program import Program

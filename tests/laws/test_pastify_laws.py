@@ -17,7 +17,7 @@ from rtamt.rewrite.check import has_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify
 from tests.laws.test_engine_laws import by_definition, by_engine
-from tests.strategies import formulas, traces
+from tests.support.strategies import formulas, traces
 
 SUMS = {"sum", "mean", "integral"}
 

@@ -18,7 +18,7 @@ from rtamt.language.printing.latex import to_latex
 from rtamt.language.printing.printer import canonical, to_text
 from rtamt.language.shares import Share, ShareKind
 from rtamt.language.units.durations import UNITS
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 # A language in which powers collide, symbols begin other symbols, and a prefix binds tightest.
 ODD = STL.extend(

@@ -17,12 +17,12 @@ from rtamt.errors import EvaluationError
 from rtamt.explain.explain import explain
 from rtamt.language.formula import Const, Formula, Interval, Var, variables
 from rtamt.language.operators import STL, Bounds, Sort
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import record_dense
 from rtamt.signals.discrete import record_discrete
 from tests.oracle import boolean
 from tests.oracle.dense_grid import on_grid
-from tests.strategies import dense_traces, formulas, traces
+from tests.support.strategies import dense_traces, formulas, traces
 
 ONE = Fraction(1)
 #: Numbers over time, what they choose from, and enough around them to be read in several ways.

@@ -18,7 +18,7 @@ from rtamt.engine.discrete import ENGINE
 from rtamt.errors import StlError
 from rtamt.language.formula import variables
 from rtamt.signals.discrete import Discrete
-from tests.strategies import chunkings, formulas, traces
+from tests.support.strategies import chunkings, formulas, traces
 
 if TYPE_CHECKING:
     from collections.abc import Callable

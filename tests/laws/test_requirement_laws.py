@@ -26,8 +26,8 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.results import first_violation
-from tests import c_api
-from tests.strategies import chunkings, dense_traces, formulas, traces
+from tests.support import c_api
+from tests.support.strategies import chunkings, dense_traces, formulas, traces
 
 DECLARED = "float x  float y  "
 

@@ -16,7 +16,7 @@ from rtamt.cli import main
 from rtamt.cli.reading_options import Reading, on_time_base, read_for
 from rtamt.ros import Robustness, RosMonitor, bind
 from rtamt.ros.message_definitions import SATISFIED
-from rtamt.verdicts.at_start import StartMonitor
+from rtamt.verdicts.early.at_start import StartMonitor
 from tests.unit.readers.bags import SECOND, Bag
 
 pytest.importorskip("rosbags")

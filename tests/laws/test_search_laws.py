@@ -12,8 +12,8 @@ import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.language.printing.printer import to_text
 from rtamt.search import Problem, Range
-from rtamt.verdicts.early_check import holds_at_end
-from tests.strategies import formulas, traces
+from rtamt.verdicts.early.check import holds_at_end
+from tests.support.strategies import formulas, traces
 
 
 def _problem(spec, times, columns, duration):

@@ -24,7 +24,7 @@ from tests.laws.test_engine_laws import by_definition, online
 from tests.oracle import interface
 from tests.oracle.boolean import satisfied
 from tests.oracle.dense_grid import on_grid
-from tests.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
+from tests.support.strategies import chunkings, dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

@@ -15,7 +15,7 @@ from rtamt.rewrite.structure import Structure, settling
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.instants import StepFunction
 from rtamt.signals.shortened import Shortened
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

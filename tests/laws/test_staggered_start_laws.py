@@ -23,7 +23,7 @@ from rtamt.cli import main
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.parsing.grammar import is_number
 from rtamt.results import first_violation
-from tests import strategies
+from tests.support import strategies
 
 VARIABLES = ("x", "y", "z")
 DECLARED = "input float x  input float y  input float z  "

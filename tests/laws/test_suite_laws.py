@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import StlError
 from rtamt.fleet.verdict_table import Row, VerdictTable
-from tests.strategies import dense_traces, formulas, traces
+from tests.support.strategies import dense_traces, formulas, traces
 
 SEMANTICS = st.sampled_from(("standard", "boolean", "output_robustness", "input_vacuity"))
 

@@ -24,7 +24,7 @@ import rtamt
 from rtamt.cli import main
 from rtamt.signals.counting import quotients
 from rtamt.signals.ticks import NANOSECOND, TimeScale
-from tests import c_api
+from tests.support import c_api
 
 if TYPE_CHECKING:
     from collections.abc import Callable

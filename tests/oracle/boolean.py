@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold
 from rtamt.language.operators import Bounds, Sort
-from rtamt.reference.discrete import evaluate
+from rtamt.reference.discrete_robustness import evaluate
 from tests.oracle import over_time
 
 if TYPE_CHECKING:

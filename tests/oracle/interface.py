@@ -15,7 +15,7 @@ from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.formula import Var as Variable
 from rtamt.language.operators import Bounds, Sort
 from rtamt.language.shares import rank_arguments
-from rtamt.reference.discrete import evaluate
+from rtamt.reference.discrete_robustness import evaluate
 from tests.oracle.boolean import COMPARISONS
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.language.formula import variables
-from tests import strategies
+from tests.support import strategies
 
 NAN = float("nan")
 

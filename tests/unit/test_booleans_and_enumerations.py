@@ -11,9 +11,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import rtamt
+from rtamt.html_report.scene_data import data_of
+from rtamt.html_report.store import Store
 from rtamt.plot.scene import scene
-from rtamt.report.scene_data import data_of
-from rtamt.report.store import Store
 
 MODES = "enum Mode { MANUAL, AUTO = 4, RTL } input Mode mode output bool p float x "
 

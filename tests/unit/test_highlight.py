@@ -15,7 +15,7 @@ from pygments.token import Comment, Error, Keyword, Name, Number, Operator
 
 from rtamt.highlight import StlLexer
 from rtamt.language.operators import STL
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 ROOT = Path(__file__).parents[2]
 SPEC = """\

@@ -17,7 +17,7 @@ from rtamt.language.formula import COUNTLESS, size
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import canonical, excerpt, to_text
 from rtamt.language.printing.writing import LONGEST
-from rtamt.reference.discrete import evaluate_all
+from rtamt.reference.discrete_robustness import evaluate_all
 from rtamt.rewrite import pastify
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ import rtamt
 from rtamt.compiler.program import Program
 from rtamt.explain.explanation import Explanation
 from rtamt.language.formula import Formula
-from rtamt.verdicts.dense_causation import DenseCausationMonitor
-from rtamt.verdicts.dense_early import DenseEagerMonitor
-from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.interval import IntervalMonitor
+from rtamt.verdicts.early.dense_causation import DenseCausationMonitor
+from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
+from rtamt.verdicts.early.discrete_eager import EagerMonitor
+from rtamt.verdicts.early.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from typing_extensions import assert_type

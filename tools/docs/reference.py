@@ -239,10 +239,11 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",
         (
-            "rtamt.verdicts.eager.EagerMonitor", "Verdict", "rtamt.verdicts.dense_early.DenseEagerMonitor",
-            "VerdictRun", "rtamt.verdicts.interval.IntervalMonitor", "rtamt.signals.outcomes.Change", "Interval",
-            "rtamt.verdicts.discrete_causation.DiscreteCausationMonitor",
-            "rtamt.verdicts.dense_causation.DenseCausationMonitor",
+            "rtamt.verdicts.early.discrete_eager.EagerMonitor", "Verdict",
+            "rtamt.verdicts.early.dense_eager.DenseEagerMonitor", "VerdictRun",
+            "rtamt.verdicts.early.interval.IntervalMonitor", "rtamt.signals.outcomes.Change", "Interval",
+            "rtamt.verdicts.early.discrete_causation.DiscreteCausationMonitor",
+            "rtamt.verdicts.early.dense_causation.DenseCausationMonitor",
             "Causation", "CausationRun", "Cause", "calibrate",
         ),
     ),

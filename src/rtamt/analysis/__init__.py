@@ -2,29 +2,29 @@
 
 ``pip install 'rtamt[analysis]'``: z3. Its modules:
 
-===========  =====================================================================
-module       purpose
-===========  =====================================================================
-solver       z3 behind a small face: terms, questions, a time limit
-values       extended real numbers and verdicts as terms
-arithmetic   pointwise operators, by their opcodes
-sequences    temporal operators over traces of unknown length
-encoder      formulas as terms, by the operator table
-problem      what is asked of traces of at most N samples
-witness      a trace that was found, evaluated by the engine
-declared     what specifications declare about their data
-study        questions about requirements, and answers as sentences
-questions    one question each, as functions
-analysis     all questions about a specification
-difference   two versions of a specification
-===========  =====================================================================
+===============  ========================================================================
+module           purpose
+===============  ========================================================================
+solver           z3 behind a small face: terms, questions, a time limit
+values           extended real numbers and verdicts as terms
+arithmetic       pointwise operators, by their opcodes
+sequences        temporal operators over traces of unknown length
+encoder          formulas as terms, by the operator table
+problem          what is asked of traces of at most N samples
+witness          a trace that was found, evaluated by the engine
+declared         what specifications declare about their data
+bounded_checker  questions about traces of at most N samples, and answers as sentences
+satisfiability   satisfiable, valid, implies, equivalent: one question each, as functions
+analysis         all questions about a specification
+difference       two versions of a specification
+===============  ========================================================================
 """
 
 from rtamt.analysis.analysis import Analysis, analyze
+from rtamt.analysis.bounded_checker import Conclusion
 from rtamt.analysis.difference import diff
 from rtamt.analysis.encoder import NotCoveredError
-from rtamt.analysis.questions import equivalent, implies, satisfiable, valid
-from rtamt.analysis.study import Conclusion
+from rtamt.analysis.satisfiability import equivalent, implies, satisfiable, valid
 from rtamt.analysis.witness import Witness
 
 __all__ = [

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rtamt.analysis.bounded_checker import (
+    LIMIT,
+    SAMPLES,
+    BoundedChecker,
+    Conclusion,
+    Part,
+    implications,
+    unbounded,
+)
 from rtamt.analysis.encoder import NotCoveredError
-from rtamt.analysis.study import LIMIT, SAMPLES, Conclusion, Part, Study, implications, unbounded
 from rtamt.language.formula import variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
@@ -67,38 +75,38 @@ def analyze(
     R2: it always holds: no counterexample up to 20 samples
     R2: it is vacuous, because 'speed > 70' is never true: no trace up to 20 samples makes it true
     """
-    study = Study([spec], samples, limit)
-    parts, notes = _covered(spec, study)
+    checker = BoundedChecker([spec], samples, limit)
+    parts, notes = _covered(spec, checker)
     found: list[Conclusion] = []
     for part in parts:
-        first = study.satisfiable(part)
+        first = checker.satisfiable(part)
         found.append(first)
-        if first.finding and study.without_value(part):
+        if first.finding and checker.without_value(part):
             continue
-        found += [study.valid(part), *study.vacuous(part)]
+        found += [checker.valid(part), *checker.vacuous(part)]
     satisfiable = [part for part in parts if not any(_is(each, "satisfiable", part) for each in found)]
     if len(satisfiable) > 1:
-        together = study.satisfiable(*satisfiable)
+        together = checker.satisfiable(*satisfiable)
         found.append(together)
         if together.holds:
-            found += study.redundant(satisfiable)
+            found += checker.redundant(satisfiable)
     for part in parts if recordings else ():
         found += _in_recordings(part, recordings or {})
-    return Analysis(samples, study.period, tuple(found), tuple(notes))
+    return Analysis(samples, checker.period, tuple(found), tuple(notes))
 
 
 def _is(conclusion: Conclusion, question: str, part: Part) -> bool:
     return conclusion.finding and conclusion.question == question and conclusion.names == (part.name,)
 
 
-def _covered(spec: Specification, study: Study) -> tuple[list[Part], list[str]]:
+def _covered(spec: Specification, checker: BoundedChecker) -> tuple[list[Part], list[str]]:
     """Return the requirements that the analysis covers, and what it does not."""
     parts: list[Part] = []
     notes: list[str] = []
     endless: list[str] = []
     for name, one in spec.requirements.items():
         try:
-            study.require_covered(one.formula, one)
+            checker.require_covered(one.formula, one)
         except NotCoveredError as error:
             notes.append(f"{name}: {error.message}")
             continue
@@ -108,7 +116,7 @@ def _covered(spec: Specification, study: Study) -> tuple[list[Part], list[str]]:
     whole = [
         name for name in _whole_numbers(spec) if name in variables(*(part.spec.formula for part in parts))
     ]
-    return parts, [*notes, *about_unbounded(endless, study.samples), *about_whole(whole)]
+    return parts, [*notes, *about_unbounded(endless, checker.samples), *about_whole(whole)]
 
 
 def about_unbounded(names: Sequence[str], samples: int) -> list[str]:

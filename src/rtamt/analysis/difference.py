@@ -5,8 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.analysis.analysis import Analysis, about_unbounded
+from rtamt.analysis.bounded_checker import (
+    LIMIT,
+    SAMPLES,
+    BoundedChecker,
+    Conclusion,
+    Part,
+    trace_text,
+    unbounded,
+)
 from rtamt.analysis.encoder import NotCoveredError
-from rtamt.analysis.study import LIMIT, SAMPLES, Conclusion, Part, Study, trace_text, unbounded
 from rtamt.language.printing.printer import number
 
 if TYPE_CHECKING:
@@ -36,7 +44,7 @@ def diff(old: Specification, new: Specification, *, samples: int = SAMPLES, limi
     ('R1',) the new version is stricter
     ('R2',) they agree
     """
-    study = Study([old, new], samples, limit, versions=True)
+    checker = BoundedChecker([old, new], samples, limit, versions=True)
     found = [Conclusion("data", (), False, each, True) for each in _about_data(old, new)]
     endless: list[str] = []
     for name, one in new.requirements.items():
@@ -46,17 +54,17 @@ def diff(old: Specification, new: Specification, *, samples: int = SAMPLES, limi
         before, after = Part(name, old.requirements[name]), Part(name, one)
         try:
             for part in (before, after):
-                study.require_covered(part.spec.formula, part.spec)
+                checker.require_covered(part.spec.formula, part.spec)
         except NotCoveredError as error:
             found.append(_uncovered(before, after, error))
             continue
-        found.append(_compared(study, before, after))
+        found.append(_compared(checker, before, after))
         if unbounded(before.spec.formula) or unbounded(after.spec.formula):
             endless.append(name)
     removed = [name for name in old.requirements if name not in new.requirements]
     found += [Conclusion("same", (name,), False, "it is only in the old version", True) for name in removed]
-    notes = [*about_unbounded(endless, study.samples), *_about_limits(old, new)]
-    return Analysis(study.samples, study.period, tuple(found), tuple(notes))
+    notes = [*about_unbounded(endless, checker.samples), *_about_limits(old, new)]
+    return Analysis(checker.samples, checker.period, tuple(found), tuple(notes))
 
 
 def _about_data(old: Specification, new: Specification) -> Iterator[str]:
@@ -113,17 +121,17 @@ def _uncovered(before: Part, after: Part, error: NotCoveredError) -> Conclusion:
     return Conclusion("same", names, None, f"the formula was changed, and {error.message}")
 
 
-def _compared(study: Study, before: Part, after: Part) -> Conclusion:
+def _compared(checker: BoundedChecker, before: Part, after: Part) -> Conclusion:
     """Return whether two versions of a requirement agree, and which one is stricter."""
     names = (after.name,)
-    weaker, stricter = study.implies(before, after), study.implies(after, before)
+    weaker, stricter = checker.implies(before, after), checker.implies(after, before)
     for one in (weaker, stricter):
         if one.holds is None:
             if before.spec.formula == after.spec.formula:
                 return Conclusion("same", names, True, _SAME)
             return Conclusion("same", names, None, one.sentence, witness=one.witness)
     if weaker.holds and stricter.holds:
-        return Conclusion("same", names, True, study.equivalent(before, after).sentence)
+        return Conclusion("same", names, True, checker.equivalent(before, after).sentence)
     shown = stricter if weaker.holds else weaker
     how = "looser" if weaker.holds else "stricter" if stricter.holds else "neither stricter nor looser"
     sentence = (

@@ -32,7 +32,7 @@ robustness_lines  the lines of ``rtamt monitor`` for the robustness of each inst
 live_view         the live view of ``rtamt monitor``
 terminal          output, colours, tables, progress
 compiled          ``rtamt info`` for compiled programs
-reports           JUnit, SARIF and HTML reports
+report_formats    JUnit, SARIF and HTML reports
 ================  =============================================================
 """
 

@@ -14,7 +14,7 @@ from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy_dataclasses import replace
 from rtamt.readers.sql import shown
-from rtamt.texts import packs
+from rtamt.specification_loader import packs
 
 if TYPE_CHECKING:
     from argparse import Namespace

@@ -22,8 +22,8 @@ from rtamt.cli.command import (
 from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_reading_options, reading_of
-from rtamt.cli.reports import REPORTS, write_report
-from rtamt.cli.reports.messages import episodes_members, robustness_members
+from rtamt.cli.report_formats import REPORTS, write_report
+from rtamt.cli.report_formats.messages import episodes_members, robustness_members
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from rtamt.cli.outcome import Outcome, Requirement
     from rtamt.cli.reading_options import Reading
-    from rtamt.cli.reports.html import HtmlReport
+    from rtamt.cli.report_formats.html import HtmlReport
     from rtamt.results import Result
     from rtamt.signals.signal import Signal
 
@@ -178,7 +178,7 @@ def _page(
     given: Sequence[Requirement], rows: Sequence[Requirement], traces: Sequence[str], reading: Reading
 ) -> HtmlReport:
     """Return the page that is written while the check runs."""
-    from rtamt.cli.reports.html import HtmlReport
+    from rtamt.cli.report_formats.html import HtmlReport
 
     return HtmlReport("rtamt check", given, rows, traces, reading)
 

@@ -25,7 +25,7 @@ Its outputs are the robustness and the verdict; the parameters and
 named constants of the requirement are its parameters."""
 
 _EPILOG = """\
-docs/reference/program.md describes the format, and rtamt/runtime/rtamt.h the C functions that run it.
+docs/reference/program.md describes the format, and rtamt/c_api/rtamt.h the C functions that run it.
 'rtamt info FILE' lists the contents of a program.
 
 examples:

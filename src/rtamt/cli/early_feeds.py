@@ -15,9 +15,9 @@ from rtamt.errors import StlError, TraceError
 from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.lazy_numpy import np
 from rtamt.signals.outcomes import Interval, VerdictRun
-from rtamt.verdicts.at_start import SAFE
-from rtamt.verdicts.discrete_early import DiscreteEarlyMonitor
-from rtamt.verdicts.member_bounds import MemberIntervalMonitor
+from rtamt.verdicts.early.at_start import SAFE
+from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor
+from rtamt.verdicts.early.member_bounds import MemberIntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from rtamt.cli.live_view import Live
     from rtamt.signals.coding import Types
     from rtamt.signals.outcomes import Causation, Cause, Change, Verdict
-    from rtamt.verdicts.at_start import StartMonitor
-    from rtamt.verdicts.causation import CausationMonitor
-    from rtamt.verdicts.dense_early import DenseEagerMonitor
-    from rtamt.verdicts.eager import EagerMonitor
-    from rtamt.verdicts.early import EarlyMonitor
-    from rtamt.verdicts.interval import IntervalMonitor
+    from rtamt.verdicts.early.at_start import StartMonitor
+    from rtamt.verdicts.early.causation import CausationMonitor
+    from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
+    from rtamt.verdicts.early.discrete_eager import EagerMonitor
+    from rtamt.verdicts.early.interval import IntervalMonitor
+    from rtamt.verdicts.early.monitor import EarlyMonitor
 
 _DISCRETE = DiscreteEarlyMonitor, MemberIntervalMonitor
 

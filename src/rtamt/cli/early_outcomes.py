@@ -14,7 +14,7 @@ from rtamt.readers.read import opened
 from rtamt.readers.sql import shown
 from rtamt.signals.arrays import TIME
 from rtamt.signals.resampling import Sampler
-from rtamt.verdicts.early_check import holds_at_end, in_parts
+from rtamt.verdicts.early.check import holds_at_end, in_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.cli.reading_options import Reading
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
-    from rtamt.verdicts.early_check import EarlyCheck
+    from rtamt.verdicts.early.check import EarlyCheck
 
 _UNREAD = "later samples are not checked"
 

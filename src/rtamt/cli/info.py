@@ -18,11 +18,11 @@ from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import UsageError, choices
-from rtamt.facts import Facts, cut_operator, depth, gather, loose_variable
 from rtamt.language.parsing.lexer import quoted
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import BOOLEAN, value_text
+from rtamt.requirement_info import RequirementInfo, cut_operator, depth, info_of, loose_variable
 from rtamt.signals.domains import DOMAINS
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
     if args.latex:
         say(spec.formula.latex())
         return OK
-    facts = gather(spec)
+    facts = info_of(spec)
     if args.program:
         if facts.program is None:
             raise UsageError(
@@ -194,7 +194,7 @@ def _shown(value: float | str | bool) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-def _requirements(facts: Facts) -> list[dict[str, Any]]:
+def _requirements(facts: RequirementInfo) -> list[dict[str, Any]]:
     """Return the properties of each requirement; ``ahead``: its horizon in words."""
     rows = []
     for known in facts.spec.document.requirements:
@@ -239,7 +239,7 @@ def _kinds(spec: Specification) -> Iterator[str]:
         yield f"{'' if i else 'types':<11}enum {known.name} {{ {members} }}"
 
 
-def _lines(facts: Facts) -> Iterator[str]:
+def _lines(facts: RequirementInfo) -> Iterator[str]:
     spec = facts.spec
     if spec.name:
         yield f"name       {spec.name}"
@@ -298,7 +298,7 @@ def _lines(facts: Facts) -> Iterator[str]:
         yield f"  {line}"
 
 
-def _as_json(facts: Facts) -> str:
+def _as_json(facts: RequirementInfo) -> str:
     spec = facts.spec
     return json_text(
         {

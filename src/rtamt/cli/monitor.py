@@ -35,8 +35,8 @@ from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.sampling import HeldSampler
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
-from rtamt.verdicts.at_start import StartMonitor
-from rtamt.verdicts.causation import CausationMonitor
+from rtamt.verdicts.early.at_start import StartMonitor
+from rtamt.verdicts.early.causation import CausationMonitor
 from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say, table, use_color, width_of
-from rtamt.texts import pack, packs
+from rtamt.specification_loader import pack, packs
 
 if TYPE_CHECKING:
     import argparse

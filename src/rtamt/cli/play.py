@@ -16,14 +16,14 @@ from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
 from rtamt.signals.domains import time_domain
-from rtamt.texts import pack
+from rtamt.specification_loader import pack
 
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Iterator
 
-    from rtamt.play.crew import Crew
     from rtamt.play.server import Given
+    from rtamt.play.worker_pool import WorkerPool
 
 _DESCRIPTION = """\
 Open a local web page: type a formula, draw signals or load a recording, and see robustness, verdict and explanation
@@ -74,8 +74,8 @@ def run(args: argparse.Namespace) -> int:
     """Serve the page until it is interrupted."""
     uvicorn = library("uvicorn", "rtamt play", "play")
     library("starlette", "rtamt play", "play")
-    from rtamt.play.crew import Crew
     from rtamt.play.server import Place, application
+    from rtamt.play.worker_pool import WorkerPool
 
     time_domain(args.time, args.period or None)  # raises the error of either
     if args.trace is None and is_trace(args.spec):
@@ -91,14 +91,16 @@ def run(args: argparse.Namespace) -> int:
         for each in (empty, uploads):
             os.mkdir(each)
         token = secrets.token_urlsafe(24)
-        place = Place(token, (f"{_HOST}:{port}", f"localhost:{port}"), uploads, Crew(empty, folder), given)
+        place = Place(
+            token, (f"{_HOST}:{port}", f"localhost:{port}"), uploads, WorkerPool(empty, folder), given
+        )
         if args.trace is not None:
             place.add(os.path.abspath(args.trace), os.path.basename(args.trace), ours=False)
         server = uvicorn.Server(
             uvicorn.Config(application(place), log_level="error", lifespan="off", server_header=False)
         )
         address = f"http://{_HOST}:{port}/{token}/{fragment}"
-        _serve(server, place.crew, listening, partial(_announce, address, browser=not args.no_browser))
+        _serve(server, place.workers, listening, partial(_announce, address, browser=not args.no_browser))
     return OK
 
 
@@ -110,7 +112,7 @@ def _announce(address: str, *, browser: bool) -> None:
         webbrowser.open(address)
 
 
-def _serve(server: Any, crew: Crew, listening: socket.socket, announce: Callable[[], None]) -> None:
+def _serve(server: Any, workers: WorkerPool, listening: socket.socket, announce: Callable[[], None]) -> None:
     """Serve until a signal comes; then end the workers."""
     import asyncio
 
@@ -119,7 +121,7 @@ def _serve(server: Any, crew: Crew, listening: socket.socket, announce: Callable
         with contextlib.suppress(KeyboardInterrupt):  # how it is stopped
             announce()  # from here on, signals may come
             loop.run_until_complete(server.serve(sockets=[listening]))
-        loop.run_until_complete(crew.close())
+        loop.run_until_complete(workers.close())
         loop.run_until_complete(loop.shutdown_asyncgens())
     finally:
         loop.close()

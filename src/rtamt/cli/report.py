@@ -9,7 +9,7 @@ from rtamt.cli.command import add_specification_options, add_time_option
 from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_instant_option, add_reading_options, reading_of
-from rtamt.cli.reports.html import HtmlReport
+from rtamt.cli.report_formats.html import HtmlReport
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, say
 from rtamt.lazy_dataclasses import replace

@@ -19,7 +19,7 @@ from rtamt.cli.json_lines import (
 )
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
-from rtamt.readers.assemble import Choice, clock_of, select
+from rtamt.readers.assemble import Choice, select, timestamps_of
 from rtamt.readers.csv import (
     Column,
     Header,
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from rtamt.cli.stream_members import StreamMembers
     from rtamt.readers.assemble import Selection
     from rtamt.readers.source import Field, Raw
-    from rtamt.readers.timestamps import Clock
+    from rtamt.readers.timestamps import TimestampColumn
     from rtamt.signals.coding import Types
 
 #: The time (None if there are no timestamps) and the values: numbers, or None where a member has no sample.
@@ -112,7 +112,7 @@ class Samples:
         try:
             if self._read is not None:
                 return self._read(text, number)
-            timestamps = _Stamps(self._names, self._choice, self._dense)
+            timestamps = _Timestamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
                 reader = JsonSamples(
                     self._names, timestamps, self._dense, self._choice, self._types, self.members
@@ -168,10 +168,10 @@ def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
         yield from line.splitlines()
 
 
-class _Stamps:
+class _Timestamps:
     """Where the timestamps are among the columns of a stream, as in a file of the same columns.
 
-    Columns are looked at as long as no clock is found: what a column holds may show in a later line.
+    Columns are looked at until the timestamps are found: what a column holds may show in a later line.
     """
 
     def __init__(self, names: Sequence[str], choice: Choice, dense: bool) -> None:
@@ -181,7 +181,7 @@ class _Stamps:
         self._kinds: dict[str, str] = {}
         self._samples = 0
         self._cells: Cells | None = None
-        self.clock: Clock | None = None
+        self.column: TimestampColumn | None = None
 
     def add(self, names: Iterable[str]) -> None:
         """Take further columns for signals."""
@@ -193,11 +193,11 @@ class _Stamps:
             raise line_error(number, str(missing_sample(name, self._samples, None)), name)
 
     def select(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
-        """Look for the clock among columns and what they hold, None where that is not known yet.
+        """Look for the timestamps among columns and what they hold, None where that is not known yet.
 
         ``all_named``: whether every variable of the formula must be among them.
         """
-        if self.clock is not None or (self._choice.time == "" and self._kinds):
+        if self.column is not None or (self._choice.time == "" and self._kinds):
             return None
         found = False
         for column, value in columns:
@@ -218,10 +218,10 @@ class _Stamps:
         read = {name: columns[name] for name in names}
         choice = Choice(time=time, columns=names, names=read, units=self._choice.units)
         (selection,) = select(source, choice)
-        self.clock = clock_of(source, selection, choice)
-        if self.clock is not None and self._samples:
-            column = self.clock.field.column
-            self.clock = None
+        self.column = timestamps_of(source, selection, choice)
+        if self.column is not None and self._samples:
+            column = self.column.field.column
+            self.column = None
             del self._kinds[column]
             raise TraceError(
                 f"'{column}' may hold the timestamps, but is empty before: give every sample its time, or {CHOICES}"
@@ -232,12 +232,12 @@ class _Stamps:
         """Return a sample with its timestamp, a text in line ``number``; None where there are no timestamps."""
         time = None
         if timestamp is not None:
-            assert self.clock is not None
+            assert self.column is not None
             if self._cells is None:
-                column = self.clock.field.column
+                column = self.column.field.column
                 self._cells = Cells(Header(STDIN, (column,), ",", 0), column)
             self._cells.extend([timestamp], [number])
-            times = self.clock.times(self._cells.take(), self._samples)
+            times = self.column.times(self._cells.take(), self._samples)
             time = times[0] if times.dtype.kind != "f" else float(times[0])
             if TIME in self._names:  # a formula may read the time
                 values[TIME] = float(in_seconds(times)[0])
@@ -255,7 +255,7 @@ class JsonSamples:
     def __init__(
         self,
         names: tuple[str, ...],
-        timestamps: _Stamps,
+        timestamps: _Timestamps,
         dense: bool,
         choice: Choice,
         types: Types,
@@ -272,10 +272,10 @@ class JsonSamples:
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
         data = object_in(text, number)
-        if self._timestamps.clock is None:
+        if self._timestamps.column is None:
             self._timestamps.select(flat(data), all_named=False)
-        clock = self._timestamps.clock
-        names = [name for name in self._names if clock is None or name != TIME]
+        timestamps = self._timestamps.column
+        names = [name for name in self._names if timestamps is None or name != TIME]
         columns = self._columns
         for name in self._choice.others:
             columns[name] = self._choice.column_of(name, partial(has_value, data))
@@ -285,10 +285,10 @@ class JsonSamples:
         values = {name: number_in(data, columns[name], number, self._types.get(name)) for name in names}
         if self._members is not None:
             found = self._members.in_object(data, number)
-            if clock is not None:
-                found.pop(clock.field.column, None)
+            if timestamps is not None:
+                found.pop(timestamps.field.column, None)
             values = found | values
-        timestamp = None if clock is None else stamp_in(data, clock.field.column, number)
+        timestamp = None if timestamps is None else stamp_in(data, timestamps.field.column, number)
         return self._timestamps.sample(timestamp, values, number)
 
 
@@ -298,7 +298,7 @@ class CsvSamples:
     def __init__(
         self,
         names: tuple[str, ...],
-        timestamps: _Stamps,
+        timestamps: _Timestamps,
         dense: bool,
         text: str,
         number: int,
@@ -342,7 +342,7 @@ class CsvSamples:
         except csv.Error as error:
             raise header.error(number, str(error)) from None
         check_width(row, header, number)
-        if self._timestamps.clock is None:
+        if self._timestamps.column is None:
             self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))
         empty = [c for c in self._columns if not row[c.position].strip()]
         absent = [c for c in empty if c.name in self._may_be_absent]
@@ -358,8 +358,8 @@ class CsvSamples:
         values |= dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         values |= codes
-        clock = self._timestamps.clock
-        timestamp = None if clock is None else row[header.names.index(clock.field.column)]
+        timestamps = self._timestamps.column
+        timestamp = None if timestamps is None else row[header.names.index(timestamps.field.column)]
         return self._timestamps.sample(timestamp, values, number)
 
     def _member(self, column: Column, row: Sequence[str], number: int) -> float | None:

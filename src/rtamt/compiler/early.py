@@ -1,7 +1,7 @@
 """Core formulas to the graph that gives verdicts and bounds before the horizon (``graph.py``).
 
 A formula of unbounded future has no node where its value is asked for at the start of the trace alone: there it
-is put together from items (``core/early/origin.hpp``).
+is put together from items (``core/early/bounds_at_start.hpp``).
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class Node(NamedTuple):
 
 
 class Item(NamedTuple):
-    """A part of a formula's value at the start of the trace (``core/early/origin.hpp``)."""
+    """A part of a formula's value at the start of the trace (``core/early/bounds_at_start.hpp``)."""
 
     kind: int
     negated: bool

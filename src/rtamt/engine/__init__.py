@@ -4,9 +4,9 @@ Other packages import the names below from here; the back ends (``backend``, ``e
 (``native``), which need longer to load, from their modules. Only the code for one time domain imports the folder of
 that domain.
 
-==============  ============================================================================
+==============  ==================================================================================
 module          purpose
-==============  ============================================================================
+==============  ==================================================================================
 engine          what an engine has: back ends, a monitor, a time axis; the engine of a time domain
 discrete        the engine of discrete time
 dense           the engine of dense time
@@ -16,30 +16,30 @@ offline         evaluate queries on a recording; cache compiled plans
 direct          the short way from data to robustness: one call
 offline_bounds  offline bounds of recordings with missing or uncertain samples
 time_axis       a recording divided into cells, as explanations evaluate it
-apart           keep calls whose times are converted off the fast path
+slow_path       keep calls whose times are converted off the fast path
 online          watched formulas and copies, shared by the monitors
-reorder         samples of many keys, put in the order of their times
+fleet_keys      the keys of a fleet as the core reads them, and in errors
 quantifiers     monitors of quantifiers over members that come and go, in both time domains
 native          load the compiled core
 cores           how many threads may evaluate one long trace
 user_operators  call custom operators from the core
 _core           the compiled core (``core/``); the stub describes its interface
-==============  ============================================================================
+==============  ==================================================================================
 """
 
-from rtamt.engine.apart import Apart, inner_of
 from rtamt.engine.engine import BACKENDS, Engine, engine_of
 from rtamt.engine.offline import Evaluators, Query
 from rtamt.engine.online import OnlineMonitor, Watched, grounded
+from rtamt.engine.slow_path import SlowPath, inner_of
 from rtamt.engine.time_axis import TimeAxis
 
 __all__ = [
     "BACKENDS",
-    "Apart",
     "Engine",
     "Evaluators",
     "OnlineMonitor",
     "Query",
+    "SlowPath",
     "TimeAxis",
     "Watched",
     "engine_of",

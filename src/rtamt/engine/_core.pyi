@@ -176,7 +176,7 @@ class Fleet:
     def state_bytes(self) -> int:
         """Bytes of state by now."""
 
-class Reorder:
+class ReorderBuffer:
     """Puts samples in the order of their times, by key; keys as for Fleet."""
 
     def __init__(
@@ -324,7 +324,7 @@ class DenseMonitor:
 class EarlyMonitor:
     """Verdicts or bounds before the horizon, in discrete time (``core/early/``).
 
-    ``nodes``, ``outputs`` and ``origin`` are those of ``compiler.early.Graph``. ``lateness``: by how many samples
+    ``nodes``, ``outputs`` and ``at_start`` are those of ``compiler.early.Graph``. ``lateness``: by how many samples
     one may come late; None where all come in order. ``verdict``: the class of what update() returns, None for bounds.
     ``replays``: whether update() takes nothing by itself. ``causes``: the parts, outputs and starts of
     ``compiler.causation.Causes``, and the class of what update() returns. ``change``: the class of what reported()
@@ -335,7 +335,7 @@ class EarlyMonitor:
         self,
         nodes: Sequence[tuple[Any, ...]],
         outputs: Sequence[int],
-        origin: Sequence[tuple[Any, ...]],
+        at_start: Sequence[tuple[Any, ...]],
         ranges: Sequence[tuple[float, float]],
         names: Sequence[str],
         ignored: Collection[str] | None,
@@ -363,7 +363,7 @@ class EarlyMonitor:
     def verdicts(self, output: int) -> list[Any]:
         """The verdicts of an output that the last call decided."""
 
-    def origin(self) -> tuple[float, float] | None:
+    def at_start(self) -> tuple[float, float] | None:
         """The bounds at the start of the trace."""
 
     def bounds(self, output: int, sample: int) -> tuple[float, float] | None:
@@ -431,8 +431,8 @@ class EarlyMonitor:
 class DenseEarlyMonitor:
     """The same in dense time. Times are ticks, and runs reach from ``begin`` up to but excluding ``end``.
 
-    ``groups``: formulas whose traces start at the same instant: (nodes, outputs, origin, inputs, causes), these as for
-    EarlyMonitor and inputs the numbers of those that form the trace. The first ``required`` ones are those of
+    ``groups``: formulas whose traces start at the same instant: (nodes, outputs, at_start, inputs, causes), these as
+    for EarlyMonitor and inputs the numbers of those that form the trace. The first ``required`` ones are those of
     requirements, of which the start reports the minimum. ``outputs``: where each is, (group, output); the first may be
     the minimum of several. ``lateness``: by how many ticks a sample may come late after the newest one of any input;
     None where those of each input come in order. ``verdicts``: verdicts, not bounds. What stands for no tick is
@@ -473,7 +473,7 @@ class DenseEarlyMonitor:
     def runs(self, output: int) -> list[tuple[int, int, float, float]]:
         """All runs that are held, up to the newest sample."""
 
-    def origin(self) -> tuple[float, float] | None:
+    def at_start(self) -> tuple[float, float] | None:
         """The bounds at the start of the trace."""
 
     def bounds(self, output: int, tick: int) -> tuple[float, float] | None:

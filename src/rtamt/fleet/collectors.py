@@ -15,10 +15,10 @@ from rtamt.engine.discrete.monitor import Monitor, settled_time
 from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetChanges, FleetPoints, FleetVerdicts
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_numpy import np
-from rtamt.verdicts.causation import CausationMonitor
-from rtamt.verdicts.dense_early import DenseEagerMonitor
-from rtamt.verdicts.eager import EagerMonitor
-from rtamt.verdicts.interval import IntervalMonitor
+from rtamt.verdicts.early.causation import CausationMonitor
+from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
+from rtamt.verdicts.early.discrete_eager import EagerMonitor
+from rtamt.verdicts.early.interval import IntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

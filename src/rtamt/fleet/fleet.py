@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.fleet.event_time import GAPS, EventTime, InOrder, unpacked
+from rtamt.fleet.fleet_bytes import unpacked
+from rtamt.fleet.gaps import GAPS
 from rtamt.fleet.keys import capacity_of, keys_of
+from rtamt.fleet.late_data import InOrder, Reordered
 from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.engine import OnlineMonitor
-    from rtamt.fleet.event_time import EventState, Gaps
+    from rtamt.fleet.fleet_bytes import FleetState
+    from rtamt.fleet.gaps import Gaps
     from rtamt.fleet.per_key import MonitorPerKey
     from rtamt.language.units.durations import Duration
     from rtamt.signals.binding import Binding
@@ -71,7 +74,7 @@ class Fleet:
         lateness: Duration | None,
         gaps: Gaps,
         settings: Mapping[str, Any],
-        state: EventState | None = None,
+        state: FleetState | None = None,
     ) -> None:
         mode = mode_of(settings.get("verdict", DELAYED), {})
         if lateness is not None and "lateness" in mode.settings:
@@ -99,7 +102,7 @@ class Fleet:
         self._samples = (
             InOrder(records, self.requirements)
             if ordered
-            else EventTime(records, self.requirements, late, gaps, waiting)
+            else Reordered(records, self.requirements, late, gaps, waiting)
         )
 
     @exclusive
@@ -223,7 +226,7 @@ class Fleet:
     @exclusive
     def _discard(self, key: Any, time: float) -> bool:
         """Forget a sample that waits; return whether there was one. The watermark of the key stays."""
-        return isinstance(self._samples, EventTime) and self._samples.discard(keys_of([key]), time)
+        return isinstance(self._samples, Reordered) and self._samples.discard(keys_of([key]), time)
 
     @exclusive
     def expire(self, *, before: float) -> int:
@@ -317,7 +320,7 @@ def _monitors(
     lateness: Duration | None,
     gaps: Gaps,
     settings: Mapping[str, Any],
-    state: EventState | None,
+    state: FleetState | None,
 ) -> MonitorPerKey:
     """Return a monitor for each key; raise :class:`UsageError` where there can be none."""
     from rtamt.fleet.collectors import collector_of  # with all verdict modes, which records do not need

@@ -5,13 +5,13 @@ from __future__ import annotations
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.reorder import full, place_of
+from rtamt.engine.fleet_keys import full, place_of
 from rtamt.errors import EvaluationError, TraceError, UsageError, shown
 from rtamt.fleet.collectors import collector_of
 from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.data_errors import unknown_variable
-from rtamt.verdicts.interval import LateSampleError
+from rtamt.verdicts.early.interval import LateSampleError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.engine import OnlineMonitor
-    from rtamt.fleet.event_time import Gaps
+    from rtamt.fleet.gaps import Gaps
 
 
 class MonitorPerKey:

@@ -9,7 +9,7 @@ from platform import machine
 from typing import TYPE_CHECKING
 
 import rtamt
-from rtamt import runtime
+from rtamt import c_api
 from rtamt.errors import UsageError
 from rtamt.files import replacing
 from rtamt.fmi.description import Unit, description, identifier
@@ -80,7 +80,7 @@ def export(
     unit = Unit(
         program, name, identifier(name), token, f"rtamt {rtamt.__version__}", units, spec.document.types
     )
-    library = runtime.library()
+    library = c_api.library()
     parts = {
         "modelDescription.xml": description(unit, version),
         f"binaries/{platform(version)}/{unit.identifier}{library.suffix}": library.read_bytes(),

@@ -13,8 +13,8 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.lint.rules import UNUSED
 from rtamt.lsp.outline import outline
 from rtamt.lsp.places import Lines
+from rtamt.specification_loader import parse
 from rtamt.text_errors import errors_of
-from rtamt.texts import parse
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document

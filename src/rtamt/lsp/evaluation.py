@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError
 from rtamt.lazy_dataclasses import replace
 from rtamt.readers.read import read
-from rtamt.texts import parse
+from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

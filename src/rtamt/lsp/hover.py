@@ -6,7 +6,6 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.errors import StlError
-from rtamt.facts import gather
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import tokenize
@@ -14,6 +13,7 @@ from rtamt.language.units.durations import format_duration
 from rtamt.language.words import DECLARED_BY, meaning_of
 from rtamt.lsp.imported import place_of
 from rtamt.patterns import patterns
+from rtamt.requirement_info import info_of
 
 if TYPE_CHECKING:
     from rtamt.language.operators import Operator
@@ -174,7 +174,7 @@ def _of_formula(analysis: Analysis, name: str) -> list[str]:
     try:
         one = spec.select(name)
         sentence = next(iter(one.describe().values())).text
-        facts = gather(one)
+        facts = info_of(one)
     except StlError as error:  # such as a formula that no monitor can run
         return [str(error).splitlines()[0]]
     parts = [sentence[:_LONGEST]]

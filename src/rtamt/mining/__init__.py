@@ -6,21 +6,21 @@
 >>> mine(template, {"a": {"x": [5, 3.25]}, "b": {"x": [7.5, 1]}})
 <limit=7.5 on 2 recordings>
 
-===========  =================================================================================
-module       purpose
-===========  =================================================================================
-mine         the tight values of the parameters of a template
-direction    whether a parameter makes a requirement easier or harder to satisfy, by its formula
-region       which values satisfy the template on every recording, within a budget
-grid         the values that a parameter takes, from the easiest to the hardest
-brackets     the range of a parameter, by its kind and by what recordings satisfy
-front        the Pareto front of two parameters
-search       parameters without a known direction
-classify     a decision list over templates that tells good recordings from bad
-templates    the templates of a classifier
-rules        decision lists
-plot         plots of what was mined
-===========  =================================================================================
+====================  ===================================================================================
+module                purpose
+====================  ===================================================================================
+mine                  the tight values of the parameters of a template
+direction             whether a parameter makes a requirement easier or harder to satisfy, by its formula
+region                which values satisfy the template on every recording, within a budget
+grid                  the values that a parameter takes, from the easiest to the hardest
+parameter_ranges      the range of a parameter, by its kind and by what recordings satisfy
+pareto_front          the Pareto front of two parameters
+search                parameters without a known direction
+classify              a decision list over templates that tells good recordings from bad
+classifier_templates  the templates of a classifier
+decision_list         decision lists
+plot                  plots of what was mined
+====================  ===================================================================================
 """
 
 from rtamt.mining.classify import Classifier, classify

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rtamt import texts
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Var
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
+from rtamt.mining.classifier_templates import builtin, features, own
+from rtamt.mining.decision_list import DecisionList, learned
 from rtamt.mining.mine import named_recordings
 from rtamt.mining.region import Budget, Region, Spent, require_count
-from rtamt.mining.rules import DecisionList, learned
-from rtamt.mining.templates import builtin, features, own
+from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from typing_extensions import Unpack
 
-    from rtamt.mining.rules import Rule
-    from rtamt.mining.templates import Template
+    from rtamt.mining.classifier_templates import Template
+    from rtamt.mining.decision_list import Rule
     from rtamt.settings import EvaluationSettings
     from rtamt.specification import Specification
 
@@ -70,7 +70,7 @@ class Classifier:
     @property
     def specification(self) -> Specification:
         """The specification that is satisfied where a recording is good."""
-        return texts.parse(self.text)
+        return parse(self.text)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what was found as plain data."""
@@ -232,7 +232,7 @@ def _clock(
     recordings: Mapping[str, Any], names: Sequence[str], reading: Mapping[str, Any], budget: Budget
 ) -> tuple[Fraction | None, Fraction]:
     """Return the sampling period, None if recordings have different ones, and the shortest duration."""
-    spec = texts.parse(" and ".join(f"{Var(name)} > 0" for name in names))
+    spec = parse(" and ".join(f"{Var(name)} > 0" for name in names))
     region = Region(spec, recordings, reading, budget)
     traces = [region.trace(name) for name in recordings]
     periods = {trace.step for trace in traces}
@@ -266,7 +266,7 @@ def _predicted(
     """Return what the engine finds, by the specification of a list."""
     if not found.rules:
         return dict.fromkeys(recordings, found.default)
-    spec = texts.parse(_text(found.rules, found.default, labels))
+    spec = parse(_text(found.rules, found.default, labels))
     return {name: Region(spec, {name: data}, reading, budget).holds({}) for name, data in recordings.items()}
 
 

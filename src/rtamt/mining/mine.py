@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.mining.brackets import (
-    Clock,
+from rtamt.mining.direction import require, roles_of
+from rtamt.mining.grid import Grid, hardest
+from rtamt.mining.parameter_ranges import (
     Finder,
+    Timing,
     bound_grid,
     checked_ranges,
     checked_resolutions,
     impossible,
     value_grid,
 )
-from rtamt.mining.direction import require, roles_of
-from rtamt.mining.front import front
-from rtamt.mining.grid import Grid, hardest
+from rtamt.mining.pareto_front import front
 from rtamt.mining.region import Budget, Region, Spent, number, require_count, written
 from rtamt.mining.search import searched
 from rtamt.specification import Specification
@@ -272,20 +272,20 @@ class _Work:
 
     def _known(self) -> dict[str, Grid]:
         found = {}
-        clock = self._clock() if any(role.bound for role in self._roles) else None
+        timing = self._timing() if any(role.bound for role in self._roles) else None
         for role in self._roles:
             given, resolution = self._ranges.get(role.name), self._resolutions.get(role.name)
-            if clock is not None and role.bound:
-                found[role.name] = bound_grid(role, given, resolution, clock)
+            if timing is not None and role.bound:
+                found[role.name] = bound_grid(role, given, resolution, timing)
             elif given is not None:
                 found[role.name] = value_grid(role, given, resolution)
         return found
 
-    def _clock(self) -> Clock:
+    def _timing(self) -> Timing:
         traces = [self._region.trace(name) for name in self._recordings]
         longest = max(trace.last * trace.step for trace in traces)
         steps = [trace.step for trace in traces]
-        return Clock(None if traces[0].domain.continuous else _multiple(steps), longest, max(steps))
+        return Timing(None if traces[0].domain.continuous else _multiple(steps), longest, max(steps))
 
 
 def _multiple(periods: list[Fraction]) -> Fraction:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
+from rtamt.html_report import Formula, Page, Row
 from rtamt.lazy_dataclasses import replace
 from rtamt.notebook.static import StaticView
 from rtamt.plot.band import short_band
 from rtamt.plot.scene import scene
-from rtamt.report import Formula, Page, Row
 from rtamt.results import first_violation
 from rtamt.signals.listing import show_time
 

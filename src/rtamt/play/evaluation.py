@@ -12,24 +12,24 @@ from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
-from rtamt.play import drawn
+from rtamt.play.downsampling import line, number
+from rtamt.play.drawn_signals import points, sampled
 from rtamt.play.recent import Recent
-from rtamt.play.reduced import line, number
-from rtamt.plot.clock import Clock
 from rtamt.plot.panels import groups
+from rtamt.plot.x_axis import XAxis
 from rtamt.results import first_violation, signals_of
 from rtamt.rewrite.truth import is_predicate
 from rtamt.signals.outcomes import BoundedSignal
-from rtamt.texts import parse
+from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rtamt.explain.explanation import Explanation, Stretch
+    from rtamt.play.downsampling import View
     from rtamt.play.messages import Request
     from rtamt.play.online import Replay
     from rtamt.play.recordings import File, Recordings
-    from rtamt.play.reduced import View
     from rtamt.results import Result
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.specification import Specification
@@ -69,7 +69,7 @@ def data_of(request: Request, spec: Specification, sources: Sources) -> Any:
     """Return the data that a request names, as ``evaluate`` takes it."""
     if request.recording is None:
         period = spec.period or request.period or Fraction(1)
-        make = drawn.points if request.dense else drawn.sampled
+        make = points if request.dense else sampled
         return make(request.signals, period, request.duration)
     if sources.file is None:
         raise UsageError("the recording is no longer here: load it again")
@@ -202,14 +202,19 @@ def _interval(result: Result) -> list[Any]:
 
 def _shown(name: str, result: Result) -> dict[str, Any]:
     """Return what is said of one requirement."""
-    clock, spec = Clock.of(result.trace), result.specification
+    x_axis, spec = XAxis.of(result.trace), result.specification
     answer: dict[str, Any] = {
         "focus": name,
         "formula": to_text(spec.formula, limit=2000),
         "verdict": verdict_of(result),
         "interval": _interval(result),
         "dense": result.trace.domain.continuous,
-        "clock": {"start": clock.start, "end": clock.end, "label": clock.label, "origin": str(clock.origin)},
+        "clock": {
+            "start": x_axis.start,
+            "end": x_axis.end,
+            "label": x_axis.label,
+            "origin": str(x_axis.origin),
+        },
         "samples": result.trace.samples,
         "step": None if result.trace.domain.continuous else float(result.trace.step),
         "thresholds": _thresholds(spec),
@@ -218,15 +223,15 @@ def _shown(name: str, result: Result) -> dict[str, Any]:
         return answer | {"explanation": None}
     violation = first_violation(result)
     return answer | {
-        "first": None if violation is None else clock.position(violation),
-        "explanation": _explained(result.explain(), clock),
+        "first": None if violation is None else x_axis.position(violation),
+        "explanation": _explained(result.explain(), x_axis),
     }
 
 
 def _drawn(result: Result, part: Result, request: Request, view: View | None) -> dict[str, Any]:
     """Return the lines of one requirement, as far as they are seen: robustness, signals, and where it is violated."""
     signal = part.signal
-    positions = Clock.of(part.trace).positions(signal.times)
+    positions = XAxis.of(part.trace).positions(signal.times)
     first, *rest = (signal.lower, signal.upper) if isinstance(signal, BoundedSignal) else (signal.values,)
     return {
         "view": view,
@@ -242,9 +247,9 @@ def _fails(part: Result, view: View | None) -> list[list[float]]:
     if part.trace.bounds:
         return []
     _, truth = signals_of(part, inner(part.specification).formula)
-    clock = Clock.of(part.trace)
-    begins = clock.positions(truth.times)
-    last = clock.end if part.trace.domain.continuous else clock.end + float(part.trace.step)
+    x_axis = XAxis.of(part.trace)
+    begins = x_axis.positions(truth.times)
+    last = x_axis.end if part.trace.domain.continuous else x_axis.end + float(part.trace.step)
     edges = np.diff((truth.values < 0).astype(np.int8), prepend=0, append=0)
     starts, ends = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
     until = np.append(begins, last)
@@ -260,10 +265,10 @@ def _lines(result: Result, part: Result, width: int, view: View | None) -> list[
     known = {}
     for name in result.specification.input_names:
         trace = part.trace if name in part.specification.input_names else result.trace
-        positions, values = Clock.of(trace).recorded(name)
+        positions, values = XAxis.of(trace).recorded(name)
         # In dense time requirements may start at different instants, from which dates are counted.
         positions = positions + _shift(trace, part.trace)
-        seen = positions >= Clock.of(part.trace).start
+        seen = positions >= XAxis.of(part.trace).start
         known[name] = positions[seen], values[seen]
     units = result.specification.units
     return [
@@ -274,7 +279,7 @@ def _lines(result: Result, part: Result, width: int, view: View | None) -> list[
 
 def _shift(trace: DomainTrace, shown: DomainTrace) -> float:
     """Return how far positions of one trace are ahead of those of another."""
-    ours, theirs = Clock.of(trace).origin, Clock.of(shown).origin
+    ours, theirs = XAxis.of(trace).origin, XAxis.of(shown).origin
     if isinstance(ours, np.datetime64) and isinstance(theirs, np.datetime64):
         return float((ours - theirs) / np.timedelta64(1, "ns")) / 1e9
     assert not isinstance(ours, np.datetime64)
@@ -292,32 +297,34 @@ def _thresholds(spec: Specification) -> dict[str, list[float]]:
     return found
 
 
-def _explained(explanation: Explanation, clock: Clock) -> dict[str, Any]:
+def _explained(explanation: Explanation, x_axis: XAxis) -> dict[str, Any]:
     shown, point = explanation.shown(_CAUSES), explanation.critical
     ranking = explanation.ranking[:_STRETCHES]
     return {
         "headline": explanation.headline,
         # The headline and the first violation are shown as numbers.
         "summary": list(explanation.summary[1 if explanation.first_violation is None else 2 :]),
-        "causes": [{"text": explanation.causes[k], **_place(explanation.implicant[k], clock)} for k in shown],
+        "causes": [
+            {"text": explanation.causes[k], **_place(explanation.implicant[k], x_axis)} for k in shown
+        ],
         "more": len(explanation.causes) - len(shown),
-        "critical": None if point.predicate is None else clock.position(point.time),
-        "because": _because([explanation.implicant[k] for k in ranking], clock),
+        "critical": None if point.predicate is None else x_axis.position(point.time),
+        "because": _because([explanation.implicant[k] for k in ranking], x_axis),
     }
 
 
-def _place(stretch: Stretch, clock: Clock) -> dict[str, float]:
-    start = clock.start if stretch.start is None else clock.position(stretch.start)
-    return {"start": start, "end": clock.end if stretch.end is None else clock.position(stretch.end)}
+def _place(stretch: Stretch, x_axis: XAxis) -> dict[str, float]:
+    start = x_axis.start if stretch.start is None else x_axis.position(stretch.start)
+    return {"start": start, "end": x_axis.end if stretch.end is None else x_axis.position(stretch.end)}
 
 
-def _because(stretches: Sequence[Stretch], clock: Clock) -> Mapping[str, list[list[float]]]:
+def _because(stretches: Sequence[Stretch], x_axis: XAxis) -> Mapping[str, list[list[float]]]:
     """Return the intervals of each signal that the cause reads."""
     found: dict[str, list[list[float]]] = {}
     for stretch in stretches:
         for reading in stretch.reads[:_STRETCHES]:
-            end = clock.end if reading.end is None else clock.position(reading.end)
-            found.setdefault(reading.signal, []).append([clock.position(reading.start), end])
+            end = x_axis.end if reading.end is None else x_axis.position(reading.end)
+            found.setdefault(reading.signal, []).append([x_axis.position(reading.start), end])
     return found
 
 

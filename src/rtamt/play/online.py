@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
+from rtamt.play.downsampling import kept_in, number, numbers, parts
 from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
-from rtamt.play.reduced import kept_in, number, numbers, parts
 from rtamt.plot.band import band
-from rtamt.plot.clock import Clock
+from rtamt.plot.x_axis import XAxis
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
+    from rtamt.play.downsampling import View
     from rtamt.play.evaluation import Sources
     from rtamt.play.messages import Request
-    from rtamt.play.reduced import View
     from rtamt.plot.band import Band
     from rtamt.results import Result
     from rtamt.specification import Specification
@@ -63,7 +63,7 @@ def rewatched(request: Request, sources: Sources) -> dict[str, Any]:
 def _replay(request: Request, sources: Sources) -> Replay:
     result = _result(request, sources)
     watched = inner(result.specification)
-    return Replay(result, watched, band(result), _runs(watched, result, Clock.of(result.trace)))
+    return Replay(result, watched, band(result), _runs(watched, result, XAxis.of(result.trace)))
 
 
 def _seen(replay: Replay, request: Request, view: View | None) -> dict[str, Any]:
@@ -82,31 +82,31 @@ def known_at(request: Request, sources: Sources) -> dict[str, Any]:
     """
     try:
         replay = sources.replays.of(request, lambda: _replay(request, sources))
-        clock = Clock.of(replay.result.trace)
-        now = clock.end if request.at is None else request.at
+        x_axis = XAxis.of(replay.result.trace)
+        now = x_axis.end if request.at is None else request.at
         known = replay.band
         last = int(np.searchsorted(known.positions, now, "right")) - 1
         return {
             "error": None,
             "bounds": None if last < 0 else [numbers(each[[last]])[0] for each in (known.lower, known.upper)],
             "open": sum(
-                begin <= now < (clock.end if decided is None else decided)
+                begin <= now < (x_axis.end if decided is None else decided)
                 for begin, _, _, decided in replay.runs
             ),
-            "pending": _pending(replay, clock, now),
+            "pending": _pending(replay, x_axis, now),
         }
     except StlError as error:
         return {"error": told(error, sources)}
 
 
-def _pending(replay: Replay, clock: Clock, now: float) -> list[list[Any]] | None:
+def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | None:
     result, watched = replay.result, replay.watched
     horizon = watched.horizon
     if not isfinite(horizon):
         return None
     monitor = watched.monitor(verdict="interval", at="every", time=result.trace.domain)
     instants = []
-    for position, seconds, row in _rows(result, monitor.input_names, clock):
+    for position, seconds, row in _rows(result, monitor.input_names, x_axis):
         if position > now:
             break
         monitor.update(seconds, **row)
@@ -144,11 +144,11 @@ def _bounds(known: Band, width: int, view: View | None) -> dict[str, Any]:
 
 
 def _rows(
-    result: Result, names: tuple[str, ...], clock: Clock
+    result: Result, names: tuple[str, ...], x_axis: XAxis
 ) -> Iterator[tuple[float, float, dict[str, float]]]:
     """Yield the samples in the order of time: the position, seconds since the start, and values by name."""
-    columns = {name: clock.recorded(name) for name in names}
-    start = clock.start
+    columns = {name: x_axis.recorded(name) for name in names}
+    start = x_axis.start
     if not result.trace.domain.continuous:
         step = float(result.trace.step)
         positions = next(iter(columns.values()))[0].tolist() if columns else []
@@ -164,21 +164,21 @@ def _rows(
         yield position, round(position - start, 9), rows[position]
 
 
-def _runs(watched: Specification, result: Result, clock: Clock) -> list[Run]:
+def _runs(watched: Specification, result: Result, x_axis: XAxis) -> list[Run]:
     """Return intervals with their verdict and the position of the sample that decided it; None: the end did."""
     domain: Any = result.trace.domain
     monitor: Any = watched.monitor(verdict="eager", time=domain)
     found: list[Run] = []
-    start, dense = clock.start, result.trace.domain.continuous
+    start, dense = x_axis.start, result.trace.domain.continuous
     step = 0.0 if dense else float(result.trace.step)
 
     def take(verdicts: list[Any], now: float | None) -> None:
         for each in verdicts:
             begin, end = (each.begin, each.end) if dense else (each.time, each.time + step)
-            end = clock.end if end is None else start + float(end)
+            end = x_axis.end if end is None else start + float(end)
             found.append((start + float(begin), end, each.satisfied, now))
 
-    for position, seconds, row in _rows(result, monitor.input_names, clock):
+    for position, seconds, row in _rows(result, monitor.input_names, x_axis):
         take(monitor.update(seconds, **row), position)
     take(monitor.finish(), None)
     found.sort(key=lambda each: each[:2])

@@ -17,15 +17,15 @@ from urllib.parse import unquote
 
 from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.play.desk import KINDS
 from rtamt.play.messages import MOST_BYTES
+from rtamt.play.request_handler import KINDS
 from rtamt.play.vocabulary import vocabulary
 from rtamt.readers.formats import SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
 
-    from rtamt.play.crew import Crew
+    from rtamt.play.worker_pool import WorkerPool
 
     Scope = Mapping[str, Any]
     Receive = Callable[[], Awaitable[Any]]
@@ -66,7 +66,7 @@ class Place:
     token: str
     hosts: tuple[str, ...]
     folder: str
-    crew: Crew
+    workers: WorkerPool
     given: Given
     files: dict[int, dict[str, Any]] = field(default_factory=dict)
     newest: int = 0
@@ -116,10 +116,10 @@ def application(place: Place) -> Any:
         if message is None:
             return refused(400, "the request must be a JSON object")
         file = place.files.get(message["recording"]) if type(message.get("recording")) is int else None
-        return answer(*await place.crew.ask(kind, message, file))
+        return answer(*await place.workers.ask(kind, message, file))
 
     async def cancel(_request: Any) -> Any:
-        await place.crew.cancel()
+        await place.workers.cancel()
         return answer(200, b"{}")
 
     async def upload(request: Any) -> Any:
@@ -138,7 +138,7 @@ def application(place: Place) -> Any:
         if not whole:
             return refused(413, f"'{name}' has more than {MOST_UPLOAD} bytes; give it on the command line")
         found = place.add(path, name, ours=True)
-        return answer(*await place.crew.ask("recording", {}, found))
+        return answer(*await place.workers.ask("recording", {}, found))
 
     async def file(request: Any) -> Any:
         found = place.files.get(request.path_params["number"])
@@ -220,7 +220,7 @@ async def _start(place: Place) -> dict[str, Any]:
     given, recording, complaint = place.given, None, ""
     first = next(iter(place.files.values()), None)
     if given.recording is not None and first is not None:
-        found = json.loads((await place.crew.ask("recording", {}, first))[1])
+        found = json.loads((await place.workers.ask("recording", {}, first))[1])
         if found["error"]:
             complaint = found["error"]["message"]
         else:

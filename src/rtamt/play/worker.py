@@ -10,19 +10,19 @@ import sys
 from typing import Any, BinaryIO
 
 from rtamt.errors import StlError
-from rtamt.play.desk import Desk
 from rtamt.play.messages import MessageError
+from rtamt.play.request_handler import RequestHandler
 
 
-def reply(desk: Desk, line: bytes) -> bytes:
+def reply(handler: RequestHandler, line: bytes) -> bytes:
     r"""Answer one line: ``{"kind", "message", "file"}``; the answer begins with an HTTP status.
 
-    >>> reply(Desk(), b'{"kind": "evaluate", "message": {"text": 3}}')
+    >>> reply(RequestHandler(), b'{"kind": "evaluate", "message": {"text": 3}}')
     b'400 {"sentence": "\'text\' must be a text"}'
     """
     try:
         asked = json.loads(line)
-        return _line(200, desk.answer(asked["kind"], asked["message"], asked.get("file")))
+        return _line(200, handler.answer(asked["kind"], asked["message"], asked.get("file")))
     except MessageError as error:
         return _line(400, {"sentence": str(error)})
     except StlError as error:
@@ -45,9 +45,9 @@ def _line(status: int, data: dict[str, Any]) -> bytes:
 
 def serve(given: BinaryIO, answers: BinaryIO, folder: str | None) -> None:
     """Answer every line."""
-    desk = Desk(folder)
+    handler = RequestHandler(folder)
     for line in given:
-        answers.write(reply(desk, line) + b"\n")
+        answers.write(reply(handler, line) + b"\n")
         answers.flush()
 
 

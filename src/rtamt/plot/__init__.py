@@ -9,7 +9,7 @@ scene   the content of a plot as data
 band    bounds at the start of a trace, after each sample
 panels  which signals share a panel
 lines   points of lines, and intervals in which a formula does not hold
-clock   times as positions on an axis
+x_axis  the times of a recording as positions on the x axis
 figure  draw a scene with matplotlib
 axes    matplotlib, and vertical axes with infinities
 texts   names and formulas as there is room for them

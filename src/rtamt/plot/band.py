@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from rtamt.errors import UsageError
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
-from rtamt.plot.clock import Clock
-from rtamt.verdicts.at_start import StartMonitor
-from rtamt.verdicts.dense_early import DenseEarlyMonitor, push_tick
+from rtamt.plot.x_axis import XAxis
+from rtamt.verdicts.early.at_start import StartMonitor
+from rtamt.verdicts.early.dense import DenseEarlyMonitor, push_tick
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -84,7 +84,7 @@ def band(result: Result) -> Band:
         upper.append(known.upper)
         if decided is None and monitor.satisfied is not None:
             decided = len(steps) - 1
-    positions = Clock.of(trace).positions(np.array([trace.time(step) for step in steps]))
+    positions = XAxis.of(trace).positions(np.array([trace.time(step) for step in steps]))
     return Band(
         positions,
         np.array(lower),

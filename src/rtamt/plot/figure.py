@@ -49,7 +49,7 @@ def draw(scene: Scene, rows: int, figure: Any, window: tuple[float, float] | Non
 
     ``rows``: sub-formulas at most. ``window``: the positions that are seen, by default all.
     """
-    _Drawing(scene, rows, figure, window or (scene.clock.start, scene.clock.end)).draw()
+    _Drawing(scene, rows, figure, window or (scene.x_axis.start, scene.x_axis.end)).draw()
 
 
 class _Drawing:
@@ -140,8 +140,8 @@ class _Drawing:
             )
 
     def _time_axis(self, axis: Any) -> None:
-        axis.set_xlabel(self._scene.clock.label, fontsize=8, color=style.QUIET)
-        if isinstance(self._scene.clock.origin, np.datetime64):
+        axis.set_xlabel(self._scene.x_axis.label, fontsize=8, color=style.QUIET)
+        if isinstance(self._scene.x_axis.origin, np.datetime64):
             dates = matplotlib("dates")
             locator = dates.AutoDateLocator(minticks=3, maxticks=9)
             axis.xaxis.set_major_locator(locator)
@@ -235,7 +235,7 @@ class _Drawing:
         self._instants(axis)
         at = self._scene.shown_at(number)
         value, fails = node.line.at(at), node.fails_at(at)
-        when = f"at {self._scene.clock.text(at)}"
+        when = f"at {self._scene.x_axis.text(at)}"
         self._beside(
             axis,
             f"{style.SIGNS[not fails]} {style.number(value)}",
@@ -311,7 +311,7 @@ class _Drawing:
         kind = style.HOLDS if self._scene.explanation.satisfied else style.FAILS
         if band.decided is not None and self._sees(band.decided):
             axis.axvline(self._place(band.decided), color=kind, linewidth=1.2)
-        when = "at the end" if band.decided is None else f"at {self._scene.clock.text(band.decided)}"
+        when = "at the end" if band.decided is None else f"at {self._scene.x_axis.text(band.decided)}"
         self._beside(axis, "decided", when, kind)
 
     # ---- marks -------------------------------------------------------------------------------------
@@ -386,7 +386,7 @@ class _Drawing:
 
     def _places(self, positions: FloatArray) -> Any:
         """Return positions as matplotlib takes them: dates where the recording has dates."""
-        origin = self._scene.clock.origin
+        origin = self._scene.x_axis.origin
         if isinstance(origin, np.datetime64):
             return origin + np.rint(np.asarray(positions) * 1e9).astype("timedelta64[ns]")
         return positions

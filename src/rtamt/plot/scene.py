@@ -13,9 +13,9 @@ from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.plot.band import Band, band
-from rtamt.plot.clock import Clock
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
+from rtamt.plot.x_axis import XAxis
 from rtamt.rewrite.truth import is_predicate
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
@@ -71,7 +71,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Everything that a plot or a report of one result shows; positions are those of ``clock``.
+    """Everything that a plot or a report of one result shows; positions are those of ``x_axis``.
 
     ``nodes``: the formula first, then its sub-formulas, those next to the top first; equal ones are one.
     ``critical``: the node and the position of the critical point, if a predicate decides.
@@ -79,7 +79,7 @@ class Scene:
 
     title: str
     explanation: Explanation
-    clock: Clock
+    x_axis: XAxis
     dense: bool
     panels: tuple[Panel, ...]
     nodes: tuple[Node, ...]
@@ -103,38 +103,38 @@ class Scene:
 
         Raises :class:`UsageError` where there is nothing in between, or no violation.
         """
-        low, high = self.clock.start, self.clock.end
+        low, high = self.x_axis.start, self.x_axis.end
         if zoom is not None:
             if zoom != "violation":
                 raise UsageError(f"cannot zoom to '{zoom}'; the only choice is 'violation'")
             violation = self.explanation.first_violation
             if violation is None:
                 raise UsageError(f"cannot zoom to the violation: the formula is {self.verdict}")
-            low, high = self._around(self.clock.position(violation))
-        low = low if start is None else self.clock.position(start)
-        high = high if end is None else self.clock.position(end)
-        if low > high or high < self.clock.start or low > self.clock.end:
-            ends = f"{self.clock.text(self.clock.start)} to {self.clock.text(self.clock.end)}"
+            low, high = self._around(self.x_axis.position(violation))
+        low = low if start is None else self.x_axis.position(start)
+        high = high if end is None else self.x_axis.position(end)
+        if low > high or high < self.x_axis.start or low > self.x_axis.end:
+            ends = f"{self.x_axis.text(self.x_axis.start)} to {self.x_axis.text(self.x_axis.end)}"
             raise UsageError(
-                f"there is nothing to plot from {self.clock.text(low)} to {self.clock.text(high)}; "
+                f"there is nothing to plot from {self.x_axis.text(low)} to {self.x_axis.text(high)}; "
                 f"the trace lasts from {ends}"
             )
-        return max(low, self.clock.start), min(high, self.clock.end)
+        return max(low, self.x_axis.start), min(high, self.x_axis.end)
 
     def _around(self, violation: float) -> tuple[float, float]:
         """Return the positions around a violation: the causes that it touches, and something on either side."""
         causes = [each for node in self.nodes for each in node.because if each[0] <= violation <= each[1]]
         low = min([violation, *(start for start, _ in causes)])
         high = max([violation, *(end for _, end in causes)])
-        whole = self.clock.end - self.clock.start
+        whole = self.x_axis.end - self.x_axis.start
         samples = 20 * whole / max(len(self.nodes[0].line.positions) - 1, 1)
         margin = max(0.5 * (high - low), 0.02 * whole if self.dense else samples)
-        return max(low - margin, self.clock.start), min(high + margin, self.clock.end)
+        return max(low - margin, self.x_axis.start), min(high + margin, self.x_axis.end)
 
     def shown_at(self, number: int) -> float:
         """Return the position at which a node's value is shown: of parts of a violated formula its first violation."""
         violation = self.explanation.first_violation
-        return self.at if number == 0 or violation is None else self.clock.position(violation)
+        return self.at if number == 0 or violation is None else self.x_axis.position(violation)
 
     def chosen(self, count: int) -> tuple[int, ...]:
         """Return the numbers of the ``count`` most important nodes, in the order of the formula."""
@@ -173,7 +173,7 @@ class _Painter:
         self._result = result
         self._spec = result.specification
         self._explanation = result.explain(at)
-        self._clock = Clock.of(result.trace)
+        self._x_axis = XAxis.of(result.trace)
         self._dense = result.trace.domain.continuous
 
     def scene(self, known: Band | None) -> Scene:
@@ -182,18 +182,18 @@ class _Painter:
         point = self._explanation.critical
         critical = None
         if point.formula in places:
-            critical = (places[point.formula], self._clock.position(point.time))
+            critical = (places[point.formula], self._x_axis.position(point.time))
         return Scene(
             self._spec.name or "",
             self._explanation,
-            self._clock,
+            self._x_axis,
             self._dense,
             self._panels(formulas),
             tuple(
                 self._node(formula, places, signals)
                 for formula, signals in zip(formulas, self._signals(formulas), strict=True)
             ),
-            self._clock.position(self._explanation.time),
+            self._x_axis.position(self._explanation.time),
             critical,
             known,
         )
@@ -219,7 +219,7 @@ class _Painter:
             text if is_predicate(formula) else _label(formula),
             names[0] if names else None,
             line,
-            ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._clock.end),
+            ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._x_axis.end),
             numbers,
             len(numbers) < len(operands),
             self._because([s for s in self._explanation.implicant if s.formula == formula]),
@@ -243,23 +243,23 @@ class _Painter:
 
     def _recorded(self, name: str) -> Line:
         unit, names = self._result.trace.units.get(name, ""), value_names(self._spec.types.get(name))
-        return Line(name, *self._clock.recorded(name), unit, names)
+        return Line(name, *self._x_axis.recorded(name), unit, names)
 
     def _line(self, name: str, signal: Signal) -> Line:
-        return Line(name, self._clock.positions(signal.times), signal.values)
+        return Line(name, self._x_axis.positions(signal.times), signal.values)
 
     def _because(self, stretches: Sequence[Stretch | Reading]) -> tuple[Range, ...]:
         """Return intervals of the implicant, or of what it reads, as they are drawn, within the recording."""
         half = float(self._result.trace.domain.period or 0) / 2  # around a sample
-        clock = self._clock
+        x_axis = self._x_axis
         found = dict.fromkeys(
             (
-                clock.position(s.start) - half,
-                clock.end if s.end is None else min(clock.position(s.end), clock.end) + half,
+                x_axis.position(s.start) - half,
+                x_axis.end if s.end is None else min(x_axis.position(s.end), x_axis.end) + half,
             )
             for s in stretches
         )
-        return tuple((start, end) for start, end in found if start <= clock.end)
+        return tuple((start, end) for start, end in found if start <= x_axis.end)
 
 
 def _sub_formulas(formula: Formula) -> tuple[Formula, ...]:

@@ -1,4 +1,4 @@
-"""From a source to a trace: which columns, under which names, on which clock."""
+"""From a source to a trace: which columns, under which names, with which timestamps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rtamt.errors import TraceError, choices, did_you_mean, shown
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_numpy import np
 from rtamt.readers.gaps import Gaps
-from rtamt.readers.timestamps import Clock, guess_field
+from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME, is_number
 from rtamt.signals.coding import encoded_value
 from rtamt.signals.data_errors import missing_sample
@@ -55,7 +55,7 @@ class Selection:
     """Of one table: the field of timestamps, and the fields to read with the names of their signals."""
 
     table: Table
-    clock: Field | None
+    time_field: Field | None
     guessed: bool
     signals: tuple[tuple[str, Field], ...]
     #: Whether the caller named the columns, so that one that is no number is an error.
@@ -64,7 +64,7 @@ class Selection:
     @property
     def fields(self) -> tuple[Field, ...]:
         """The columns to read from the table: the timestamps first."""
-        first = () if self.clock is None else (self.clock,)
+        first = () if self.time_field is None else (self.time_field,)
         return first + tuple(field for _, field in self.signals)
 
 
@@ -75,13 +75,13 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     for selection in select(source, choice):
         raws = selection.table.load(selection.fields)
         losses += selection.table.losses
-        clock = clock_of(source, selection, choice)
+        timestamps = timestamps_of(source, selection, choice)
         gaps = _gaps(source, selection, choice)
-        made, left_out = _channels(source, selection, clock, raws, choice, gaps)
-        notes += [] if clock is None else [note for note in clock.notes if note not in notes]
+        made, left_out = _channels(source, selection, timestamps, raws, choice, gaps)
+        notes += [] if timestamps is None else [note for note in timestamps.notes if note not in notes]
         channels.update(made)
         if choice.columns is None:
-            taken = {clock.field if clock else None, *(f for _, f in selection.signals)}
+            taken = {timestamps.field if timestamps else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
         notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
         losses += [loss for each in gaps.values() for loss in each.losses()]
@@ -94,7 +94,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     """Read a source in chunks: consecutive traces; the notes of each refer to all so far."""
     selections = select(source, choice)
-    clocks = [clock_of(source, selection, choice) for selection in selections]
+    timestamps = [timestamps_of(source, selection, choice) for selection in selections]
     gaps = [_gaps(source, selection, choice) for selection in selections]
     before = [0] * len(selections)
     for chunk in _raw_chunks(source, selections):
@@ -102,10 +102,13 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
         for i, (selection, raws) in enumerate(zip(selections, chunk, strict=True)):
             if len(selections) > 1 and not len(raws[0]):
                 continue  # nothing of this table
-            made, _ = _channels(source, selection, clocks[i], raws, choice, gaps[i], before[i])
+            made, _ = _channels(source, selection, timestamps[i], raws, choice, gaps[i], before[i])
             channels.update(made)
             before[i] += len(raws[0]) if raws else 0
-        notes = (*source.notes, *dict.fromkeys(note for clock in clocks if clock for note in clock.notes))
+        notes = (
+            *source.notes,
+            *dict.fromkeys(note for column in timestamps if column for note in column.notes),
+        )
         lost = (loss for each in gaps for gap in each.values() for loss in gap.losses())
         losses = (*source.losses, *(loss for each in selections for loss in each.table.losses), *lost)
         yield Trace(
@@ -145,12 +148,12 @@ def select(source: Source, choice: Choice) -> list[Selection]:
         )
     found = []
     for table in source.tables:
-        clock, guessed = _time_field(source, table, choice)
+        time_field, guessed = _time_field(source, table, choice)
         mine = of_table[id(table)]
         if choice.columns is None:
-            mine = [(name, f) for name, f in mine if f != clock or name in choice.names]
+            mine = [(name, f) for name, f in mine if f != time_field or name in choice.names]
         if mine or len(source.tables) == 1:
-            found.append(Selection(table, clock, guessed, tuple(mine), choice.columns is not None))
+            found.append(Selection(table, time_field, guessed, tuple(mine), choice.columns is not None))
     return found
 
 
@@ -195,11 +198,11 @@ def _has_clock_called_otherwise(source: Source, choice: Choice) -> bool:
     if any(TIME in (field.column, field.name) for field in fields):
         return any(_time_field(source, table, choice)[0] is not None for table in source.tables)
     for table in source.tables:
-        clock, _ = _time_field(source, table, choice)
-        if clock is not None:
+        time_field, _ = _time_field(source, table, choice)
+        if time_field is not None:
             raise TraceError(
                 f"the formula reads '{TIME}', but the timestamps of {source.name} are its column "
-                f"'{clock.column}'; name that column '{TIME}', or the variable something else",
+                f"'{time_field.column}'; name that column '{TIME}', or the variable something else",
                 variable=TIME,
             )
     return False
@@ -264,11 +267,11 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
     if choice.time == "":
         return None, False
     if choice.time is not None:
-        if table.clock is not None and all(choice.time not in (f.name, f.column) for f in table.fields):
-            return table.clock, False
+        if table.time_field is not None and all(choice.time not in (f.name, f.column) for f in table.fields):
+            return table.time_field, False
         return _Columns(source, [(table, field) for field in table.fields]).find(choice.time)[1], False
-    if table.clock is not None:
-        return table.clock, False
+    if table.time_field is not None:
+        return table.time_field, False
     wanted = {choice.names.get(name, name) for name in choice.columns or ()}
     return guess_field(table.fields, source.name, wanted.union(choice.names.values())), True
 
@@ -276,13 +279,13 @@ def _time_field(source: Source, table: Table, choice: Choice) -> tuple[Field | N
 # ---- values --------------------------------------------------------------------------------------
 
 
-def clock_of(source: Source, selection: Selection, choice: Choice) -> Clock | None:
+def timestamps_of(source: Source, selection: Selection, choice: Choice) -> TimestampColumn | None:
     """Return the conversion of a table's timestamps to times; None if it has none."""
-    if selection.clock is None:
+    if selection.time_field is None:
         return None
-    unit = choice.units.get(selection.clock.column, choice.units.get(TIME))
-    guessed = selection.guessed and selection.clock.column.lower() != TIME
-    return Clock(selection.clock, unit, guessed, source.name)
+    unit = choice.units.get(selection.time_field.column, choice.units.get(TIME))
+    guessed = selection.guessed and selection.time_field.column.lower() != TIME
+    return TimestampColumn(selection.time_field, unit, guessed, source.name)
 
 
 def _gaps(source: Source, selection: Selection, choice: Choice) -> dict[str, Gaps]:
@@ -292,7 +295,7 @@ def _gaps(source: Source, selection: Selection, choice: Choice) -> dict[str, Gap
 def _channels(
     source: Source,
     selection: Selection,
-    clock: Clock | None,
+    timestamps: TimestampColumn | None,
     raws: Sequence[Raw],
     choice: Choice,
     gaps: Mapping[str, Gaps],
@@ -300,9 +303,9 @@ def _channels(
 ) -> tuple[dict[str, Channel], list[str]]:
     """Return the signals of a table, and the columns that were left out."""
     times = None
-    if clock is not None:
-        times = clock.times(raws[0], before)
-    values = raws if clock is None else raws[1:]
+    if timestamps is not None:
+        times = timestamps.times(raws[0], before)
+    values = raws if timestamps is None else raws[1:]
     made, left_out = {}, []
     for (name, field), raw in zip(selection.signals, values, strict=True):
         try:

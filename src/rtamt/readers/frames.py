@@ -50,9 +50,9 @@ def kind_of(raw: Raw) -> str:
 
 
 def table_of(
-    columns: Mapping[str, Raw], clock: str | None = None, units: Mapping[str, str] | None = None
+    columns: Mapping[str, Raw], time_column: str | None = None, units: Mapping[str, str] | None = None
 ) -> Table:
-    """Return arrays of one length as a table; ``clock``: the column that is known to hold the timestamps."""
+    """Return arrays of one length as a table; ``time_column``: the column that is known to hold the timestamps."""
     fields = {}
     for column, raw in columns.items():
         field = field_of(str(column), kind_of(raw))
@@ -63,7 +63,7 @@ def table_of(
     return Table(
         tuple(fields.values()),
         lambda wanted: [by_column[field.column] for field in wanted],
-        clock=None if clock is None else fields[clock],
+        time_field=None if time_column is None else fields[time_column],
     )
 
 
@@ -99,9 +99,9 @@ def _dict(data: Mapping[Any, Any]) -> Source:
             times, values = dense_arrays.split(samples, str(name))
             columns = {TIME: _array(times, TIME), str(name): _array(values, str(name))}
             shared = table_of(columns, TIME)
-            assert shared.clock is not None
+            assert shared.time_field is not None
             # Each has its own column of timestamps, which no caller selects by name.
-            tables.append(Table(shared.fields[1:], shared.load, clock=shared.clock))
+            tables.append(Table(shared.fields[1:], shared.load, time_field=shared.time_field))
         return Source("a dict", tuple(tables))
     return Source("a dict", (table_of({str(k): _array(v, str(k)) for k, v in data.items()}),))
 
@@ -126,14 +126,14 @@ def _pandas(frame: Any) -> Source:
     if len(columns) < len(frame.columns):
         twice = next(str(c) for i, c in enumerate(frame.columns) if c in list(frame.columns[:i]))
         raise TraceError(f"the pandas frame has two columns called '{twice}'; rename one of them")
-    index, clock = frame.index, None
+    index, time_column = frame.index, None
     if getattr(index, "nlevels", 1) == 1 and type(index).__name__ != "RangeIndex":
         name = str(index.name) if index.name is not None else "index"
         dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
         if name not in columns:
             columns = {name: _pandas_column(index.to_series()), **columns}
-            clock = name if dated or is_stamps(field_of(name).name) else None
-    return Source("a pandas frame", (table_of(columns, clock),))
+            time_column = name if dated or is_stamps(field_of(name).name) else None
+    return Source("a pandas frame", (table_of(columns, time_column),))
 
 
 def _pandas_column(series: Any) -> Raw:
@@ -182,7 +182,7 @@ def _arrow(table: Any) -> Source:
 
 
 def _xarray(data: Any) -> Source:
-    """Return a table for each dimension: the variables along it, and its coordinate for a clock."""
+    """Return a table for each dimension: the variables along it, and its coordinate as timestamps."""
     tables, left_out = [], [str(name) for name, v in data.data_vars.items() if v.ndim != 1]
     for dim in data.dims:
         along = {str(name): v for name, v in data.data_vars.items() if v.dims == (dim,)}
@@ -190,13 +190,13 @@ def _xarray(data: Any) -> Source:
             continue
         columns = {name: _floats(v.values) for name, v in along.items()}
         units = {name: str(v.attrs.get("units", "")) for name, v in along.items()}
-        clock = None
+        time_column = None
         if dim in data.coords:
             columns[str(dim)] = data.coords[dim].values
             units[str(dim)] = str(data.coords[dim].attrs.get("units", ""))
             timed = kind_of(columns[str(dim)]) == "time" or is_stamps(field_of(str(dim)).name)
-            clock = str(dim) if timed else None
-        tables.append(table_of(columns, clock, {name: unit for name, unit in units.items() if unit}))
+            time_column = str(dim) if timed else None
+        tables.append(table_of(columns, time_column, {name: unit for name, unit in units.items() if unit}))
     notes = (f"left out, not one-dimensional: {', '.join(left_out)}",) if left_out else ()
     return Source("an xarray dataset", tuple(tables), notes=notes)
 

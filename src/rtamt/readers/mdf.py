@@ -72,13 +72,13 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
     master = file.masters_db.get(number)
     prefix = getattr(group.channel_group, "acq_name", "") or f"group{number}"
     places: dict[str, int] = {}
-    fields, clock = [], None
+    fields, time_field = [], None
     for index, channel in enumerate(group.channels):
         name = channel.name if counts[channel.name] == 1 else f"{prefix}.{channel.name}"
         kind = "text" if _is_text(channel) else ""
         field = Field(name, name, _unit(channel), kind)
         if index == master:
-            clock = field = Field(name, name, "s", "number")
+            time_field = field = Field(name, name, "s", "number")
         places[name] = index
         fields.append(field)
 
@@ -88,12 +88,12 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
                 raise TraceError(f"the channel '{field.column}' holds texts or bytes, expected numbers")
         return [
             np.asarray(file.get_master(number))
-            if field == clock
+            if field == time_field
             else _samples(file, number, places[field.column], by_name=isinstance(field.type, Enumeration))
             for field in wanted
         ]
 
-    return Table(tuple(fields), load, clock=clock)
+    return Table(tuple(fields), load, time_field=time_field)
 
 
 @contextmanager

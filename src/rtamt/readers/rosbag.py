@@ -147,7 +147,7 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
     steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
     if connection.msgtype == _SCAN:
         steps[f"{topic}.{_NEAREST}"] = (_NEAREST,)
-    clock = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
+    time_field = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
     made: list[_Topic] = []
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
@@ -157,7 +157,7 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
         return rows.columns()
 
     fields = [Field(column, column, "", "number") for column in steps]
-    made.append(_Topic(Table((clock, *fields), load, clock=clock), connections, steps))
+    made.append(_Topic(Table((time_field, *fields), load, time_field=time_field), connections, steps))
     return made[0]
 
 
@@ -166,7 +166,7 @@ class _Rows:
 
     def __init__(self, topic: _Topic, wanted: Sequence[Field]) -> None:
         self._topic, self._wanted = topic, wanted
-        self._paths = [topic.steps[field.column] for field in wanted if field != topic.table.clock]
+        self._paths = [topic.steps[field.column] for field in wanted if field != topic.table.time_field]
         self._timestamps: list[int] = []
         self._rows: list[list[Any]] = []
         self._recodings: dict[int, Recoding] = {}
@@ -194,7 +194,7 @@ class _Rows:
 
     def _recodings_of(self, message: Any) -> dict[int, Recoding]:
         """Return how members of enumerations are read, by the place of their column."""
-        fields = [field for field in self._wanted if field != self._topic.table.clock]
+        fields = [field for field in self._wanted if field != self._topic.table.time_field]
         return {
             place: Recoding(_at(message, _holder(self._topic.steps[field.column])), field.type)
             for place, field in enumerate(fields)
@@ -205,12 +205,12 @@ class _Rows:
         """Return the messages since the last call."""
         table = self._topic.table
         table.losses[:] = [] if not self._others else [_repeated(self._topic.name, self._others)]
-        assert table.clock is not None
+        assert table.time_field is not None
         rows = [list(row) for row in self._rows] if self._recodings else self._rows
         for place, recoding in self._recodings.items():
             for row in rows:
                 row[place] = None if row[place] is None else recoding(float(row[place]))
-        found = _columns(self._wanted, table.clock, self._timestamps, rows)
+        found = _columns(self._wanted, table.time_field, self._timestamps, rows)
         self._timestamps, self._rows = [], []
         return found
 
@@ -235,12 +235,12 @@ def _repeated(topic: str, count: int) -> str:
 
 
 def _columns(
-    wanted: Sequence[Field], clock: Field, timestamps: list[int], rows: list[list[Any]]
+    wanted: Sequence[Field], time_field: Field, timestamps: list[int], rows: list[list[Any]]
 ) -> list[Raw]:
     values: Iterator[tuple[Any, ...]] = iter(zip(*rows, strict=True) if rows else [()] * len(wanted))
     found: list[Raw] = []
     for field in wanted:
-        if field == clock:
+        if field == time_field:
             found.append(np.array(timestamps, dtype=np.int64))
             continue
         column = next(values)

@@ -3,7 +3,7 @@
 ::
 
     Source          a recording: a file, a query, a frame
-      └── Table     columns that share a clock: one in a CSV file, one for each topic of a flight log
+      └── Table     columns that share their timestamps: one in a CSV file, one for each topic of a flight log
             └── Field    a column: what the source calls it, its name in formulas, its unit
 """
 
@@ -55,7 +55,7 @@ class Field:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """Columns that share a clock; read once, whole or in chunks."""
+    """Columns that share their timestamps; read once, whole or in chunks."""
 
     fields: tuple[Field, ...]
     #: Fields to their values, in the same order.
@@ -63,7 +63,7 @@ class Table:
     #: The same, some :data:`CHUNK` rows at a time; None where the format has to be read whole.
     chunks: Callable[[Sequence[Field]], Iterator[list[Raw]]] | None = None
     #: The field that is known to hold the timestamps; None where it has to be found by its name.
-    clock: Field | None = None
+    time_field: Field | None = None
     #: The line or row of the source in which the first sample stands, for messages.
     first_row: int = 0
     #: What ``load`` had to leave out, a sentence each; empty until then.

@@ -64,7 +64,7 @@ def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
     return TraceError(f"{source} has {has} may hold the timestamps: {listing}; {CHOICES}")
 
 
-class Clock:
+class TimestampColumn:
     """How the timestamps of a column become times, a few at a time: the first one decides for all.
 
     ``said``: the unit that the caller gives. ``notes``: what was guessed.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 #: The timestamp field of every topic: microseconds since the autopilot's start.
-_CLOCK = "timestamp"
+_TIMESTAMP = "timestamp"
 
 
 #: Bytes of the header of a message: its size and its type.
@@ -46,9 +46,9 @@ def open_ulog(path: str) -> Source:
     if losses and not topics:
         raise TraceError(f"'{path}' cannot be read as PX4 ULog: {losses[0]}, and no sample comes before that")
     for topic in topics:
-        if _CLOCK not in topic.data:
+        if _TIMESTAMP not in topic.data:
             raise TraceError(
-                f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_CLOCK}'"
+                f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_TIMESTAMP}'"
             )
     return Source(path, tuple(map(_table, topics)), notes=_dropouts(log), losses=losses)
 
@@ -100,17 +100,17 @@ class _Watched:
 def _table(topic: Any) -> Table:
     prefix = topic.name if topic.multi_id == 0 else f"{topic.name}[{topic.multi_id}]"
     names = {f"{prefix}.{field}": field for field in topic.data}
-    clock = Field(f"{prefix}.{_CLOCK}", f"{prefix}.{_CLOCK}", "us", "number")
+    time_field = Field(f"{prefix}.{_TIMESTAMP}", f"{prefix}.{_TIMESTAMP}", "us", "number")
     fields = [
         Field(name, name, "", "number", alias="" if topic.multi_id else f"{topic.name}[0].{field}")
         for name, field in names.items()
-        if name != clock.column
+        if name != time_field.column
     ]
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         return [topic.data[names[field.column]] for field in wanted]
 
-    return Table((clock, *fields), load, clock=clock)
+    return Table((time_field, *fields), load, time_field=time_field)
 
 
 def _dropouts(log: Any) -> tuple[str, ...]:

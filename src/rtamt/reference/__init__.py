@@ -2,17 +2,17 @@
 
 This package shares only the formula with the compiler and the engine, so that each verifies the other.
 
-==================  ============================================================
-module              purpose
-==================  ============================================================
-discrete            the definition in discrete time
-dense               the definition in dense time
-discrete_bounds     bounds in discrete time, of traces that are known in part
-dense_bounds        bounds in dense time
-earliest            verdicts, each at the first sample that decides it
-causation           by how much the newest sample alone violates or satisfies a formula
-dense_causation     the same in dense time
-cores               the core of a formula that is evaluated again with every sample
-definition_adapter  run an operator that has only a definition inside the engine
-==================  ============================================================
+===================  =====================================================================================
+module               purpose
+===================  =====================================================================================
+discrete_robustness  robustness in discrete time
+dense_robustness     robustness in dense time
+discrete_bounds      bounds in discrete time, of traces that are known in part
+dense_bounds         bounds in dense time
+eager_verdicts       verdicts, each at the first sample that decides it
+discrete_causation   by how much the newest sample alone violates or satisfies a formula, in discrete time
+dense_causation      the same in dense time
+cores                the core of a formula that is evaluated again with every sample
+definition_adapter   run an operator that has only a definition inside the engine
+===================  =====================================================================================
 """

@@ -19,7 +19,7 @@ from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
 from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import signal_of
-from rtamt.reference.dense import last_read
+from rtamt.reference.dense_robustness import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
 from rtamt.rewrite.desugar import written
 

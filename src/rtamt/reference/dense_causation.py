@@ -1,10 +1,10 @@
 """The definition of causation in dense time: by how much the newest samples alone violate or satisfy a formula.
 
-As in discrete time (``causation.py``), on step functions. An event is what comes at once: samples of some variables, a
-watermark or the end of the trace. A predicate has its bounds where the event has made a variable of it known; one
-that reads several instants, where the event has moved them. The minimum of ``viol`` at an instant over the events so
-far, and of the upper bound before any of them, is U; the maximum of ``sat``, and of that lower bound, is L. For
-exact samples.
+As in discrete time (``discrete_causation.py``), on step functions. An event is what comes at once: samples of some
+variables, a watermark or the end of the trace. A predicate has its bounds where the event has made a variable of it
+known; one that reads several instants, where the event has moved them. The minimum of ``viol`` at an instant over the
+events so far, and of the upper bound before any of them, is U; the maximum of ``sat``, and of that lower bound, is L.
+For exact samples.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rtamt.ros.binding import EAGER, EVERY
 from rtamt.ros.group import Group, MessageGroup, SampledGroup
 from rtamt.signals.outcomes import VerdictRun
-from rtamt.verdicts.at_start import OPEN, SATISFIED, VIOLATED, StartMonitor
+from rtamt.verdicts.early.at_start import OPEN, SATISFIED, VIOLATED, StartMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping

@@ -13,7 +13,7 @@ from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments
 from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
-from rtamt.texts import load
+from rtamt.specification_loader import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -36,7 +36,7 @@ from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
-from rtamt.texts import load, parse
+from rtamt.specification_loader import load, parse
 
 if TYPE_CHECKING:
     import os

@@ -12,8 +12,8 @@ from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
 from rtamt.signals.arrays import TIME, is_number
-from rtamt.verdicts.at_start import StartMonitor
-from rtamt.verdicts.early_check import holds_at_end
+from rtamt.verdicts.early.at_start import StartMonitor
+from rtamt.verdicts.early.check import holds_at_end
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -73,14 +73,14 @@ class Discrete(TimeDomain):
         "engine": "rtamt.engine.discrete:ENGINE",
         "time_axis": "rtamt.engine.discrete.time_axis:DiscreteTimeAxis",
         "stream": "rtamt.verdicts.discrete_stream:DiscreteStream",
-        "eager": "rtamt.verdicts.eager:EagerMonitor",
-        "interval": "rtamt.verdicts.discrete_interval:DiscreteIntervalMonitor",
-        "causation": "rtamt.verdicts.discrete_causation:DiscreteCausationMonitor",
-        "early_check": "rtamt.verdicts.early_check:DiscreteEarlyCheck",
+        "eager": "rtamt.verdicts.early.discrete_eager:EagerMonitor",
+        "interval": "rtamt.verdicts.early.discrete_interval:DiscreteIntervalMonitor",
+        "causation": "rtamt.verdicts.early.discrete_causation:DiscreteCausationMonitor",
+        "early_check": "rtamt.verdicts.early.check:DiscreteEarlyCheck",
         "replay": "rtamt.plot.band:replay_samples",
         "ros_groups": "rtamt.ros.groups:sampled",
         "members": "rtamt.engine.discrete.quantifiers:MemberMonitor",
-        "members_interval": "rtamt.verdicts.member_bounds:MemberIntervalMonitor",
+        "members_interval": "rtamt.verdicts.early.member_bounds:MemberIntervalMonitor",
     }
 
     period: Fraction | None

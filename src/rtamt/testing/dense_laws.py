@@ -11,7 +11,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import variables
 from rtamt.language.operators import Tense
 from rtamt.lazy_numpy import np
-from rtamt.reference import dense as dense_reference
+from rtamt.reference import dense_robustness as dense_reference
 from rtamt.signals.dense import Dense, record_dense
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code
 from rtamt.testing.strategies import dense_chunkings, dense_traces

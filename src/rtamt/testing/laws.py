@@ -17,7 +17,7 @@ from rtamt.language.operators import STL, Language, Operator, Sort, Tense
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
 from rtamt.lazy_numpy import np
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.pastify import pastify

@@ -15,7 +15,7 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind, rank_arguments
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.lazy_numpy import np
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import TimeDomain
-    from rtamt.verdicts.early import EarlyMonitor
+    from rtamt.verdicts.early.monitor import EarlyMonitor
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@
 // from some tick on: columns reach far enough behind it.
 #pragma once
 
-#include "early/engine.hpp"
+#include "early/bounds_engine.hpp"
 
 #include "discrete/oracle.hpp"
 

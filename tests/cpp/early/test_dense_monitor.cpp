@@ -9,7 +9,7 @@
 #include <variant>
 
 using namespace early_oracle;
-using rtamt::early::Change;
+using rtamt::early::BoundChange;
 using rtamt::early::Decision;
 using rtamt::early::DenseMonitor;
 using rtamt::early::DenseSettings;
@@ -46,7 +46,7 @@ struct Model {
 DenseSettings settings(const Graph& graph, bool decides) {
     const auto root = static_cast<std::uint32_t>(2 * graph.nodes.size() - 2);
     return {.outputs = {root, root + 1},
-            .origin = {},
+            .at_start = {},
             .ranges = {},
             .lateness = {},
             .decides = decides,
@@ -105,7 +105,7 @@ TEST_CASE("bounds and their changes are those of the definition") {
                 return;
             }
             const auto expected = bounds(graph, model.knowledge(), count).back();
-            for (const Change& change : monitor.changes(0)) {
+            for (const BoundChange& change : monitor.changes(0)) {
                 for (Tick t = change.l; t <= change.r; ++t)
                     reported[t] = change.bounds;
             }

@@ -8,7 +8,7 @@
 #include <map>
 
 using namespace early_oracle;
-using rtamt::early::Engine;
+using rtamt::early::BoundsEngine;
 using rtamt::early::Samples;
 
 namespace {
@@ -46,14 +46,14 @@ struct Model {
 };
 
 // Tells an engine that keeps nothing but knowledge.
-Engine knowledge() {
+BoundsEngine knowledge() {
     Graph graph;
     graph.inputs = 2;
     return {graph, {range, range}, true};
 }
 
-void check_same(Samples& samples, Engine& engine, const Model& model) {
-    std::vector<Engine::Observation> observations;
+void check_same(Samples& samples, BoundsEngine& engine, const Model& model) {
+    std::vector<BoundsEngine::Observation> observations;
     samples.collect(observations);
     REQUIRE(samples.start() == model.start());
     if (!model.start()) {
@@ -85,7 +85,7 @@ TEST_CASE("samples make known what the definition says, in order or late") {
         const Tick lateness = random.between(0, 12);
         Samples samples({range, range}, ordered ? std::nullopt : std::optional(lateness));
         Model model(ordered);
-        Engine engine = knowledge();
+        BoundsEngine engine = knowledge();
         Tick newest = -20;
         for (int i = 0; i < 40; ++i) {
             const auto input = static_cast<std::uint32_t>(random.between(0, 1));
@@ -110,7 +110,7 @@ TEST_CASE("samples make known what the definition says, in order or late") {
                     if (bounds.lower < bounds.upper) bounds.upper = bounds.lower;
                 }
                 if (random.chance(20)) { // an update that fails
-                    std::vector<Engine::Observation> observations;
+                    std::vector<BoundsEngine::Observation> observations;
                     samples.add(input, time, bounds);
                     samples.collect(observations);
                     samples.rollback();
@@ -137,7 +137,7 @@ TEST_CASE("samples make known what the definition says, in order or late") {
         if (!model.start()) continue;
         samples.finish();
         model.closed = 1000;
-        std::vector<Engine::Observation> observations;
+        std::vector<BoundsEngine::Observation> observations;
         samples.collect(observations);
         REQUIRE(!engine.learn(observations, *samples.newest() - *samples.start()));
         for (std::uint32_t input = 0; input < 2; ++input) {
@@ -150,7 +150,7 @@ TEST_CASE("samples make known what the definition says, in order or late") {
 TEST_CASE("samples that are final are dropped") {
     Samples samples({range}, std::nullopt);
     for (Tick t = 0; t < 1000; ++t) {
-        std::vector<Engine::Observation> observations;
+        std::vector<BoundsEngine::Observation> observations;
         samples.add(0, t, Interval::of(1));
         samples.collect(observations);
         samples.commit();
@@ -164,7 +164,7 @@ TEST_CASE("times far from zero are taken, and too long traces are not") {
     REQUIRE(samples.may_come(0, epoch));
     samples.add(0, epoch, range);
     samples.add(0, epoch + 10, range);
-    std::vector<Engine::Observation> observations;
+    std::vector<BoundsEngine::Observation> observations;
     samples.collect(observations);
     samples.commit();
     REQUIRE(samples.start() == epoch);

@@ -15,7 +15,7 @@ from fmpy.fmi2 import FMU2Slave
 
 import rtamt
 from rtamt import fmi
-from rtamt.verdicts.at_start import StartMonitor
+from rtamt.verdicts.early.at_start import StartMonitor
 from tests.integration.fmi.instance import PERIOD, Unit
 from tests.unit.fmi import BOTH
 

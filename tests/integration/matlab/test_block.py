@@ -18,7 +18,7 @@ from rtamt.language.formula import variables
 from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.standalone import carried_program
 from tests.integration.matlab.octave import DOUBLES, ROOT, needs_octave, run_octave
-from tests.strategies import formulas, traces
+from tests.support.strategies import formulas, traces
 
 BLOCK = "block = RuntimeBlock({{{}}});"
 RESPONSE = "const float limit = 3  always[0:0.2]((req >= limit) -> eventually[0:0.3](gnt / scale >= limit))"

@@ -13,7 +13,7 @@ from rtamt.compiler.graph import FOREVER
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import variables
 from rtamt.lazy_dataclasses import replace
-from rtamt.reference import causation, dense_bounds, discrete_bounds, earliest
+from rtamt.reference import dense_bounds, discrete_bounds, discrete_causation, eager_verdicts
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge
 from rtamt.signals.dense import Dense
@@ -115,7 +115,7 @@ class _Eager(_Discrete):
         return self._reported()
 
     def _reported(self) -> list[Verdict]:
-        return [Verdict(*each) for each in earliest.verdicts(self._formula, self.known, PERIOD)[-1]]
+        return [Verdict(*each) for each in eager_verdicts.verdicts(self._formula, self.known, PERIOD)[-1]]
 
 
 class _Causes(_Discrete):
@@ -131,7 +131,7 @@ class _Causes(_Discrete):
     def causation(self, t: int) -> Causation:
         if t >= len(self._found):
             until = max(t, len(self._rows)) if t else 0  # at first the start alone is asked for
-            self._found = causation.causation(self._formula, self.known, PERIOD, until + 1)
+            self._found = discrete_causation.causation(self._formula, self.known, PERIOD, until + 1)
         return self._found[t]
 
 
@@ -180,7 +180,7 @@ class _DenseIntervals(_Dense):
     @property
     def known(self) -> DenseKnowledge:
         if self._lateness is None and self._mark is None:
-            return earliest.after(self._updates, self._names, self._ranges, finished=self._finished)
+            return eager_verdicts.after(self._updates, self._names, self._ranges, finished=self._finished)
         samples: dict[str, dict[int, Range]] = {name: {} for name in self._names}
         for t, row in self._updates:
             for name, bounds in row.items():
@@ -234,10 +234,10 @@ class _DenseEager(_Dense):
         return self._reported()
 
     def _reported(self) -> list[VerdictRun]:
-        found = earliest.dense_verdicts(
+        found = eager_verdicts.dense_verdicts(
             self._formula, self._updates, self._names, TICK, self._ranges, finished=self._finished
         )
-        return [VerdictRun(*run) for run in earliest.runs(found[-1])]
+        return [VerdictRun(*run) for run in eager_verdicts.runs(found[-1])]
 
 
 class _DenseCauses(_DenseIntervals):
@@ -264,7 +264,7 @@ class _DenseCauses(_DenseIntervals):
 
     @property
     def _known(self) -> DenseKnowledge:
-        found = earliest.after(self._updates, self._names, {}, finished=self._finished)
+        found = eager_verdicts.after(self._updates, self._names, {}, finished=self._finished)
         marks = {}
         for name, (times, _, _) in found.samples.items():
             marks[name] = max([*times[-1:], *([] if self._mark is None else [self._mark])], default=-FOREVER)

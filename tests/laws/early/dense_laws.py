@@ -15,8 +15,8 @@ from rtamt import Causation, Interval
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
-from rtamt.reference import dense as dense_reference
-from rtamt.reference import dense_bounds, earliest
+from rtamt.reference import dense_bounds, eager_verdicts
+from rtamt.reference import dense_robustness as dense_reference
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.early import causeless, loose
@@ -297,7 +297,7 @@ def eager(case: DenseCase, made: Implementation) -> None:
         for t, row in case.updates:
             told.append(monitor.update(t, **{name: given(known) for name, known in row.items()}))
         told.append(monitor.finish())
-        expected = earliest.dense_verdicts(
+        expected = eager_verdicts.dense_verdicts(
             case.formula, case.bounded(len(case.updates)), case.names, TICK, case.ranges, finished=True
         )
     except EvaluationError:
@@ -314,7 +314,7 @@ def eager(case: DenseCase, made: Implementation) -> None:
 
 def _dense_signs(case: DenseCase, got: list[dict[int, tuple[bool, int]]]) -> None:
     """Check verdicts of exact samples against the truth at the end, and that none is missing or comes twice."""
-    known = earliest.after(case.bounded(len(case.updates)), case.names, case.ranges, finished=True)
+    known = eager_verdicts.after(case.bounded(len(case.updates)), case.names, case.ranges, finished=True)
     assert known.start is not None
     end = max(t for t, _ in case.updates)
     signals = {name: (list(times), list(lower)) for name, (times, lower, _) in known.samples.items()}

@@ -14,10 +14,10 @@ import numpy as np
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
-from rtamt.reference import discrete as reference
-from rtamt.reference import discrete_bounds, earliest
-from rtamt.reference.causation import NOTHING
+from rtamt.reference import discrete_bounds, eager_verdicts
+from rtamt.reference import discrete_robustness as reference
 from rtamt.reference.discrete_bounds import ANYTHING
+from rtamt.reference.discrete_causation import NOTHING
 from rtamt.rewrite.early import causeless, ends_differently, loose
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import boolean
@@ -233,7 +233,7 @@ def eager(case: Case, made: Implementation) -> None:
             told.append(monitor.update(i, **{name: given(known) for name, known in row.items()}))
         told.append(monitor.finish())
         known = _definition(case)
-        expected = earliest.verdicts(case.formula, known, PERIOD)
+        expected = eager_verdicts.verdicts(case.formula, known, PERIOD)
     except EvaluationError:
         raise NothingToCheck from None
     got = [[(each.time, each.satisfied, each.decided_at) for each in each_update] for each_update in told]

@@ -13,12 +13,12 @@ from rtamt import Causation, Interval, Verdict, VerdictRun
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.discrete import DISCRETE
-from rtamt.verdicts.dense_causation import DenseCausationMonitor
-from rtamt.verdicts.dense_early import DenseEagerMonitor
-from rtamt.verdicts.dense_interval import DenseIntervalMonitor
-from rtamt.verdicts.discrete_causation import DiscreteCausationMonitor
-from rtamt.verdicts.discrete_interval import DiscreteIntervalMonitor
-from rtamt.verdicts.eager import EagerMonitor
+from rtamt.verdicts.early.dense_causation import DenseCausationMonitor
+from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
+from rtamt.verdicts.early.dense_interval import DenseIntervalMonitor
+from rtamt.verdicts.early.discrete_causation import DiscreteCausationMonitor
+from rtamt.verdicts.early.discrete_eager import EagerMonitor
+from rtamt.verdicts.early.discrete_interval import DiscreteIntervalMonitor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,7 +12,7 @@ from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.english import to_english
 from rtamt.language.printing.printer import to_text
 from rtamt.mutation.operators import changes_of
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 
 @pytest.mark.parametrize(

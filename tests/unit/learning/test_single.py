@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.learning import RobustnessReward
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 from tests.unit.learning.environments import SIGNALS, Replay
 
 NUMBERS = st.integers(-8, 8).map(lambda k: k / 2)

@@ -6,8 +6,8 @@ import pytest
 import rtamt
 from rtamt.errors import TraceError, UsageError
 from rtamt.mining import classify
-from rtamt.mining.rules import DecisionList, Rule, learned
-from rtamt.mining.templates import Template
+from rtamt.mining.classifier_templates import Template
+from rtamt.mining.decision_list import DecisionList, Rule, learned
 
 
 def drives(seed=0, bad=20, good=24):

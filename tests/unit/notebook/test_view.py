@@ -13,7 +13,7 @@ import rtamt
 from rtamt.notebook import view
 from rtamt.notebook.static import StaticView
 from rtamt.notebook.widget import ResultWidget
-from tests.unit.report.browser import CHROMIUM, chromium
+from tests.unit.html_report.browser import CHROMIUM, chromium
 
 SPEC = "require low: always(x <= 3)\nrequire high: always(eventually[0:2](x >= 1))\n"
 

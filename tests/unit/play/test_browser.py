@@ -10,7 +10,7 @@ from importlib.resources import files
 
 import pytest
 
-from tests.unit.report.browser import CHROMIUM, chromium
+from tests.unit.html_report.browser import CHROMIUM, chromium
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here: apt-get install chromium")
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from rtamt.play import crew as crew_module
-from rtamt.play.crew import Crew
+from rtamt.play import worker_pool as pool_module
 from rtamt.play.server import Given, Place, application
+from rtamt.play.worker_pool import WorkerPool
 
 HOST, ORIGIN = "127.0.0.1:8000", "http://127.0.0.1:8000"
 MESSAGE = {
@@ -28,12 +28,12 @@ class Client:
             (folder / name).mkdir()
         self.loop = asyncio.new_event_loop()
         self.place = Place(
-            "secret", (HOST,), str(folder / "uploads"), Crew(str(folder / "empty")), Given(**given)
+            "secret", (HOST,), str(folder / "uploads"), WorkerPool(str(folder / "empty")), Given(**given)
         )
         self.app = application(self.place)
 
     def close(self):
-        self.run(self.place.crew.close())
+        self.run(self.place.workers.close())
         self.loop.close()
 
     def run(self, awaitable):
@@ -217,7 +217,7 @@ def test_of_several_requests_of_a_page_only_the_newest_is_answered(client):
 
 
 def test_a_request_that_takes_too_long_is_ended_and_the_next_one_is_answered(client, monkeypatch):
-    monkeypatch.setitem(crew_module.SECONDS, "evaluate", 0.0)
+    monkeypatch.setitem(pool_module.SECONDS, "evaluate", 0.0)
     assert client.ask("evaluate", MESSAGE)[1]["error"]["message"] == (
         "the request took more than 0 s and was ended; use fewer samples"
     )
@@ -230,7 +230,7 @@ def test_a_question_can_be_cancelled(client):
 
     async def cancelled():
         asked = asyncio.create_task(client.sending("POST", "/secret/ask/question", json.dumps(hard).encode()))
-        while client.place.crew._thorough._process is None:
+        while client.place.workers._thorough._process is None:
             await asyncio.sleep(0)
         await client.sending("POST", "/secret/cancel")
         return json.loads((await asked)[2])

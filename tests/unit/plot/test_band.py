@@ -11,8 +11,8 @@ from rtamt.errors import EvaluationError, TraceError
 from rtamt.language.printing.printer import to_text
 from rtamt.plot.band import band
 from rtamt.rewrite.early import ends_differently
-from rtamt.verdicts.early_check import holds_at_end
-from tests.strategies import dense_traces, formulas, traces
+from rtamt.verdicts.early.check import holds_at_end
+from tests.support.strategies import dense_traces, formulas, traces
 
 
 @given(formulas(unbounded_future=True), traces(max_size=12))

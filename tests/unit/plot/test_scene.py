@@ -73,8 +73,8 @@ def test_dense_stretches_are_exact_and_the_last_value_holds():
 def test_times_of_every_kind_have_positions(timestamps, origin, told):
     result = rtamt.parse("always(x >= 3)").evaluate({"time": timestamps, "x": [5, 1, 4]}, time="dense")
     seen = scene(result)
-    assert seen.clock.origin == origin
-    assert seen.clock.text(seen.critical[1]) == told
+    assert seen.x_axis.origin == origin
+    assert seen.x_axis.text(seen.critical[1]) == told
     assert seen.nodes[1].fails == ((2.0, 5.0),)
 
 

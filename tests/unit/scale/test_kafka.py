@@ -20,7 +20,7 @@ from rtamt.metrics import METRICS, Metrics
 from rtamt.scale.kafka import Worker
 from rtamt.scale.kafka_settings import Settings
 from rtamt.scale.messages import MessageReader, decode_json
-from tests.brokers import broker
+from tests.support.brokers import broker
 
 FORMULA = "always[0:2](speed <= 30)"
 SPEC = rtamt.parse(FORMULA)

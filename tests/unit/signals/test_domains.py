@@ -7,7 +7,7 @@ import pytest
 
 import rtamt
 from rtamt.engine import engine_of
-from rtamt.plot.clock import Clock
+from rtamt.plot.x_axis import XAxis
 from rtamt.signals.domains import DOMAINS, time_domain
 
 TEXT = "always[0:100ms](x >= 3)"
@@ -87,9 +87,9 @@ def test_a_trace_counts_positions_from_the_first_instant(name: str) -> None:
 def test_a_plot_of_times_in_milliseconds_ends_with_the_recording(name: str) -> None:
     spec = rtamt.parse("x >= 3", time=name)
     result = spec.evaluate({"time": np.array([0, 1000, 2000]), "x": [5, 4, 6]}, time_unit="ms")
-    clock = Clock.of(result.trace)
-    assert (clock.start, clock.end) == (0.0, 2.0)
-    assert clock.recorded("x")[0].tolist() == [0.0, 1.0, 2.0]
+    x_axis = XAxis.of(result.trace)
+    assert (x_axis.start, x_axis.end) == (0.0, 2.0)
+    assert x_axis.recorded("x")[0].tolist() == [0.0, 1.0, 2.0]
 
 
 def test_every_time_domain_has_an_engine() -> None:

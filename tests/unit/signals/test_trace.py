@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rtamt
-from tests import strategies
+from tests.support import strategies
 
 
 def two_time_bases():

@@ -25,7 +25,7 @@ from rtamt.readers import arrow, csv, rows
 from rtamt.results import first_violation
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.episodes import Episodes
-from tests import strategies
+from tests.support import strategies
 
 
 def same(streamed, result):

@@ -14,7 +14,7 @@ from rtamt.engine.native import core, not_made
 from rtamt.engine.user_operators import EventDriver, calls_of
 from rtamt.language.undefined_value import UndefinedAtTickError, undefined
 from rtamt.lazy_dataclasses import replace
-from rtamt.reference import dense as reference
+from rtamt.reference import dense_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense
 

@@ -259,7 +259,7 @@ class PythonDenseEarlyMonitor:
         found = self._now(self._hidden + output)
         return None if found is None else found.times[0]
 
-    def origin(self) -> Pair:
+    def at_start(self) -> Pair:
         """The bounds at the start of the trace: of several formulas each at the start of its own."""
         return _at_starts(self._parts(0, self._came))
 
@@ -291,7 +291,7 @@ class PythonDenseEarlyMonitor:
         violation = min((cause.violation for cause in begun), default=inf)
         satisfaction = max((cause.satisfaction for cause in begun), default=-inf)
         if begun and len(parts) > 1:
-            satisfaction = min(satisfaction, self.origin()[0])
+            satisfaction = min(satisfaction, self.at_start()[0])
         return violation + 0.0, satisfaction + 0.0
 
     def causation(self, output: int, tick: int | None) -> Pair | None:

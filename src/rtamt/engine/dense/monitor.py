@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.apart import Apart
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
 from rtamt.engine.native import DenseMonitorBase, TickPoints
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
+from rtamt.engine.slow_path import SlowPath
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.formula import own_variables
 from rtamt.language.undefined_value import undefined
@@ -100,7 +100,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        self._backend = backend if self._episodes is None else Apart(backend)
+        self._backend = backend if self._episodes is None else SlowPath(backend)
         self._refused = self._session.refused
         self._undefined: Any = self._session.undefined
         if self._scale is not None:

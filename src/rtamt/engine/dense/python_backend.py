@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.backend import RefusedError
 from rtamt.lazy_numpy import np
-from rtamt.reference.dense import DenseReferenceMonitor
+from rtamt.reference.dense_robustness import DenseReferenceMonitor
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.reference.dense import Events, Known
+    from rtamt.reference.dense_robustness import Events, Known
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.ticks import TimeScale
 

@@ -15,7 +15,7 @@ from rtamt.engine.discrete.python_backend import PythonMonitor
 from rtamt.engine.native import core, core_monitor
 from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import UsageError
-from rtamt.reference import discrete as reference
+from rtamt.reference import discrete_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.outcomes import BoundedSignal
 

@@ -13,8 +13,8 @@ from rtamt.compiler.graph import FOREVER
 from rtamt.engine.backend import RefusedError
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.lazy_numpy import np
-from rtamt.reference.causation import NOTHING, causation
 from rtamt.reference.discrete_bounds import Knowledge, bounds
+from rtamt.reference.discrete_causation import NOTHING, causation
 from rtamt.signals.outcomes import Causation, Change, Interval
 
 if TYPE_CHECKING:
@@ -224,7 +224,7 @@ class PythonEarlyMonitor:
             for formula in self._outputs:
                 found = self._bounds(formula)
                 rest.append((0, [self._pair(found, i) for i in range(self.newest + 1)]))
-            return rest, self.origin() if self.newest >= 0 else None
+            return rest, self.at_start() if self.newest >= 0 else None
         except BaseException:
             self.restore(before)
             raise
@@ -234,7 +234,7 @@ class PythonEarlyMonitor:
         assert self._verdict is not None
         return [self._verdict(self.time(t), holds, self.time(at)) for t, holds, at in self._reports[output]]
 
-    def origin(self) -> Pair:
+    def at_start(self) -> Pair:
         """The bounds at the start of the trace."""
         return self._pair(self._bounds(self._start), 0)
 

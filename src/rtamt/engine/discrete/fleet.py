@@ -9,8 +9,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
+from rtamt.engine.discrete.reorder_buffer import ReorderBuffer
+from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
-from rtamt.engine.reorder import Reordering, full, place_of, rows_of, sentence
 from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy_numpy import np
@@ -180,10 +181,10 @@ class DiscreteFleet:
         variable = monitor.input_names[instruction] if reason == "value" else "time"
         return TraceError(f"{where}: {error}", variable=variable, index=place, time=time)
 
-    def reordering(self, lateness: float | None, filled: int, state: bytes | None) -> Reordering:
+    def reordering(self, lateness: float | None, filled: int, state: bytes | None) -> ReorderBuffer:
         """Return what puts samples in the order of their times; ``filled``: how many are held in a gap."""
         monitor = self._monitor
-        buffer = Reordering(
+        buffer = ReorderBuffer(
             self._names,
             monitor.input_names,
             lateness,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.apart import Apart, inner_of
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
+from rtamt.engine.slow_path import SlowPath, inner_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
@@ -101,7 +101,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     def _connect(self, backend: Any) -> None:
         plain = self._times.plain and self._episodes is None
-        self._backend = backend if plain else Apart(backend)
+        self._backend = backend if plain else SlowPath(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused = self._session.refused

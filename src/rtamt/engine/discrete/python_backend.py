@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.backend import RefusedError
 from rtamt.lazy_numpy import np
-from rtamt.reference.discrete import ReferenceMonitor, history
+from rtamt.reference.discrete_robustness import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.counting import is_implausible

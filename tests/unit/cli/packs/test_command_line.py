@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 import rtamt
-from rtamt.texts import packs
+from rtamt.specification_loader import packs
 from tests.unit.cli.packs.traces import BASE, DRIVING, DRIVING_VIOLATED, PX4, made
 from tests.unit.readers.bags import SECOND, Bag
 from tests.unit.readers.test_formats import ulog

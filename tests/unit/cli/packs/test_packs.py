@@ -5,7 +5,7 @@ from math import inf
 import pytest
 
 import rtamt
-from rtamt.texts import packs
+from rtamt.specification_loader import packs
 from tests.unit.cli.packs.traces import DRIVING, PACKS, PX4, after, made
 
 EACH = [(pack, requirement) for pack, (_, violated) in PACKS.items() for requirement in violated]

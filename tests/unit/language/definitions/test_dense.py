@@ -15,7 +15,7 @@ from rtamt.language.definitions.dense import Steps
 from rtamt.language.formula import Interval, Var
 from rtamt.language.operators import STL, Bounds, Operator, Sort, Tense
 from rtamt.language.parsing.parser import parse_formula
-from rtamt.reference.dense import DenseReferenceMonitor, evaluate
+from rtamt.reference.dense_robustness import DenseReferenceMonitor, evaluate
 
 ONE = Fraction(1)
 TENTH = Fraction(1, 10)

@@ -16,7 +16,7 @@ from rtamt.language.definitions import discrete as d
 from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const, Interval, Var
 from rtamt.language.operators import STL, Bounds, Sort, Tense
-from rtamt.reference.discrete import evaluate
+from rtamt.reference.discrete_robustness import evaluate
 
 X = [1.0, 4.0, 2.0, -3.0, 0.0]
 Y = [-1.0, 2.0, 5.0, 0.0, 1.0]

@@ -12,7 +12,7 @@ from rtamt.language.formula import postorder
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
-from tests.strategies import formulas
+from tests.support.strategies import formulas
 
 SETTLES = "def settles(x, target, band, within) = eventually[0:within] always(abs(x - target) <= band)\n"
 

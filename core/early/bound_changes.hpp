@@ -1,0 +1,73 @@
+// What the last change of an engine made of one of its nodes: runs of ticks and their bounds now.
+#pragma once
+
+#include "bounds_engine.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace rtamt::early {
+
+struct BoundChange {
+    Tick l;
+    Tick r;
+    Bounds bounds;
+};
+
+class BoundChanges {
+  public:
+    // Looks at a change, up to the newest sample: what is later waits. `before`: the newest sample
+    // before it.
+    void collect(const BoundsEngine& engine, std::uint32_t ref, Tick before, Tick newest) {
+        changed_.clear();
+        for (int reg = 0; reg < 2; ++reg) {
+            for (const Piece& piece : engine.new_data(ref, reg)) {
+                if (piece.l <= newest) changed_.emplace_back(piece.l, std::min(piece.r, newest));
+            }
+        }
+        if (newest > before) changed_.emplace_back(before + 1, newest);
+    }
+
+    // Ticks of which the bounds are required as if they had changed.
+    void add(Tick first, Tick last) { changed_.emplace_back(first, last); }
+
+    // The first tick, `forever` where nothing changed.
+    [[nodiscard]] Tick first() const noexcept {
+        Tick first = forever;
+        for (const auto& range : changed_)
+            first = std::min(first, range.first);
+        return first;
+    }
+
+    // In order, each as long as its bounds stay the same.
+    [[nodiscard]] std::vector<BoundChange> runs(const BoundsEngine& engine,
+                                                std::uint32_t ref) const {
+        auto ranges = changed_;
+        std::ranges::sort(ranges);
+        std::vector<BoundChange> result;
+        Tick next = 0;
+        for (const auto& [first, last] : ranges) {
+            for (Tick t = std::max(first, next); t <= last;) {
+                const Run lower = engine.runs(ref, 0).at(t);
+                const Run upper = engine.runs(ref, 1).at(t);
+                const Bounds bounds{lower.value, -upper.value};
+                const Tick end = std::min({last, lower.end, upper.end});
+                if (!result.empty() && result.back().r == t - 1 && result.back().bounds == bounds) {
+                    result.back().r = end;
+                } else {
+                    result.push_back({t, end, bounds});
+                }
+                t = end + 1;
+            }
+            next = std::max(next, last + 1);
+        }
+        return result;
+    }
+
+  private:
+    std::vector<std::pair<Tick, Tick>> changed_; // in any order, perhaps more than once
+};
+
+} // namespace rtamt::early

@@ -1,0 +1,86 @@
+// The bounds of a formula at the start of the trace, which may have operators of unbounded future
+// above all bounded ones: of these, what is final is folded into one number.
+//
+//     kind    value
+//     value   of a at a tick
+//     all     the least of a from the tick on
+//     some    the greatest of a from the tick on
+//     until   of a, the recursion of until over operands b and c, at the tick
+//     both    the smaller of items a and b
+//     either  the larger of items a and b
+#pragma once
+
+#include "bounds_engine.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace rtamt::early {
+
+struct Item {
+    enum class Kind : std::uint8_t { value, all, some, until, both, either };
+    Kind kind{};
+    bool negated = false;
+    std::uint32_t a = none; // references; of both and either, items
+    std::uint32_t b = none;
+    std::uint32_t c = none;
+    Tick tick = 0;
+};
+
+class BoundsAtStart {
+  public:
+    // The last item is that of the formula. `follows`: whether items go on when they are decided.
+    BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine, bool follows = false);
+
+    // The last tick of each node that is looked at, where it is later.
+    void limit(std::span<Tick> last) const noexcept;
+
+    // What is read at every tick.
+    [[nodiscard]] std::vector<std::uint32_t> read_forever() const;
+
+    // Looks at what the engine knows now.
+    void read(const BoundsEngine& engine);
+
+    [[nodiscard]] Bounds value() const noexcept { return bounds_of(items_.size() - 1); }
+
+    // Folds what is final; `wanted`: by node, the first tick that is still needed.
+    void settle(const BoundsEngine& engine, Tick closed, std::span<Tick> wanted);
+
+    // The bounds when the trace ends just before `end`.
+    [[nodiscard]] Bounds ended(const BoundsEngine& engine, Tick end) const;
+
+    // Of an item: a register of its value, before it is negated; of until, how far hold goes over
+    // the ticks before next().
+    [[nodiscard]] std::size_t size() const noexcept { return items_.size(); }
+    [[nodiscard]] const Item& item(std::size_t item) const noexcept { return items_[item]; }
+    [[nodiscard]] double value(std::size_t item, int reg) const noexcept {
+        return states_[item].value[static_cast<std::size_t>(reg)];
+    }
+    [[nodiscard]] double held(std::size_t item, int reg) const noexcept {
+        return states_[item].held[static_cast<std::size_t>(reg)];
+    }
+    [[nodiscard]] Tick next(std::size_t item) const noexcept { return states_[item].next; }
+
+    void transfer(Snapshot& snapshot);
+
+  private:
+    // Of each register: the value; of what is folded the best, and for until how far hold goes.
+    struct State {
+        std::array<double, 2> value{-infinity, -infinity};
+        std::array<double, 2> best{};
+        std::array<double, 2> held{};
+        Tick next = 0; // the first tick that is not folded
+    };
+    std::vector<Item> items_;
+    std::vector<State> states_;
+    bool follows_;
+
+    [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
+    [[nodiscard]] bool decided(std::size_t item) const noexcept;
+    void look_at(const BoundsEngine& engine, std::size_t item) noexcept;
+    void fold(const BoundsEngine& engine, std::size_t item, Tick end) noexcept;
+};
+
+} // namespace rtamt::early

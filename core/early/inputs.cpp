@@ -1,0 +1,216 @@
+// What becomes known of the inputs: atoms and maps are computed anew where it may change them.
+#include "bounds_engine.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace rtamt::early {
+
+// Every atom is computed before anything changes.
+template <class Value>
+std::optional<BoundsEngine::Failure> BoundsEngine::take(Tick t, std::span<const Value> values) {
+    settle_inputs(t);
+    begin(t);
+    const auto scratch = [&] {
+        if constexpr (std::is_same_v<Value, double>) {
+            return std::span(exact_);
+        } else {
+            return std::span(bounds_);
+        }
+    }();
+    for (const std::uint32_t i : atoms_) {
+        const auto& steps = node(i).steps;
+        const std::uint32_t wrong = run<Value>(steps, values, scratch);
+        if (wrong != none) return attempt(Failure{i, wrong, t});
+        if constexpr (std::is_same_v<Value, double>) {
+            results_[i] = Interval::of(scratch[steps.size() - 1]);
+        } else {
+            results_[i] = scratch[steps.size() - 1];
+        }
+    }
+    journaling_ = partial_;
+    for (const std::uint32_t i : atoms_) {
+        lift(nodes_[i], 0, t, t, results_[i].lower);
+        lift(nodes_[i], 1, t, t, -results_[i].upper);
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<BoundsEngine::Failure> BoundsEngine::row(Tick t, std::span<const double> values) {
+    return take(t, values);
+}
+
+std::optional<BoundsEngine::Failure> BoundsEngine::row(Tick t, std::span<const Bounds> values) {
+    return take(t, values);
+}
+
+void BoundsEngine::know(std::span<const Observation> observations) {
+    for (const Observation& observation : observations) {
+        for (int reg = 0; reg < 2; ++reg) {
+            Runs& own = inputs_[observation.input][static_cast<std::size_t>(reg)];
+            const double now = reg == 0 ? observation.bounds.lower : -observation.bounds.upper;
+            while (const auto run = own.first<Below>(observation.l, observation.r, now)) {
+                if (journaling_) journal_.push_back({&own, run->begin, run->end, run->value});
+                own.set(run->begin, run->end, now);
+            }
+        }
+    }
+}
+
+std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observation> observations,
+                                                         Tick newest, bool ended) {
+    begin(newest);
+    ended_ = ended;
+    journaling_ = partial_ || keeps_undo_;
+    know(observations);
+    for (const Observation& observation : observations) {
+        for (const std::uint32_t i : readers_[observation.input]) {
+            const auto failure = relearn(i, observation.l, observation.r);
+            if (failure) return attempt(failure);
+        }
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<BoundsEngine::Failure>
+BoundsEngine::suppose(std::span<const Supposition> suppositions) {
+    begin(seen_);
+    journaling_ = true;
+    for (const Supposition& supposed : suppositions) {
+        for (const std::uint32_t i : atoms_) {
+            if (run<Bounds>(node(i).steps, supposed.row, bounds_) != none) continue; // not known
+            const Bounds result = bounds_[node(i).steps.size() - 1];
+            lift(nodes_[i], 0, supposed.l, supposed.r, result.lower);
+            lift(nodes_[i], 1, supposed.l, supposed.r, -result.upper);
+        }
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<BoundsEngine::Failure>
+BoundsEngine::suppose(std::span<const Observation> observations) {
+    begin(seen_);
+    journaling_ = true;
+    know(observations);
+    for (const Observation& observation : observations) {
+        for (const std::uint32_t i : readers_[observation.input])
+            (void)relearn(i, observation.l, observation.r, true);
+    }
+    return attempt(propagate(false));
+}
+
+std::optional<BoundsEngine::Failure> BoundsEngine::wrong_constant() {
+    for (const std::uint32_t i : atoms_) {
+        const auto reads = [](const Step& step) { return step.opcode == Opcode::input; };
+        if (std::ranges::any_of(node(i).steps, reads)) continue;
+        const std::uint32_t wrong = run<Bounds>(node(i).steps, row_, bounds_);
+        if (wrong != none) return Failure{i, wrong, 0};
+    }
+    return std::nullopt;
+}
+
+// Computes an atom again wherever its inputs may have changed.
+std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, Tick l, Tick r,
+                                                           bool supposed) {
+    State& state = nodes_[index];
+    const auto& steps = node(index).steps;
+    for (Tick t = std::max(l, state.from); t <= r;) {
+        Tick end = r;
+        for (const Step& step : steps) {
+            if (step.opcode != Opcode::input) continue;
+            Bounds& value = row_[step.a];
+            value = ranges_[step.a];
+            if (late_) {
+                const Run lower = inputs_[step.a][0].at(t);
+                const Run upper = inputs_[step.a][1].at(t);
+                value = {lower.value, -upper.value};
+                end = std::min({end, lower.end, upper.end});
+            }
+        }
+        const Wrong wrong = enclose(steps, row_, bounds_);
+        if (wrong.any != none && !supposed) {
+            const bool exact = wrong.exact != none;
+            const std::uint32_t step = exact ? wrong.exact : wrong.any;
+            if (auto failure = fails(index, step, t, exact)) return failure;
+        }
+        const Bounds result = bounds_[steps.size() - 1];
+        lift(state, 0, t, end, result.lower);
+        lift(state, 1, t, end, -result.upper);
+        if (end >= forever) break;
+        t = end + 1;
+    }
+    return std::nullopt;
+}
+
+std::optional<BoundsEngine::Failure> BoundsEngine::remap(std::uint32_t index, Tick l, Tick r) {
+    State& state = nodes_[index];
+    const Node& map = node(index);
+    const std::uint32_t b = map.b == none ? map.a : map.b;
+    for (Tick t = std::max(l, state.from); t <= r;) {
+        const Run ends[] = {runs(map.a, 0).at(t), runs(map.a, 1).at(t), runs(b, 0).at(t),
+                            runs(b, 1).at(t)};
+        const Tick end = std::min({r, ends[0].end, ends[1].end, ends[2].end, ends[3].end});
+        const Bounds first{ends[0].value, -ends[1].value};
+        const Bounds second{ends[2].value, -ends[3].value};
+        const Bounds result = compute(map.steps.front().opcode, first, second);
+        if (!Interval::undefined(result)) {
+            lift(state, 0, t, end, result.lower);
+            lift(state, 1, t, end, -result.upper);
+        } else {
+            const bool exact = first.lower == first.upper && second.lower == second.upper;
+            if (const auto failure = fails(index, 0, t, exact)) return failure;
+        }
+        if (end >= forever) break;
+        t = end + 1;
+    }
+    return std::nullopt;
+}
+
+// At the start of the trace nothing is in a window of the past yet, or too little for a rank.
+void BoundsEngine::lift_empty(std::uint32_t index) {
+    const Node& own = node(index);
+    const bool rank = own.kind == Kind::rank_least || own.kind == Kind::rank_greatest;
+    Tick ticks = own.kind == Kind::held ? 0 : -own.high;
+    if (rank && own.low < 0) ticks += static_cast<Tick>(own.steps.front().x) - 1;
+    if (ticks <= 0) return;
+    const bool least = own.kind == Kind::least || own.kind == Kind::rank_least;
+    double empty = least ? infinity : -infinity;
+    if (own.kind == Kind::pulses) empty = 0.0;
+    lift(nodes_[index], 0, 0, ticks - 1, empty);
+    lift(nodes_[index], 1, 0, ticks - 1, -empty);
+}
+
+// Lets every node look at what its operands have changed. `first`: at what they are.
+std::optional<BoundsEngine::Failure> BoundsEngine::propagate(bool first) {
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        const Node& own = node(i);
+        if (awaited_ && !first) {
+            if (const auto failure = fails(i)) return failure;
+        }
+        if (own.kind == Kind::atom) {
+            if (first) (void)relearn(i, 0, forever);
+        } else if (own.kind == Kind::map) {
+            std::optional<Failure> failure;
+            if (first) failure = remap(i, 0, forever);
+            for (int reg = 0; reg < 2 && !first; ++reg) {
+                for (const std::uint32_t ref : {own.a, own.b}) {
+                    if (ref == none) continue;
+                    for (const Piece& piece : new_data(ref, reg)) {
+                        if (!failure) failure = remap(i, piece.l, piece.r);
+                    }
+                }
+            }
+            if (failure && !first) return failure;
+        } else if (own.kind == Kind::sum) {
+            const auto failure = add_up(i, first);
+            if (failure && !first) return failure;
+        } else {
+            if (first) lift_empty(i);
+            pass(i, 0);
+            pass(i, 1);
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace rtamt::early

@@ -1,0 +1,184 @@
+// Bounds at the end of a trace: the samples that were expected do not come, so that windows are cut
+// there. That is no narrowing, so it is computed anew, tick by tick, wherever it was not final.
+#include "bounds_engine.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+
+namespace rtamt::early {
+
+namespace {
+
+[[nodiscard]] Bounds join(const Bounds& a, const Bounds& b, bool greatest) noexcept {
+    return greatest ? Interval::join(a, b) : Interval::meet(a, b);
+}
+
+// Values from a tick on.
+struct Column {
+    Tick first = 0;
+    std::vector<Bounds> values;
+
+    [[nodiscard]] Bounds at(Tick t, bool flipped) const noexcept {
+        const Bounds& value = values[static_cast<std::size_t>(t - first)];
+        return flipped ? Interval::neg(value) : value;
+    }
+};
+
+// One end of the bounds in the windows of consecutive ticks.
+template <class Value>
+class Sliding {
+  public:
+    explicit Sliding(bool greatest) : greatest_(greatest) {}
+
+    void add(Tick t, Value value) {
+        while (!queue_.empty() &&
+               (greatest_ ? queue_.back().second <= value : queue_.back().second >= value)) {
+            queue_.pop_back();
+        }
+        queue_.emplace_back(t, value);
+    }
+    [[nodiscard]] Value from(Tick t) {
+        while (!queue_.empty() && queue_.front().first < t)
+            queue_.pop_front();
+        return queue_.empty() ? (greatest_ ? -infinity : infinity) : queue_.front().second;
+    }
+
+  private:
+    bool greatest_;
+    std::deque<std::pair<Tick, Value>> queue_;
+};
+
+// The value of this rank, counted from the greatest or the least; an infinity where there are
+// fewer.
+[[nodiscard]] double ranked(std::vector<double>& values, std::size_t order, bool greatest) {
+    if (order > values.size()) return greatest ? -infinity : infinity;
+    const std::size_t place = greatest ? values.size() - order : order - 1;
+    const auto wanted = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::ranges::nth_element(values, wanted);
+    return *wanted;
+}
+
+} // namespace
+
+std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_t> refs, Tick end,
+                                                    std::optional<Failure>* failure) const {
+    std::vector<Column> columns(nodes_.size());
+    const auto wrong = [&](std::size_t index, std::uint32_t step, Tick t) {
+        if (failure != nullptr && !*failure && t < end)
+            *failure = Failure{static_cast<std::uint32_t>(index), step, t};
+    };
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        const Node& own = node(i);
+        const State& state = nodes_[i];
+        Column& column = columns[i];
+        column.first = std::clamp<Tick>(state.keep, 0, end);
+        column.values.resize(static_cast<std::size_t>(end - column.first));
+        const auto place = [&](Tick t) -> Bounds& {
+            return column.values[static_cast<std::size_t>(t - column.first)];
+        };
+        for (Tick t = column.first; t < end; ++t)
+            place(t) = at(static_cast<std::uint32_t>(2 * i), t);
+        const Tick from = std::max(state.from, column.first);
+        if (own.kind == Kind::atom) wrong(i, state.undefined.step, state.undefined.any);
+        if (own.kind == Kind::atom || from >= end) continue;
+        const auto a = [&](Tick t) { return columns[own.a / 2].at(t, (own.a & 1U) != 0); };
+        const auto b = [&](Tick t) { return columns[own.b / 2].at(t, (own.b & 1U) != 0); };
+        switch (own.kind) {
+        case Kind::map:
+            for (Tick t = from; t < end; ++t) {
+                const Bounds first = a(t);
+                place(t) = compute(own.steps.front().opcode, first, own.b == none ? first : b(t));
+                if (!Interval::undefined(place(t))) continue;
+                wrong(i, 0, t);
+                place(t) = bounds::anything;
+            }
+            break;
+        case Kind::both:
+        case Kind::either:
+            for (Tick t = from; t < end; ++t)
+                place(t) = join(a(t), b(t), own.kind == Kind::either);
+            break;
+        case Kind::held:
+            for (Tick t = from; t < end; ++t)
+                place(t) = a(std::clamp<Tick>(plus(t, own.low), 0, end - 1));
+            break;
+        case Kind::rank_least:
+        case Kind::rank_greatest: {
+            const bool greatest = own.kind == Kind::rank_greatest;
+            for (Tick t = from; t < end; ++t) {
+                std::vector<double> lower;
+                std::vector<double> upper;
+                const Tick last = std::min(end - 1, plus(t, own.high));
+                for (Tick u = std::max<Tick>(0, plus(t, own.low)); u <= last; ++u) {
+                    lower.push_back(a(u).lower);
+                    upper.push_back(a(u).upper);
+                }
+                const auto order = static_cast<std::size_t>(own.steps.front().x);
+                place(t) = {ranked(lower, order, greatest), ranked(upper, order, greatest)};
+            }
+            break;
+        }
+        case Kind::until: {
+            Bounds next = Interval::bottom;
+            for (Tick t = end; t-- > from;)
+                next = place(t) = Interval::join(b(t), Interval::meet(a(t), next));
+            break;
+        }
+        case Kind::since: {
+            Bounds before = from == 0 ? Interval::bottom : place(from - 1);
+            for (Tick t = from; t < end; ++t)
+                before = place(t) = Interval::join(b(t), Interval::meet(a(t), before));
+            break;
+        }
+        case Kind::sum: {
+            if (own.low <= -forever) {
+                Bounds sum = from == 0 ? WindowSums::Add::identity : place(from - 1);
+                for (Tick t = from; t < end; ++t) {
+                    if (t + own.high >= 0) sum = WindowSums::Add::join(a(t + own.high), sum);
+                    place(t) = sum;
+                }
+                break;
+            }
+            WindowSums sums(own.high - own.low + 1);
+            for (Tick t = from; t < end; ++t)
+                place(t) = t + own.high < 0 ? WindowSums::Add::identity : sums.at(t + own.high, a);
+            break;
+        }
+        default: {
+            const bool greatest = own.kind == Kind::greatest;
+            const Bounds empty = greatest ? Interval::bottom : Interval::top;
+            if (own.low <= -forever) {
+                Bounds sum = from == 0 ? empty : place(from - 1);
+                for (Tick t = from; t < end; ++t) {
+                    if (t + own.high >= 0) sum = join(sum, a(t + own.high), greatest);
+                    place(t) = sum;
+                }
+                break;
+            }
+            Sliding<double> lower(greatest);
+            Sliding<double> upper(greatest);
+            Tick next = std::max<Tick>(0, plus(from, own.low));
+            for (Tick t = from; t < end; ++t) {
+                for (const Tick last = std::min(end - 1, plus(t, own.high)); next <= last; ++next) {
+                    const Bounds value = a(next);
+                    lower.add(next, value.lower);
+                    upper.add(next, value.upper);
+                }
+                place(t) = {lower.from(plus(t, own.low)), upper.from(plus(t, own.low))};
+            }
+        }
+        }
+    }
+    std::vector<Rest> result;
+    for (const std::uint32_t ref : refs) {
+        const Column& column = columns[ref / 2];
+        Rest rest{column.first, {}};
+        for (Tick t = column.first; t < end; ++t)
+            rest.bounds.push_back(column.at(t, (ref & 1U) != 0));
+        result.push_back(std::move(rest));
+    }
+    return result;
+}
+
+} // namespace rtamt::early

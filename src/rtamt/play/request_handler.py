@@ -1,0 +1,70 @@
+"""The answers by the name of the request: a message in, data out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import StlError
+from rtamt.lazy_dataclasses import replace
+from rtamt.play.evaluation import Sources, evaluated, redrawn
+from rtamt.play.messages import MessageError, Request
+from rtamt.play.online import known_at, replayed, rewatched
+from rtamt.play.recordings import File, Recordings
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: What the page may ask a worker for.
+KINDS = ("evaluate", "redraw", "replay", "rewatch", "moment", "question", "recording")
+_ANSWERS = {
+    "evaluate": evaluated, "redraw": redrawn, "replay": replayed, "rewatch": rewatched, "moment": known_at,
+}  # fmt: skip
+
+
+class RequestHandler:
+    """Answers messages one by one; it keeps recordings and the last result in memory, and nothing else.
+
+    >>> handler = RequestHandler()
+    >>> answer = handler.answer("evaluate", {"text": "always(x >= 3)", "time": "discrete", "duration": 2,
+    ...     "signals": {"x": {"points": [[0, 5], [2, 1]], "hold": False}}})
+    >>> answer["verdict"], answer["interval"], answer["first"]
+    ('violated', [-2.0, -2.0], 2.0)
+    """
+
+    def __init__(self, folder: str | None = None) -> None:
+        self._sources = Sources(Recordings(), folder=folder)
+
+    def answer(
+        self, kind: str, message: Mapping[str, Any], file: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Answer one request; raises :class:`MessageError` if it is malformed.
+
+        ``file``: the recording that the server has found for the message.
+        """
+        known = None if file is None else File(file["number"], file["path"], file["name"])
+        if kind == "recording":
+            return self._recording(known)
+        sources = replace(self._sources, file=known)
+        try:
+            request = Request.of(message)
+        except MessageError:
+            raise
+        except StlError as error:
+            return {"error": {"message": str(error), "start": None, "end": None}}
+        if kind in _ANSWERS:
+            return _ANSWERS[kind](request, sources)
+        if kind == "question":
+            from rtamt.play.witnesses import WANTED, found
+
+            if message.get("wanted") not in WANTED:
+                raise MessageError(f"'wanted' must be {' or '.join(WANTED)}")
+            return found(request, message["wanted"], sources)
+        raise MessageError(f"there is no request '{kind}'; requests: {', '.join(KINDS)}")
+
+    def _recording(self, file: File | None) -> dict[str, Any]:
+        if file is None:
+            raise MessageError("there is no recording of that number")
+        try:
+            return {"error": None, **self._sources.recordings.summary(file)}
+        except StlError as error:
+            return {"error": {"message": file.said(str(error)), "start": None, "end": None}}

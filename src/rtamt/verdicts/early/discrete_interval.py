@@ -1,0 +1,288 @@
+"""Bounds of the robustness in discrete time: missing and late samples, and the end, which cuts windows."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from rtamt.compiler.graph import FOREVER
+from rtamt.engine.native import EarlyMonitorBase
+from rtamt.errors import UsageError
+from rtamt.language.units.durations import format_duration
+from rtamt.signals import arrays
+from rtamt.signals.outcomes import Change, Interval
+from rtamt.signals.regular import irregular
+from rtamt.usage_guard import exclusive, in_use
+from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor
+from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
+from rtamt.verdicts.early.prediction import Later, later_samples
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
+    """Bounds of the robustness at samples, built by ``Specification.monitor(verdict="interval")``."""
+
+    _remembered: ClassVar[tuple[str, ...]] = (
+        "_finished",
+        "_clock",
+        "_early",
+        "_rest",
+        "_open_at_end",
+        "_at_end",
+        "_events",
+        "_snapshots",
+        "_retracted",
+        "_mark",
+        "_filled",
+        "_noted",
+    )
+
+    def _forget(self) -> None:
+        super()._forget()
+        # How often the back end took what is no sample: that there is none.
+        self._filled = 0
+        #: What that changed of each output, since the last sample or watermark.
+        self._noted: dict[int, tuple[Any, ...]] = {}
+        self._rest: tuple[Any, ...] = ()
+        #: Of each output the samples whose bounds were open when the trace ended.
+        self._open_at_end: tuple[tuple[int, ...], ...] = ()
+        # Samples that came before it is known where the trace starts.
+        self._early: tuple[Any, ...] = ()
+        self._at_end: Interval | None = None
+
+    # ---- samples ---------------------------------------------------------------------------------
+
+    @property
+    def samples(self) -> int:
+        """See :class:`EarlyMonitor`."""
+        return super().samples - self._filled
+
+    def _settle_presence(self, place: int) -> None:
+        self._noted = {}
+        if self._late is not None:
+            self._fill(max(self._backend.newest, place) - self._late - 1)
+
+    def _fill(self, last: int) -> None:
+        """Note where variables have no sample, up to an instant that becomes final."""
+        numbers = [self._inputs.index(channel) for channel in self._channels.values()]
+        backend = self._backend
+        for place in range(backend.closed + 1, last + 1) if numbers else ():
+            open_here = [k for k in numbers if len(set(backend.known(k, place))) > 1]
+            if not open_here:
+                continue
+            ahead = max(place - backend.newest, 0)
+            time = backend.time(place - ahead) + ahead * float(self._step)
+            observations = tuple((k, 0.0, 0.0) for k in open_here)
+            backend.learn(time, list(observations), backend.samples)
+            self._filled += 1
+            for output in self._outputs:
+                changed = (*self._noted.get(output, ()), *backend.changes(output))
+                self._noted = {**self._noted, output: changed}
+            if self._replays:
+                self._events = (*self._events, (time, place, observations))
+
+    @property
+    def _count(self) -> int:
+        return self.samples + len(self._early)
+
+    def _take(self, time: Any, values: dict[str, Any]) -> None:
+        flat = self._read_by_formula(values)
+        if self._finished:
+            raise self._is_finished()
+        index = self.samples
+        stamp = self._stamp(time)
+        seconds = stamp.seconds
+        known = self._bounds_of(flat, index, seconds)
+        begun = self._late is None or self._backend.newest >= 0
+        try:
+            if self._late is None:
+                self._check_order(seconds)
+                self._backend.take(seconds, *self._row(known), index)
+            elif begun:
+                self._check_late(seconds)
+                self._learn(seconds, known)
+            else:
+                self._begin(seconds, known)
+        except self._refused:
+            raise in_use() from None
+        except self._undefined as error:
+            raise self._no_value(error) from None
+        self._remember(stamp, begun=begun)
+
+    def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
+        """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
+        self._early = (*self._early, (time, known))
+        times = [time for time, _ in self._early]
+        assert self._late is not None
+        if round((max(times) - min(times)) / float(self._step)) > self._late:
+            self._start()
+
+    def _start(self) -> None:
+        early = sorted(self._early, key=lambda sample: sample[0])
+        kept = (self._events, self._snapshots)
+        try:
+            for time, known in early:
+                if self._backend.newest >= 0:
+                    self._check_late(time)
+                self._learn(time, known)
+        except BaseException as error:
+            self._connect(self._session.open())
+            self._early, (self._events, self._snapshots) = self._early[:-1], kept
+            if isinstance(error, self._undefined):
+                raise self._no_value(error) from None
+            raise
+        self._early = ()
+
+    def _check_late(self, time: float) -> None:
+        backend = self._backend
+        if backend.newest < 0:
+            return
+        place = backend.place(time)
+        last = backend.time(backend.newest)
+        if place is None:
+            raise irregular(self.samples, time, last, self._step, self._tolerance)
+        if place <= backend.closed:
+            raise LateSampleError(
+                f"sample {self.samples} is of time {time:.15g} s, later than the lateness of "
+                f"{format_duration(self._lateness)} allows: what was up to {backend.time(backend.closed):.15g} s "
+                f"is final; leave it out, or allow for more lateness",
+                variable=arrays.TIME,
+                index=self.samples,
+            )
+
+    def _moment(self, time: float) -> str:
+        """Return a time in the form of the back end for a message."""
+        return f"time {time:.15g} s"
+
+    def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
+        if self._hidden:
+            return ()
+        changes: list[Change] = []
+        for sample in range(max(before.held(0), after.held(0)), after.newest + 1):
+            was, now = before.bounds(0, sample), after.bounds(0, sample)
+            if was != now:
+                retracted = not (was[0] <= now[0] and now[1] <= was[1])
+                changes.append(self._change(sample, sample, *now, retracted=retracted))
+        return tuple(changes)
+
+    def _mark_at(self, time: Any, *, late: bool = False) -> None:
+        if self._finished:
+            raise self._is_finished()
+        self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
+
+    def _watermark(self, time: float) -> None:
+        if self._early and time >= min(then for then, _ in self._early):
+            self._start()
+        backend = self._backend
+        self._noted = {}
+        if self._late is not None and backend.newest >= 0:
+            ahead = floor((time - backend.time(backend.newest)) / float(self._step) + self._tolerance)
+            self._fill(backend.newest + min(ahead, 0))
+        super()._watermark(time)
+
+    # ---- answers ---------------------------------------------------------------------------------
+
+    def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
+        """See :meth:`IntervalMonitor.interval`."""
+        later = None if prediction is None else self._later(prediction)
+        if time is None:
+            if later is not None:
+                return Interval(*self._supposed(None, 0, later))
+            return Interval(*self._backend.at_start()) if self._at_end is None else self._at_end
+        if self.at == "start":
+            raise self._start_only()
+        backend = self._backend
+        stamp = self._seconds(time)
+        sample = backend.place(stamp) if backend.newest >= 0 else round(Fraction(stamp) / self._step)
+        if sample is None or sample < 0:
+            raise UsageError(f"there is no sample at {stamp:.15g} s")
+        if self._rest:
+            first, values = self._rest[0]
+            found = values[sample - first] if first <= sample < first + len(values) else None
+        else:
+            found = backend.bounds(0, sample) if later is None else self._supposed(0, sample, later)
+        if found is None:
+            raise UsageError(
+                f"the bounds at {stamp:.15g} s are final and no longer kept; read them from changes() when they are"
+            )
+        return Interval(*found)
+
+    def _later(self, prediction: Mapping[str, Any]) -> list[Later]:
+        """Return predictions in the form of the back end."""
+        if self._finished:
+            raise UsageError("the trace has ended, so that there is nothing to predict")
+        if self._early:
+            raise UsageError(
+                "the trace has not started: it does when no earlier sample can come, and predictions follow the newest"
+            )
+        return later_samples(prediction, self._inputs, self._known_ranges())
+
+    def _supposed(self, output: int | None, sample: int, later: list[Later]) -> Any:
+        try:
+            return self._backend.supposed(output, sample, later)
+        except self._undefined as error:
+            raise self._no_value(error) from None
+
+    def _changes(self, output: int) -> list[Change]:
+        if self._rest:
+            first, values = self._rest[output]
+            return [self._change(t, t, *values[t - first], output=output) for t in self._open_at_end[output]]
+        if self._retracted is not None and output == 0:
+            now = list(self._retracted)
+        else:
+            now = self._backend.reported(output)
+            if not self._clock.plain:
+                time = self._clock.time
+                now = [each._replace(begin=time(each.begin), end=time(each.end)) for each in now]
+        noted = self._noted.get(output)
+        if not noted:
+            return now
+        last = {change.begin for change in now}
+        before = [self._change(*run, output=output) for run in noted]
+        return [*(change for change in before if change.begin not in last), *now]
+
+    def _change(
+        self, first: int, last: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False
+    ) -> Change:
+        backend = self._backend
+        lag = self._session.lag(output)
+        final = (
+            self._finished
+            or lower == upper
+            or (lag < FOREVER and last + lag <= min(backend.closed, backend.newest))
+        )
+        begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
+        return Change(begin, end, Interval(lower, upper), final, retracted)
+
+    @exclusive
+    def finish(self) -> list[Change]:
+        """End the trace; return the bounds that were still open, which are final now."""
+        if not self._finished:
+            if self._early:
+                self._start()
+            backend = self._backend
+            before = [
+                {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
+                for output in self._outputs
+            ]
+            if self._late is not None:
+                self._fill(backend.newest)
+            rest, at_end = self._end()
+            self._at_end = None if at_end is None else Interval(*at_end)
+            self._rest = tuple(rest)
+            # In one class of formulas the end changes bounds that had met.
+            self._open_at_end = tuple(
+                tuple(
+                    t
+                    for t, ends in each.items()
+                    if t >= first and (ends[0] != ends[1] or ends != values[t - first])
+                )
+                for each, (first, values) in zip(before, rest, strict=True)
+            )
+            self._finished = True
+        if self.at == "start":
+            return []
+        return self._changes(0)
