@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
+from rtamt.language.parsing.declarations import TYPES
+from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.parsing.lexer import NAME, is_word, quoted
 from rtamt.language.words import DECLARED_BY, QUANTIFYING, kind_of, meaning_of
 from rtamt.lint.found import Edit
@@ -36,7 +38,7 @@ class Item(NamedTuple):
 
 
 def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) -> list[Item]:
-    """Return what can stand at an offset; clients keep what begins with the word before it.
+    """Return what can stand at an offset, the likeliest first; clients keep what begins with the word before it.
 
     >>> from rtamt.lsp.document import Analysis
     >>> found = completions(Analysis("input float speed; always(sp"), 28, ["engine speed"])
@@ -56,13 +58,13 @@ def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) ->
     found: dict[str, Item] = {}
     for item in (
         *_declared(analysis, word),
-        *_imported(analysis, word),
         *_columns(analysis, word, columns),
+        *_imported(analysis, word),
         *_words(word),
         *_patterns(analysis, word),
     ):
         found.setdefault(item.label, item)
-    return list(found.values())
+    return sorted(found.values(), key=lambda item: item.kind == "keyword")
 
 
 def _declared(analysis: Analysis, word: Span) -> Iterator[Item]:
@@ -94,16 +96,26 @@ def _columns(analysis: Analysis, word: Span, columns: Sequence[str]) -> Iterator
     """Yield the columns of a recording; where variables are declared, with a declaration."""
     variables = [each for each in analysis.outline.symbols if each.kind == "variable"]
     taken = {each.name for each in analysis.outline.symbols}
+    if analysis.document is not None:
+        taken |= {*analysis.document.definitions, *analysis.document.templates}
     for column in columns:
         if column in taken:
             continue
         name = column if NAME.fullmatch(column) else quoted(column)
         more: tuple[Edit, ...] = ()
         if variables and variables[-1].whole.end < word.start:
-            end = variables[-1].whole.end
-            end += analysis.text[end : end + 1] == ";"
-            more = (Edit(Span(end, end), f"\nfloat {name}\n"),)
+            more = (_declaration(analysis, variables[-1].whole.end, name),)
         yield Item(column, "column", Edit(word, name), "a column of the recording", more=more)
+
+
+def _declaration(analysis: Analysis, end: int, name: str) -> Edit:
+    """Return the edit that declares a column behind a declaration: on a line of its own, unless more follows there."""
+    end += analysis.text[end : end + 1] == ";"
+    line_end = analysis.lines.end(end)
+    rest = analysis.text[end:line_end].strip()
+    if not rest or any(end <= each.start and each.end >= line_end for each in analysis.comments):
+        return Edit(Span(line_end, line_end), f"\nfloat {name}")
+    return Edit(Span(end, end), f" float {name};")
 
 
 def _patterns(analysis: Analysis, word: Span) -> Iterator[Item]:
@@ -142,6 +154,8 @@ def _behind_header(analysis: Analysis) -> int:
 @cache
 def _vocabulary() -> tuple[tuple[str, str, str, str], ...]:
     found = {word: (word, "keyword", doc, "") for word, doc in DECLARED_BY.items()}
+    found |= {word: (word, "keyword", "a type of variables", "") for word in TYPES}
+    found |= {word: (word, "keyword", "a part of a choice", "") for word in (THEN, ELSE)}
     for word in QUANTIFYING:
         found[word] = (word, "keyword", "over the members of a group", "")
     for operator in STL:

@@ -52,6 +52,10 @@ class Lines:
             return Place(line, offset - start)
         return Place(line, sum(map(self._units, self._text[start:offset])))
 
+    def end(self, offset: int) -> int:
+        """Return the end of the line of an offset."""
+        return self._ends[bisect_right(self.starts, offset) - 1]
+
     def range(self, span: Span) -> tuple[Place, Place]:
         """Return the first position of a span, and the one after it."""
         return self.place(span.start), self.place(span.end)

@@ -108,10 +108,16 @@ def _add_reading(server: Server) -> None:
                 detail=each.detail or None,
                 documentation=lsp.MarkupContent(lsp.MarkupKind.Markdown, each.text) if each.text else None,
                 text_edit=edits_of(analysis.lines, [each.edit])[0],
-                filter_text=each.edit.new,
+                # What is written decides whether the quotes of a name count.
+                filter_text=each.edit.new
+                if analysis.text[each.edit.span.start :].startswith('"')
+                else each.label,
+                sort_text=f"{number:04}",
                 additional_text_edits=edits_of(analysis.lines, each.more) or None,
             )
-            for each in completions(analysis, offset_of(analysis, params.position), columns)
+            for number, each in enumerate(
+                completions(analysis, offset_of(analysis, params.position), columns)
+            )
         ]
         return lsp.CompletionList(is_incomplete=False, items=items)
 

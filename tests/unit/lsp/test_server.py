@@ -122,7 +122,31 @@ def test_completion_has_names_words_patterns_and_columns(editor, path):
     assert items["response_within"].detail == "response_within(p, s, duration)"
     column = items["engine temp"]
     assert (column.text_edit.new_text, column.detail) == ('"engine temp"', "a column of the recording")
-    assert column.additional_text_edits[0].new_text == '\nfloat "engine temp"\n'
+    added = edited(TEXT, column.additional_text_edits)
+    assert 'output float brake\nfloat "engine temp"\nconst float most' in added
+    likeliest = ["speed", "engine temp", "response_within", "always", "enum"]
+    assert sorted(likeliest, key=lambda label: items[label].sort_text) == likeliest
+
+
+@pytest.mark.parametrize(
+    ("text", "new"),
+    [
+        ("float x  // m\nalways(en", 'float x  // m\nfloat "engine temp"\nalways(en'),
+        ("float x; always(en", 'float x; float "engine temp"; always(en'),
+        ("float x always(en", 'float x float "engine temp"; always(en'),
+    ],
+)
+def test_a_column_is_declared_behind_the_variables(editor, folder, text, new):
+    path = folder / "columns.stl"
+    editor.open(path, text)
+    line = text.count("\n")
+    items = editor.ask("completion", path, line, len(text.splitlines()[-1])).items
+    (column,) = (each for each in items if each.label == "engine temp")
+    assert edited(text, column.additional_text_edits) == new
+    assert column.filter_text == "engine temp"
+    editor.change(path, text.replace("(en", '("en'))
+    items = editor.ask("completion", path, line, len(text.splitlines()[-1]) + 1).items
+    assert '"engine temp"' in [each.filter_text for each in items]
 
 
 def test_definition_and_references(editor, path, folder):
