@@ -14,13 +14,13 @@ namespace {
     return greatest ? Interval::join(a, b) : Interval::meet(a, b);
 }
 
-// Values from a tick on.
+// Values from a tick on. Others are read after a forged state alone, which is an error then.
 struct Column {
     Tick first = 0;
     std::vector<Bounds> values;
 
-    [[nodiscard]] Bounds at(Tick t, bool flipped) const noexcept {
-        const Bounds& value = values[static_cast<std::size_t>(t - first)];
+    [[nodiscard]] Bounds at(Tick t, bool flipped) const {
+        const Bounds& value = values.at(static_cast<std::size_t>(t - first));
         return flipped ? Interval::neg(value) : value;
     }
 };
@@ -75,7 +75,7 @@ std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_
         column.first = std::clamp<Tick>(state.keep, 0, end);
         column.values.resize(static_cast<std::size_t>(end - column.first));
         const auto place = [&](Tick t) -> Bounds& {
-            return column.values[static_cast<std::size_t>(t - column.first)];
+            return column.values.at(static_cast<std::size_t>(t - column.first));
         };
         for (Tick t = column.first; t < end; ++t)
             place(t) = at(static_cast<std::uint32_t>(2 * i), t);

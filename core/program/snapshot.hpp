@@ -2,7 +2,8 @@
 // program, which then continues as the first would.
 //
 // Every part lists what it holds once, in its transfer(), for both directions. Buffers that only
-// serve within an update are no part of it. The bytes are those of this machine and this layout.
+// serve within an update are no part of it. The bytes are those of this layout, the same on all
+// machines with the same order of bytes and length of addresses, and refused on others.
 // They may come from anywhere: whatever is used to find memory, or an order is relied upon, is
 // required to be as the part itself would have left it.
 #pragma once
@@ -84,8 +85,9 @@ class Snapshot {
     }
 
   private:
-    // To be raised whenever a part holds something else than before.
-    static constexpr std::uint32_t layout = 6;
+    // To be raised whenever a part holds something else than before. Of another order of bytes, or
+    // length of an address, it is another number.
+    static constexpr std::uint32_t layout = 6U | (sizeof(void*) == 8 ? 0U : 0x10000U);
 
     std::vector<std::uint8_t> written_;
     std::span<const std::uint8_t> rest_;

@@ -91,6 +91,7 @@ from rtamt.fleet.reports import FleetBounds as FleetBounds
 from rtamt.fleet.reports import FleetCausation as FleetCausation
 from rtamt.fleet.reports import FleetPoints as FleetPoints
 from rtamt.fleet.reports import FleetVerdicts as FleetVerdicts
+from rtamt.fleet.reports import SuiteUpdate as SuiteUpdate
 from rtamt.fleet.suite import Suite as Suite
 from rtamt.fleet.updates import FleetUpdate as FleetUpdate
 from rtamt.fleet.verdict_table import VerdictTable as VerdictTable

@@ -1,4 +1,7 @@
-"""A fleet with a monitor for each key against monitors that are made anew and take all samples of a key."""
+"""A fleet with a monitor for each key against monitors that are made anew and take all samples of a key.
+
+It is restored from its snapshots on the way.
+"""
 
 from __future__ import annotations
 
@@ -192,6 +195,8 @@ def test_each_report_is_that_of_a_monitor_of_the_key(mode: str, data: st.DataObj
             gone = data.draw(st.sampled_from(sorted(alone.taken)))
             fleet.drop([gone])
             del alone.taken[gone]
+        if data.draw(st.booleans()):
+            fleet = rtamt.Fleet.restore(spec, fleet.snapshot(), **made)
     for key in every:
         assert (key in fleet) == (key in alone.taken)
 
@@ -201,3 +206,53 @@ def sample(data: st.DataObject, partial: bool) -> Any:
     number = data.draw(NUMBERS)
     kind = data.draw(st.integers(0, 5)) if partial else 0
     return None if kind == 5 else (number, number + 1) if kind == 4 else number
+
+
+SUITES: dict[str, dict[str, Any]] = {
+    "delayed dense": {"time": "dense"},
+    "eager": {"verdict": "eager"},
+    "interval dense": {"time": "dense", "verdict": "interval", "lateness": 2},
+    "causation": {"verdict": "causation"},
+}
+
+
+@pytest.mark.parametrize("mode", SUITES)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_a_fleet_of_a_suite_is_a_fleet_of_each_requirement(mode: str, data: st.DataObject) -> None:
+    made = dict(SUITES[mode])
+    time = made.pop("time", "discrete")
+    texts = [to_text(data.draw(formulas(max_depth=2, discrete=time == "discrete"))) for _ in range(2)]
+    specs = {f"R{i}": rtamt.parse(text, time=time) for i, text in enumerate(texts)}
+    assume(all(spec.input_names for spec in specs.values()))
+    try:
+        suite, alone = (
+            rtamt.Suite(specs),
+            {name: rtamt.Fleet(spec, 9, **made) for name, spec in specs.items()},
+        )
+        fleet = rtamt.Fleet(suite, 9, **made)
+    except SpecificationError:  # shares have no causation
+        assume(False)
+    names = {name for spec in specs.values() for name in spec.input_names}
+    for step in range(data.draw(st.integers(1, 6))):
+        keys = data.draw(st.lists(st.integers(0, 2), min_size=1, max_size=4, unique=True))
+        times = [step + data.draw(st.sampled_from([0, 0, 0.25])) * (time == "dense") for _ in keys]
+        columns = {name: [data.draw(NUMBERS) for _ in keys] for name in sorted(names)}
+        expected, failed = {}, False
+        for name, spec in specs.items():
+            own = {each: columns[each] for each in spec.input_names}
+            try:
+                copied = rtamt.Fleet.restore(spec, alone[name].snapshot(), **made)
+                expected[name] = copied, copied.update_many(keys, times, own)
+            except (TraceError, EvaluationError):
+                failed = True
+        if failed:
+            with pytest.raises((TraceError, EvaluationError)):
+                fleet.update_many(keys, times, columns)
+            continue
+        update = fleet.update_many(keys, times, columns)
+        for name, (copied, found) in expected.items():
+            assert repr(update[name]) == repr(found)
+            alone[name] = copied
+        fleet = rtamt.Fleet.restore(suite, fleet.snapshot(), **made)
+        assert fleet.late == max(each.late for each in alone.values())

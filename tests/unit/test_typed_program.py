@@ -7,7 +7,8 @@ from tests.unit import typed_program
 
 
 @pytest.mark.parametrize(
-    "part", [typed_program.specifications, typed_program.results, typed_program.monitors]
+    "part",
+    [typed_program.specifications, typed_program.results, typed_program.monitors, typed_program.fleets],
 )
 def test_a_typed_program_runs_and_gets_values_of_the_classes_it_expects(part, monkeypatch):
     checked = []

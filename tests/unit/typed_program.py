@@ -81,6 +81,29 @@ def monitors() -> None:
     assert_type(caused.runs(), list[rtamt.CausationRun])
 
 
+def fleets() -> None:
+    spec = rtamt.parse("always[0:1](x >= 3)")
+    suite = rtamt.Suite({"LOW": spec})
+    batch: tuple[Any, Any, Any] = ([7], [0.0], {"x": [4.0]})
+    assert_type(rtamt.Fleet(spec, 9).update_many(*batch), rtamt.FleetUpdate)
+    assert_type(rtamt.Fleet(spec, 9, lateness="1s", gaps="hold").watermark(1), rtamt.FleetUpdate)
+    assert_type(rtamt.Fleet(suite, 9).update_many(*batch), rtamt.FleetUpdate)
+    assert_type(rtamt.Fleet(spec, 9, time="dense").update_many(*batch), rtamt.FleetPoints)
+    assert_type(rtamt.Fleet(spec, 9, verdict="eager").update_many(*batch), rtamt.FleetVerdicts)
+    bounds = assert_type(rtamt.Fleet(spec, 9, verdict="interval"), rtamt.Fleet[rtamt.FleetBounds])
+    assert_type(bounds.update_many(*batch), rtamt.FleetBounds)
+    assert_type(bounds.watermark(1), rtamt.FleetBounds)
+    assert_type(
+        rtamt.Fleet(spec, 9, time="dense", verdict="causation").update_many(*batch), rtamt.FleetCausation
+    )
+    eager = rtamt.Fleet(suite, 9, verdict="eager")
+    assert_type(eager.update_many(*batch), rtamt.SuiteUpdate[rtamt.FleetVerdicts])
+    assert_type(eager.update_many([8], [0.0], {"x": [4.0]})["LOW"], rtamt.FleetVerdicts)
+    assert_type(rtamt.Fleet.restore(spec, rtamt.Fleet(spec, 9).snapshot()), rtamt.Fleet[rtamt.FleetUpdate])
+    again = rtamt.Fleet.restore(suite, eager.snapshot(), verdict="eager")
+    assert_type(again.update_many([9], [0.0], {"x": [4.0]}), rtamt.SuiteUpdate[rtamt.FleetVerdicts])
+
+
 def recordings(path: str) -> None:
     trace = assert_type(rtamt.read(path), rtamt.Trace)
     assert_type(rtamt.scan(path), Iterator[rtamt.Trace])

@@ -234,7 +234,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Monitor": ("", ("Specification.monitor", "Monitor", "DenseMonitor")),
     "Monitor many keys": ("", (
             "Fleet", "FleetUpdate", "FleetPoints", "FleetVerdicts", "FleetBounds", "rtamt.fleet.reports.FleetChanges",
-            "FleetCausation",
+            "FleetCausation", "SuiteUpdate",
         )),
     "Verdicts": (
         "What the monitors of the [verdict modes](../how-to/early-verdicts.md) report.",

@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, Literal, overload
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.fleet.fleet_bytes import unpacked
 from rtamt.fleet.gaps import GAPS
 from rtamt.fleet.keys import capacity_of, keys_of
-from rtamt.fleet.late_data import InOrder, Reordered
-from rtamt.fleet.suite import Suite
-from rtamt.language.units.durations import duration
-from rtamt.language.value_types import Enumeration
+from rtamt.fleet.late_data import Reordered
+from rtamt.fleet.opening import opened
 from rtamt.signals.arrays import is_mapping
-from rtamt.specification import Specification
 from rtamt.usage_guard import UsageGuard, exclusive
-from rtamt.verdicts.modes import DELAYED, mode_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from typing_extensions import TypeVar
+
     from rtamt.engine import OnlineMonitor
     from rtamt.fleet.fleet_bytes import FleetState
     from rtamt.fleet.gaps import Gaps
-    from rtamt.fleet.per_key import MonitorPerKey
+    from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetPoints, FleetVerdicts, SuiteUpdate
+    from rtamt.fleet.suite import Suite
+    from rtamt.fleet.updates import FleetUpdate
     from rtamt.language.units.durations import Duration
-    from rtamt.signals.binding import Binding
+    from rtamt.signals.dense import Dense
+    from rtamt.signals.discrete import Discrete
+    from rtamt.specification import Specification
+
+    Update = TypeVar("Update", default=FleetUpdate)
+else:
+    from typing import TypeVar
+
+    Update = TypeVar("Update")
 
 
-class Fleet:
+class Fleet(Generic[Update]):
     """Monitors one specification, or many, for many keys, such as vehicles.
 
     ``spec``: a specification or, for a column of values for each requirement, a :class:`Suite` of specifications with
@@ -42,8 +50,11 @@ class Fleet:
 
     Each key has the results of its own ``spec.monitor(**settings)``, bit for bit. Delayed verdicts in discrete time run
     as records of the compiled core, a fixed number of bytes each. In dense time and in the other verdict modes, the
-    fleet has a monitor for each key: it costs more, and has no snapshots, suites and ``gaps``. ``lateness`` is then a
-    setting of ``verdict="interval"``, whose bounds late samples narrow.
+    fleet has a monitor for each key, and of a suite for each requirement: it costs more, and has no ``gaps``.
+    ``lateness`` is then a setting of ``verdict="interval"``, whose bounds late samples narrow.
+
+    Type checkers know the class of updates from ``verdict=`` and ``time=`` in the call. For a suite of dense time,
+    annotate the fleet: ``fleet: rtamt.Fleet[rtamt.SuiteUpdate[rtamt.FleetPoints]] = rtamt.Fleet(suite, 1000)``.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always[0:1](x >= 3)")
@@ -53,6 +64,88 @@ class Fleet:
     >>> update.values, update.known, update.times
     (array([-1.,  2.]), array([ True,  True]), array([7., 0.]))
     """
+
+    @overload
+    def __init__(
+        self: Fleet[FleetUpdate],
+        spec: Specification | Suite,
+        capacity: int,
+        *,
+        time: Literal["discrete"] | Discrete | None = None,
+        verdict: Literal["delayed"] = "delayed",
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[FleetPoints],
+        spec: Specification,
+        capacity: int,
+        *,
+        time: Literal["dense"] | Dense,
+        verdict: Literal["delayed"] = "delayed",
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[FleetVerdicts],
+        spec: Specification,
+        capacity: int,
+        *,
+        verdict: Literal["eager"],
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[FleetBounds],
+        spec: Specification,
+        capacity: int,
+        *,
+        verdict: Literal["interval"],
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[FleetCausation],
+        spec: Specification,
+        capacity: int,
+        *,
+        verdict: Literal["causation"],
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[SuiteUpdate[FleetVerdicts]],
+        spec: Suite,
+        capacity: int,
+        *,
+        verdict: Literal["eager"],
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[SuiteUpdate[FleetBounds]],
+        spec: Suite,
+        capacity: int,
+        *,
+        verdict: Literal["interval"],
+        **settings: Any,
+    ) -> None: ...
+
+    @overload
+    def __init__(
+        self: Fleet[SuiteUpdate[FleetCausation]],
+        spec: Suite,
+        capacity: int,
+        *,
+        verdict: Literal["causation"],
+        **settings: Any,
+    ) -> None: ...
 
     def __init__(
         self,
@@ -76,44 +169,22 @@ class Fleet:
         settings: Mapping[str, Any],
         state: FleetState | None = None,
     ) -> None:
-        mode = mode_of(settings.get("verdict", DELAYED), {})
-        if lateness is not None and "lateness" in mode.settings:
-            settings, lateness = {**settings, "lateness": lateness}, None
-        monitor, specs, self.requirements = _monitor_of(spec, settings)
-        records = monitor.records(
-            capacity,
-            restart=gaps.restart,
-            state=None if state is None else state.records,
-            identities={name: identity for each in specs for name, identity in _identities(each).items()},
-            watched=bool(self.requirements),
-        )
         self._usage = UsageGuard()
-        self._binding: Binding = monitor._binding
         self._gaps = gaps
-        #: Whether a batch may lack variables: whether it may is for the monitors of the keys.
-        self._partial = records is None
-        self._samples: InOrder | MonitorPerKey
-        if records is None:
-            self._samples = _monitors(monitor, self.requirements, capacity, lateness, gaps, settings, state)
-            return
-        late = None if lateness is None else float(duration(lateness))
-        waiting = None if state is None else state.waiting
-        ordered = late is None and not gaps.filled and waiting is None
-        self._samples = (
-            InOrder(records, self.requirements)
-            if ordered
-            else Reordered(records, self.requirements, late, gaps, waiting)
+        self._samples, self._binding, self._partial, self.requirements = opened(
+            spec, capacity, lateness, gaps, settings, state
         )
 
     @exclusive
-    def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> Any:
+    def update_many(self, keys: Any, times: Any, columns: Mapping[str, Any]) -> Update:
         """Take a batch of samples: the key and the time of each, and a column of values for each variable.
 
         ``keys``: integers, texts or bytes, in any order; without ``lateness``, samples of one key are in the order of
         their times. New keys start a trace. Returns what the batch made known: a :class:`FleetUpdate`, for dense time
         a :class:`FleetPoints`, and for the verdict modes a :class:`FleetVerdicts`, :class:`FleetBounds` or
         :class:`FleetCausation`. Outside of delayed verdicts in discrete time, values are what ``update`` of the monitor
-        takes, such as None or bounds, and a masked value of an array leaves its variable out of the sample.
+        takes, such as None or bounds, and a masked value of an array leaves its variable out of the sample. There, a
+        fleet of a suite returns a :class:`SuiteUpdate` of these.
 
         Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no value, with the
         key and the index in the batch; no key has changed then.
@@ -122,10 +193,10 @@ class Fleet:
         if not is_mapping(columns):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
         found = self._binding.applied(dict(columns), partial=self._partial)
-        return self._samples.take(given, times, found)
+        return self._samples.take(given, times, found)  # type: ignore[return-value]
 
     @exclusive
-    def watermark(self, time: Any) -> Any:
+    def watermark(self, time: Any) -> Update:
         """Declare that no sample before a time will arrive, of any key: what waits up to it is released.
 
         ``time``: in seconds, or a date. Earlier samples are late from now on. Returns an update with an empty batch:
@@ -141,15 +212,15 @@ class Fleet:
         >>> fleet.watermark(1).released
         Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]), requirements=array([0, 0]))
         """
-        return self._samples.watermark(time, keys_of)
+        return self._samples.watermark(time, keys_of)  # type: ignore[return-value]
 
     @exclusive
-    def advance(self, now: Any) -> Any:
+    def advance(self, now: Any) -> Update:
         """Set the current time: no sample will arrive that is older than the lateness. As :meth:`watermark`.
 
         For streams with keys that fall silent, whose own samples release nothing.
         """
-        return self._samples.advance(now, keys_of)
+        return self._samples.advance(now, keys_of)  # type: ignore[return-value]
 
     @property
     def late(self) -> int:
@@ -183,8 +254,10 @@ class Fleet:
         return self._samples.contains(given)
 
     @exclusive
-    def monitor(self, key: Any) -> OnlineMonitor:
+    def monitor(self, key: Any, requirement: str | None = None) -> OnlineMonitor:
         """Return a copy of the monitor of a key, for bounds at other instants, explanations and what is watched.
+
+        ``requirement``: the name of the one of a suite.
 
         For fleets that have a monitor for each key: in dense time, and in all verdict modes but ``"delayed"``. Raises
         :class:`UsageError` for a key that is not there.
@@ -195,7 +268,7 @@ class Fleet:
         >>> fleet.monitor(7).interval(1)
         Interval(lower=2.0, upper=2.0)
         """
-        found = self._samples.monitor(keys_of([key]))
+        found = self._samples.monitor(keys_of([key]), requirement)
         if found is None:
             raise UsageError(f"the fleet has no key {shown(key)}")
         return found
@@ -244,7 +317,7 @@ class Fleet:
     def snapshot(self) -> bytes:
         """Return the state of all keys, in the format of [the state of a fleet](fleet-state.md).
 
-        Raises :class:`UsageError` where the fleet has a monitor for each key, whose state has no such format.
+        Raises :class:`UsageError` for ``backend="python"``, whose state has no such format.
 
         >>> import rtamt
         >>> spec = rtamt.parse("once(x >= 3)")
@@ -254,6 +327,66 @@ class Fleet:
         array([2.])
         """
         return self._samples.snapshot(self._gaps)
+
+    @overload
+    @classmethod
+    def restore(
+        cls,
+        spec: Specification | Suite,
+        state: bytes,
+        *,
+        time: Literal["discrete"] | Discrete | None = None,
+        verdict: Literal["delayed"] = "delayed",
+        **settings: Any,
+    ) -> Fleet[FleetUpdate]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls,
+        spec: Specification,
+        state: bytes,
+        *,
+        time: Literal["dense"] | Dense,
+        verdict: Literal["delayed"] = "delayed",
+        **settings: Any,
+    ) -> Fleet[FleetPoints]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Specification, state: bytes, *, verdict: Literal["eager"], **settings: Any
+    ) -> Fleet[FleetVerdicts]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Specification, state: bytes, *, verdict: Literal["interval"], **settings: Any
+    ) -> Fleet[FleetBounds]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Specification, state: bytes, *, verdict: Literal["causation"], **settings: Any
+    ) -> Fleet[FleetCausation]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Suite, state: bytes, *, verdict: Literal["eager"], **settings: Any
+    ) -> Fleet[SuiteUpdate[FleetVerdicts]]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Suite, state: bytes, *, verdict: Literal["interval"], **settings: Any
+    ) -> Fleet[SuiteUpdate[FleetBounds]]: ...
+
+    @overload
+    @classmethod
+    def restore(
+        cls, spec: Suite, state: bytes, *, verdict: Literal["causation"], **settings: Any
+    ) -> Fleet[SuiteUpdate[FleetCausation]]: ...
 
     @classmethod
     def restore(
@@ -265,13 +398,15 @@ class Fleet:
         lateness: Duration | None = None,
         gaps: str | None = None,
         **settings: Any,
-    ) -> Fleet:
+    ) -> Fleet[Any]:
         """Return a fleet in a state that :meth:`snapshot` returned, perhaps of another specification.
 
         Parts of the formula that are the same go on where they were. For those that are new, or that read what is
         new, no value is known until all samples that it depends on have come: ``FleetUpdate.warming``. ``capacity``,
         ``lateness`` and ``gaps``: by default those of the fleet of the snapshot. Raises :class:`UsageError` for bytes
         that are not a state.
+
+        Where keys have monitors, the specification and all settings must be those of the fleet of the snapshot.
         """
         if not isinstance(state, bytes):
             raise UsageError(f"expected the bytes that snapshot() returns, got {shown(state)}")
@@ -288,65 +423,3 @@ class Fleet:
             stored,
         )
         return made
-
-
-def _monitor_of(
-    spec: Any, settings: Mapping[str, Any]
-) -> tuple[OnlineMonitor, tuple[Specification, ...], tuple[str, ...]]:
-    """Return a monitor, the specifications that it is of, and the names of requirements that it watches."""
-    if isinstance(spec, Suite):
-        if "verdict" in settings:
-            raise UsageError(
-                "a fleet of a suite has delayed verdicts; for verdict=, make a fleet of each specification"
-            )
-        if settings:
-            raise UsageError(
-                f"{next(iter(settings))}= is a setting of the suite: write Suite(specs, {next(iter(settings))}=...)"
-            )
-        monitor, specs = spec.monitor()
-        return monitor, specs, tuple(each.name for each in spec.requirements)
-    if not isinstance(spec, Specification):
-        raise UsageError(
-            f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
-        )
-    spec.require_no_groups("a fleet")
-    return spec.monitor(**settings), (spec,), ()
-
-
-def _monitors(
-    monitor: OnlineMonitor,
-    requirements: tuple[str, ...],
-    capacity: int,
-    lateness: Duration | None,
-    gaps: Gaps,
-    settings: Mapping[str, Any],
-    state: FleetState | None,
-) -> MonitorPerKey:
-    """Return a monitor for each key; raise :class:`UsageError` where there can be none."""
-    from rtamt.fleet.collectors import collector_of  # with all verdict modes, which records do not need
-    from rtamt.fleet.per_key import MonitorPerKey, no_state
-
-    if requirements:
-        raise UsageError(
-            "a fleet of a suite monitors the delayed robustness in discrete time, without custom operators; make a "
-            "fleet of each specification"
-        )
-    if state is not None:
-        raise no_state(collector_of(monitor).what)
-    return MonitorPerKey(monitor, capacity, lateness=lateness, gaps=gaps, unit=settings.get("time_unit"))
-
-
-def _identities(spec: Specification) -> dict[str, str]:
-    """Return what stands for the names of variables in a state, where a declaration decides what a number means.
-
-    With another unit, another recorded name or other codes of members, what is remembered is of another signal.
-    """
-    found: dict[str, str] = {}
-    for each in spec.document.declarations:
-        parts = [each.unit, *each.columns]
-        kind = spec.document.types.get(each.name)
-        if isinstance(kind, Enumeration):
-            parts += [f"{member}={code}" for member, code in kind.members]
-        if each.kind == "var" and any(parts):
-            found[each.name] = "\0".join((each.name, *parts))
-    return found

@@ -13,7 +13,8 @@ from typing import NamedTuple
 from rtamt.errors import UsageError
 from rtamt.fleet.gaps import GAPS, Gaps
 
-_MAGIC = b"RTAMTFLE"
+#: The first bytes of a state with late data or gaps, with a monitor for each key, and with one for each requirement.
+_MAGIC, MONITORS, REQUIREMENTS = b"RTAMTFLE", b"RTAMTFLM", b"RTAMTFLS"
 _VERSION = 1
 _HEAD = struct.Struct("<8sHBBIdQ")
 _CHECKSUM = struct.Struct("<I")

@@ -70,3 +70,8 @@ def keys_of(keys: Any) -> NDArray[Any]:
 
 def _masked(index: int) -> TraceError:
     return TraceError(f"the key at index {index} of the batch is masked: leave the sample out")
+
+
+def is_padded(key: Any) -> bool:
+    """Return whether a key ends with the character that an array of numpy loses."""
+    return type(key) in _PADDED and key.endswith(_PADDED[type(key)])

@@ -99,7 +99,7 @@ class InOrder:
         warming = np.stack([each.warming for each in outputs], axis=1)
         return FleetUpdate(values, known, times, warming, taken.late, released, self._requirements)
 
-    def monitor(self, key: NDArray[Any]) -> OnlineMonitor | None:  # noqa: ARG002
+    def monitor(self, key: NDArray[Any], requirement: str | None) -> OnlineMonitor | None:  # noqa: ARG002
         """Raise :class:`UsageError`: keys have records."""
         raise UsageError(
             "a fleet of delayed verdicts in discrete time has a record for each key, and no monitor; read update_many()"

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, Any
+from math import isnan, nan
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rtamt.engine.fleet_keys import full, place_of
 from rtamt.errors import EvaluationError, TraceError, UsageError, shown
 from rtamt.fleet.collectors import collector_of
+from rtamt.fleet.monitor_state import MonitorStates
+from rtamt.fleet.monitors_bytes import Monitors, packed, require_same, unpacked
 from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.data_errors import unknown_variable
@@ -22,17 +25,35 @@ if TYPE_CHECKING:
     from rtamt.fleet.gaps import Gaps
 
 
+class Prepared(NamedTuple):
+    """A batch that has run on copies of monitors: its ``update``, and the rest to be kept if it is."""
+
+    update: Any
+    monitors: Mapping[Any, Any]
+    newest: Mapping[Any, float]
+    late: int
+
+
 class MonitorPerKey:
     """Copies of one monitor by key. A batch runs on copies of the monitors of its keys, which then replace them.
 
-    ``monitor``: one that has taken no sample. ``unit``: of times that are numbers.
+    ``monitor``: one that has taken no sample. ``unit``: of times that are numbers. ``identities``: what stands for the
+    names of variables in a state.
     """
 
     #: No sample waits: a monitor takes each at once.
     waiting = 0
 
     def __init__(
-        self, monitor: OnlineMonitor, capacity: int, *, lateness: Any, gaps: Gaps, unit: str | None
+        self,
+        monitor: OnlineMonitor,
+        capacity: int,
+        *,
+        lateness: Any,
+        gaps: Gaps,
+        unit: str | None,
+        identities: Mapping[str, str],
+        state: bytes | None = None,
     ) -> None:
         self._collector = collector_of(monitor)
         if gaps.code:
@@ -52,9 +73,18 @@ class MonitorPerKey:
         self._newest: dict[Any, float] = {}
         #: How many samples were late.
         self.late = 0
+        self._identities = identities
+        if state is not None:
+            self._restore(state)
 
     def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> Any:
         """Take a batch; return what it made known. Raises for wrong data, and nothing has changed."""
+        prepared = self.prepared(keys, times, columns)
+        self.accept(prepared)
+        return prepared.update
+
+    def prepared(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> Prepared:
+        """Run a batch on copies; nothing has changed. Raises for wrong data."""
         self._check_names(columns)
         moments = _listed(TIME, times)
         seconds = timestamps(times, self._unit).seconds.tolist()
@@ -81,7 +111,7 @@ class MonitorPerKey:
         moments: Sequence[Any],
         seconds: Sequence[float],
         values: Mapping[str, Sequence[Any]],
-    ) -> Any:
+    ) -> Prepared:
         names = tuple(values)
         rows = zip(*values.values(), strict=True) if names else [()] * len(given)
         reports = self._collector()
@@ -115,19 +145,36 @@ class MonitorPerKey:
                 raise EvaluationError(f"{place_of(key, index)}: {error}") from None
             reports.take(index, twin, report)
             newest[key] = max(seconds[index], newest.get(key, seconds[index]))
-        update = reports.update(keys)
-        self._monitors.update(twins)
-        for key, time in newest.items():
+        return Prepared(reports.update(keys), twins, newest, late)
+
+    def accept(self, prepared: Prepared) -> None:
+        """Keep a batch that was prepared, with no other one since then."""
+        self._monitors.update(prepared.monitors)
+        for key, time in prepared.newest.items():
             self._newest[key] = max(time, self._newest.get(key, time))
-        self.late += late
-        return update
+        self.late += prepared.late
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """The variables."""
+        names: tuple[str, ...] = self._new.input_names
+        return names
+
+    def own(self, columns: Mapping[str, Any]) -> tuple[dict[str, Any], set[str]]:
+        """Return the columns that are for these monitors, under the names of their variables, and which were read."""
+        found = self._new._binding.applied(dict(columns), partial=True)
+        own = {name: column for name, column in found.items() if self._knows(name)}
+        return own, {name for name in columns if name in own or name not in found}
+
+    def _knows(self, name: str) -> bool:
+        """Return whether a column may have a name."""
+        new = self._new
+        return name in new._declared or any(name in (each, each.split(".")[0]) for each in new.input_names)
 
     def _check_names(self, columns: Mapping[str, Any]) -> None:
-        new = self._new
-        known = {*new.input_names, *(name.split(".")[0] for name in new.input_names), *new._declared}
         for name in columns:
-            if name not in known:
-                raise unknown_variable(name, new.input_names)
+            if not self._knows(name):
+                raise unknown_variable(name, self._new.input_names)
 
     def _check_kind(self, keys: Sequence[Any]) -> None:
         if keys and self._monitors and type(keys[0]) is not type(next(iter(self._monitors))):
@@ -135,13 +182,18 @@ class MonitorPerKey:
 
     def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
         """Declare that no sample at or before a time will arrive, of any key; return what each key reports then."""
-        return self._mark("watermark", time, arrays)
+        return self._kept(self.marked("watermark", time, arrays))
 
     def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
         """Set the current time of all keys; return what each key reports then."""
-        return self._mark("advance", now, arrays)
+        return self._kept(self.marked("advance", now, arrays))
 
-    def _mark(self, method: str, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
+    def _kept(self, prepared: Prepared) -> Any:
+        self.accept(prepared)
+        return prepared.update
+
+    def marked(self, method: str, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Prepared:
+        """Set the watermark on copies of all monitors; nothing has changed."""
         if not hasattr(self._new, method):
             raise UsageError(
                 f"the monitors of this fleet ({self._collector.what}) have no {method}(); choose verdict='interval'"
@@ -150,9 +202,7 @@ class MonitorPerKey:
         twins = {key: copy(monitor) for key, monitor in self._monitors.items()}
         for index, twin in enumerate(twins.values()):
             reports.take(index, twin, getattr(twin, method)(time))
-        update = reports.update(arrays(list(twins)))
-        self._monitors = twins
-        return update
+        return Prepared(reports.update(arrays(list(twins))), twins, {}, 0)
 
     # ---- keys ------------------------------------------------------------------------------------
 
@@ -164,8 +214,10 @@ class MonitorPerKey:
     def __len__(self) -> int:
         return len(self._monitors)
 
-    def monitor(self, key: NDArray[Any]) -> OnlineMonitor | None:
+    def monitor(self, key: NDArray[Any], requirement: str | None) -> OnlineMonitor | None:
         """Return a copy of the monitor of the key of an array of one; None if it is not there."""
+        if requirement is not None:
+            raise UsageError("the fleet is of one specification, and not of the requirements of a suite")
         found = self._monitors.get(key[0].item())
         return None if found is None else copy(found)
 
@@ -190,21 +242,49 @@ class MonitorPerKey:
 
     def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:
         """Forget the keys whose newest sample is before a time in seconds; return how many."""
-        stale = [key for key, time in self._newest.items() if time < before]
+        stale = self.stale(before)
         self.drop(arrays(stale))
         return len(stale)
 
+    def stale(self, before: float) -> list[Any]:
+        """Return the keys whose newest sample is before a time in seconds."""
+        return [key for key, time in self._newest.items() if time < before]
+
+    # ---- state -------------------------------------------------------------------------------------
+
     def snapshot(self, gaps: Gaps) -> bytes:  # noqa: ARG002 - gaps are rejected
-        """Raise :class:`UsageError`: what monitors remember has no format that could be read from anyone."""
-        raise no_state(self._collector.what)
+        """Return the state of all keys."""
+        states = MonitorStates(self._new, self._identities)
+        return packed(
+            Monitors(
+                states.version,
+                states.made_of,
+                self.capacity,
+                self.late,
+                list(self._monitors),
+                [self._newest.get(key, nan) for key in self._monitors],
+                [states.put(monitor) for monitor in self._monitors.values()],
+            )
+        )
 
-
-def no_state(what: str) -> UsageError:
-    """Return the error for a state of monitors."""
-    return UsageError(
-        f"a fleet with a monitor for each key ({what}) has no snapshots: keep the samples of each key that its "
-        f"verdicts still depend on, and replay them into a new fleet"
-    )
+    def _restore(self, state: bytes) -> None:
+        stored, states = unpacked(state), MonitorStates(self._new, self._identities)
+        require_same(stored.made_of, states.made_of)
+        if stored.version != states.version:
+            raise UsageError(
+                f"the state has monitors of version {stored.version}, and this version of rtamt has version "
+                f"{states.version}: replay the samples that verdicts still depend on"
+            )
+        self.capacity = self.capacity or stored.capacity
+        if len(stored.keys) > self.capacity:
+            raise UsageError(
+                f"this state has {len(stored.keys)} keys, more than the capacity of {self.capacity}"
+            )
+        self.late = stored.late
+        for key, time, one in zip(stored.keys, stored.newest, stored.states, strict=True):
+            self._monitors[key] = states.get(one)
+            if not isnan(time):
+                self._newest[key] = time
 
 
 def _listed(name: str, column: Any) -> list[Any]:

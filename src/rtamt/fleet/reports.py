@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rtamt.errors import UsageError, choices, shown
 from rtamt.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -102,3 +105,25 @@ class FleetCausation:
 
     def __len__(self) -> int:
         return len(self.violation)
+
+
+Of = TypeVar("Of")
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteUpdate(Generic[Of]):
+    """What a batch has made known of each requirement of a suite: ``update["SPEED"]`` is the update of one."""
+
+    updates: Mapping[str, Of]
+
+    @property
+    def requirements(self) -> tuple[str, ...]:
+        """The names of the requirements."""
+        return tuple(self.updates)
+
+    def __getitem__(self, name: str) -> Of:
+        if name not in self.updates:
+            raise UsageError(
+                f"the fleet has no requirement {shown(name)}{choices(name, self.requirements, 'requirements')}"
+            )
+        return self.updates[name]

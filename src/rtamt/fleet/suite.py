@@ -195,17 +195,36 @@ class Suite:
 
         Raises :class:`UsageError` where the requirements need more than one monitor, or have no formulas.
         """
+        self._require_formulas()
+        if self._apart or len(self._groups) > 1 or self._groups[0].way.rule is not None:
+            raise _apart_in_fleets()
+        return self._groups[0].monitor([each.name for each in self.requirements]), tuple(self._specs.values())
+
+    def monitors(self, settings: Mapping[str, Any]) -> dict[str, tuple[Specification, OnlineMonitor]]:
+        """Return a monitor of each requirement, and its specification, by its name; ``settings``: beside those here.
+
+        Raises :class:`UsageError` where the requirements do not share a time domain, or have no formulas.
+        """
+        self._require_formulas()
+        if len({(way.domain, way.unit) for way in self.ways}) > 1:
+            raise _apart_in_fleets()
+        given = {name: setting for name, setting in self._settings.items() if setting is not None}
+        if "robustness" not in self.select:
+            given["semantics"] = "boolean"
+        found = {}
+        for name, spec in self._specs.items():
+            spec.require_no_groups("a fleet")
+            try:
+                found[name] = spec, spec.monitor(**given, **settings)
+            except StlError as error:
+                raise placed(error, name) from None
+        return found
+
+    def _require_formulas(self) -> None:
         if not self._specs:
             raise UsageError(
                 "a suite that was read from bytes has no formulas to monitor; make the fleet of Suite(specs)"
             )
-        if self._apart or len(self._groups) > 1 or self._groups[0].way.rule is not None:
-            raise UsageError(
-                "the requirements of a fleet share the time domain, the sampling period, and the names, units and "
-                "types of their variables, without a sampling rule, quantifiers or operators of your own; make a "
-                "fleet for each that differs"
-            )
-        return self._groups[0].monitor([each.name for each in self.requirements]), tuple(self._specs.values())
 
     @property
     def storable(self) -> bool:
@@ -255,6 +274,14 @@ class Suite:
 
     def __repr__(self) -> str:
         return f"<suite of {len(self)} requirements: {', '.join(self.select)}>"
+
+
+def _apart_in_fleets() -> UsageError:
+    return UsageError(
+        "the requirements of a fleet share the time domain, the sampling period, and the names, units and "
+        "types of their variables, without a sampling rule, quantifiers or operators of your own; make a "
+        "fleet for each that differs"
+    )
 
 
 def _again(specs: Mapping[str, Specification], select: Sequence[str], settings: dict[str, Any]) -> Suite:

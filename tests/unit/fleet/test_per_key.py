@@ -200,16 +200,6 @@ def test_an_undefined_value_is_named_by_key_and_index() -> None:
     ("action", "message"),
     [
         (
-            lambda: filled().snapshot(),
-            "a fleet with a monitor for each key (verdict='eager') has no snapshots: keep the samples of each key that "
-            "its verdicts still depend on, and replay them into a new fleet",
-        ),
-        (
-            lambda: rtamt.Fleet.restore(SPEC, rtamt.Fleet(SPEC, 3).snapshot(), time="dense"),
-            "a fleet with a monitor for each key (delayed verdicts in dense time) has no snapshots: keep the samples "
-            "of each key that its verdicts still depend on, and replay them into a new fleet",
-        ),
-        (
             lambda: filled(gaps="hold"),
             "gaps='hold' needs delayed verdicts in discrete time, and this fleet has a monitor for each key "
             "(verdict='eager'): leave gaps= out",
