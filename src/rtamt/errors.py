@@ -20,11 +20,13 @@ the line with a caret under the position.
 from __future__ import annotations
 
 import copy
-import re
 import reprlib
 from typing import TYPE_CHECKING, Any
 
+from rtamt.lazy_patterns import lazy_pattern
+
 if TYPE_CHECKING:
+    import re
     from collections.abc import Iterable
 
     from rtamt.language.formula import Span
@@ -36,7 +38,7 @@ _SHOWN = 60
 _LISTED = 16
 
 #: A word longer than any reasonable path or name.
-_PAGES = re.compile(r"\S{600,}")
+_PAGES = lazy_pattern(r"\S{600,}")
 
 
 def _abbreviated(word: re.Match[str]) -> str:
@@ -261,7 +263,7 @@ def escaped(text: str) -> str:
 
 
 #: Control characters (C0, DEL, C1), line separators, bidirectional marks, and surrogates.
-_UNPRINTABLE = re.compile(
+_UNPRINTABLE = lazy_pattern(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 
@@ -275,7 +277,7 @@ def readable(text: str) -> str:
     return _SURROGATES.sub(lambda match: _written(ord(match[0])), text)
 
 
-_SURROGATES = re.compile("[\ud800-\udfff]")
+_SURROGATES = lazy_pattern("[\ud800-\udfff]")
 
 
 def _written(code: int) -> str:

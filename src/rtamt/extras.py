@@ -20,9 +20,10 @@ from importlib.machinery import PathFinder
 from typing import Any
 
 from rtamt.errors import UsageError, did_you_mean
+from rtamt.lazy_patterns import lazy_pattern
 
-_MESSAGE_MODULE = re.compile(r"([A-Za-z]\w*)\.msg", re.ASCII)
-_MESSAGE_CLASS = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_MESSAGE_MODULE = lazy_pattern(r"([A-Za-z]\w*)\.msg", re.ASCII)
+_MESSAGE_CLASS = lazy_pattern(r"[A-Za-z]\w*", re.ASCII)
 
 
 def library(module: str, what: str, extra: str) -> Any:

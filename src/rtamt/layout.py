@@ -6,9 +6,8 @@ are. The new text is parsed, and has the meaning of the old one.
 
 from __future__ import annotations
 
-import re
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, StlError
 from rtamt.language.parsing.imports import Library
@@ -16,6 +15,8 @@ from rtamt.language.parsing.lexer import comments, is_name, is_numeral, is_quote
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from rtamt.language.operators import Language
 
 _INDENT = "    "
-_LINE_END = re.compile(r"\r\n|\n|\r")
-_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+_LINE_END = lazy_pattern(r"\r\n|\n|\r")
+_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 #: Words that no operand precedes or follows on their line, besides operators.
 _OPEN_WORDS = frozenset(("if", "then", "else", "in", "or", "where", "severity", "require"))

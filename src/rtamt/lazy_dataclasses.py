@@ -127,18 +127,19 @@ def _processed(
         attributes |= {"__setattr__": _frozen, "__delattr__": _frozen}
     if frozen and slots and "__getstate__" not in given:
         attributes |= {"__getstate__": _state, "__setstate__": _restore}
+    if init:
+        attributes["__init__"] = _first_init(frozen=frozen)
     if slots:
-        cls = _with_slots(cls, own)
+        return _with_slots(cls, own, attributes)
     for name, value in attributes.items():
         setattr(cls, name, value)
-    if init:
-        cls.__init__ = _first_init(cls, frozen=frozen)
     return cls
 
 
-def _with_slots(cls: Any, own: Collection[str]) -> Any:
+def _with_slots(cls: Any, own: Collection[str], attributes: dict[str, Any]) -> Any:
     """Return the same class with slots for its own fields, except for those that have one in a base class."""
     body = {name: value for name, value in vars(cls).items() if name not in (*own, "__dict__", "__weakref__")}
+    body |= attributes
     taken = {slot for base in cls.__mro__[1:] for slot in vars(base).get("__slots__", ())}
     body["__slots__"] = tuple([name for name in own if name not in taken])
     made = type(cls)(cls.__name__, cls.__bases__, body)
@@ -163,11 +164,12 @@ def _own_fields(cls: Any) -> dict[str, Field]:
     return found
 
 
-def _first_init(cls: Any, *, frozen: bool) -> Callable[..., None]:
+def _first_init(*, frozen: bool) -> Callable[..., None]:
     """Return a method that replaces itself by the ``__init__`` that it compiles."""
 
     def first(self: Any, *args: Any, **given: Any) -> None:
-        cls.__init__ = made = _compiled_init(cls, frozen=frozen)
+        owner: Any = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
+        owner.__init__ = made = _compiled_init(owner, frozen=frozen)
         made(self, *args, **given)
 
     return first

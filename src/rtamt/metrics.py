@@ -9,10 +9,11 @@ from __future__ import annotations
 import threading
 from contextlib import contextmanager
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     import argparse

@@ -20,17 +20,18 @@ from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.english import to_english
 from rtamt.language.units.durations import NUMBER, UNITS
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 _FILES = ("patterns.stl", "signals.stl")
-_SECTION = re.compile(r"// ---- ([^:]+?)(?:: (.*))? ----")
-_DEFINED = re.compile(r"def (\w+)\(([^)]*)\)")
-_SCOPES = re.compile(r"within a scope: (.*?)\.", re.DOTALL)
-_PARAMETER = re.compile(r"`(\w+)`")
-_DURATION = re.compile(rf"({NUMBER})\s*({'|'.join(UNITS)})")
+_SECTION = lazy_pattern(r"// ---- ([^:]+?)(?:: (.*))? ----")
+_DEFINED = lazy_pattern(r"def (\w+)\(([^)]*)\)")
+_SCOPES = lazy_pattern(r"within a scope: (.*?)\.", re.DOTALL)
+_PARAMETER = lazy_pattern(r"`(\w+)`")
+_DURATION = lazy_pattern(rf"({NUMBER})\s*({'|'.join(UNITS)})")
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from enum import Enum
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
@@ -18,6 +18,7 @@ from rtamt.signals.arrays import is_number, is_truth
 
 if TYPE_CHECKING:
     from collections.abc import Collection
+    from typing import TypedDict
 
     from rtamt.language.document import Document
     from rtamt.language.units.durations import Duration
@@ -30,60 +31,56 @@ Semantics: TypeAlias = str | Enum | PredicateSemantics
 #: Formulas that a monitor evaluates beside its own: names or texts, or formulas.
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
+if TYPE_CHECKING:  # annotations alone name them, and Python would compile each of theirs
 
-class Settings(TypedDict, total=False):
-    """The keyword arguments of :func:`rtamt.parse`, for functions that pass them on."""
+    class Settings(TypedDict, total=False):
+        """The keyword arguments of :func:`rtamt.parse`, for functions that pass them on."""
 
-    period: Duration | None
-    unit: str
-    backend: str
-    constants: Mapping[str, float] | None
-    language: Language
-    time: str | TimeDomain
-    resolution: Duration
-    semantics: Semantics
-    roles: Mapping[str, str] | None
+        period: Duration | None
+        unit: str
+        backend: str
+        constants: Mapping[str, float] | None
+        language: Language
+        time: str | TimeDomain
+        resolution: Duration
+        semantics: Semantics
+        roles: Mapping[str, str] | None
 
+    class EvaluationSettings(TypedDict, total=False):
+        """The settings of :meth:`Specification.evaluate`, for functions that pass them on."""
 
-class EvaluationSettings(TypedDict, total=False):
-    """The settings of :meth:`Specification.evaluate`, for functions that pass them on."""
+        time: str | TimeDomain | None
+        period: Duration | None
+        resolution: Duration | None
+        semantics: Semantics | None
+        time_unit: str | None
 
-    time: str | TimeDomain | None
-    period: Duration | None
-    resolution: Duration | None
-    semantics: Semantics | None
-    time_unit: str | None
+    class OnlineSettings(TypedDict, total=False):
+        """The settings of every monitor, see :meth:`Specification.monitor`."""
 
+        semantics: Semantics | None
+        watch: Watch
+        time_unit: str | None
 
-class OnlineSettings(TypedDict, total=False):
-    """The settings of every monitor, see :meth:`Specification.monitor`."""
+    class DiscreteSettings(OnlineSettings, total=False):
+        """Those of a monitor of discrete time."""
 
-    semantics: Semantics | None
-    watch: Watch
-    time_unit: str | None
+        period: Duration | None
+        tolerance: float | None
+        worst_case: bool
 
+    class DenseSettings(OnlineSettings, total=False):
+        """Those of a monitor of dense time."""
 
-class DiscreteSettings(OnlineSettings, total=False):
-    """Those of a monitor of discrete time."""
+        resolution: Duration | None
 
-    period: Duration | None
-    tolerance: float | None
-    worst_case: bool
+    class IntervalSettings(DiscreteSettings, DenseSettings, total=False):
+        """Those of a monitor of bounds in either time domain."""
 
-
-class DenseSettings(OnlineSettings, total=False):
-    """Those of a monitor of dense time."""
-
-    resolution: Duration | None
-
-
-class IntervalSettings(DiscreteSettings, DenseSettings, total=False):
-    """Those of a monitor of bounds in either time domain."""
-
-    at: str | None
-    ranges: Mapping[str, Any] | None
-    lateness: Duration | None
-    on_correction: str | None
+        at: str | None
+        ranges: Mapping[str, Any] | None
+        lateness: Duration | None
+        on_correction: str | None
 
 
 def require_samples(domain: TimeDomain, *, worst_case: bool) -> None:

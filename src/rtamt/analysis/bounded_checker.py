@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from time import monotonic
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.analysis.declared import common_limits, last_limits, require_covered, require_same_signals
 from rtamt.analysis.problem import Answer, Problem, related
@@ -15,6 +15,7 @@ from rtamt.language.operators import STL, Bounds, Tense
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizon

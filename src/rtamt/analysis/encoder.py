@@ -11,7 +11,7 @@ from functools import partial
 from itertools import pairwise
 from math import isfinite
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.analysis.arithmetic import ENCODED
 from rtamt.analysis.sequences import Sequences
@@ -36,6 +36,7 @@ from rtamt.language.operators import (
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_of
 from rtamt.language.value_types import Boolean, Enumeration
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.semantics import boolean

@@ -17,6 +17,7 @@ from rtamt.files import nearest_file, write_bytes, write_text
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.lazy_numpy import np
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend
@@ -41,7 +42,7 @@ _SPECIFICATION_SUFFIXES = (".stl",)
 #: Titles under which the help lists options.
 SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
 METRICS = "metrics (pip install 'rtamt[metrics]')"
-_LIKE_A_PATH = re.compile(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
+_LIKE_A_PATH = lazy_pattern(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 
 class CommandError(StlError):

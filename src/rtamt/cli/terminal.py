@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import sys
 import time
@@ -12,6 +11,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rtamt.errors import UsageError, choices, escaped
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +29,7 @@ _STYLES = {"good": "green", "bad": "red", "error": "yellow"}
 
 
 #: The codes that :func:`paint` writes.
-_PAINTED = re.compile(rf"(\x1b\[(?:0|{'|'.join(_CODES.values())})m)")
+_PAINTED = lazy_pattern(rf"(\x1b\[(?:0|{'|'.join(_CODES.values())})m)")
 
 
 def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flush: bool = False) -> None:

@@ -5,12 +5,13 @@ The nodes of bounded until and since, which take several in the graph, are one p
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.compiler.graph import ITEMS, LATTICE, interval_in_steps
 from rtamt.compiler.program import NO_OPERAND
 from rtamt.language.formula import Apply, Formula, children
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.early import connects
 
 if TYPE_CHECKING:

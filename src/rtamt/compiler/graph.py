@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import zlib
 from copy import copy
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
@@ -18,6 +18,7 @@ from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postor
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import rank_of
 from rtamt.lazy_dataclasses import dataclass, field, fields, replace
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:

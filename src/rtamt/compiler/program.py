@@ -17,7 +17,7 @@ import zlib
 from functools import cached_property, partial
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.passes import bits_of, without_of
@@ -26,6 +26,7 @@ from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DOMAINS
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.early import compile_graph
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.formula import Formula, Parameter, postorder
 from rtamt.language.parameters import with_values
@@ -100,6 +99,8 @@ class Shape:
     ) -> Graph:
         """Compile the formulas for early verdicts, without their ``values``; arguments as for :func:`compile_graph`."""
         if not self.values:
+            from rtamt.compiler.early import compile_graph  # only verdicts before the horizon need it
+
             return compile_graph(self.expanded(), period, inputs, domain, start=start, apart=apart)
         return _graph(self.formulas, period, inputs, domain, start, apart).copied()
 
@@ -142,4 +143,6 @@ def _graph(
     start: bool,
     apart: bool,
 ) -> Graph:
+    from rtamt.compiler.early import compile_graph
+
     return compile_graph(_kept(formulas), period, inputs, domain, start=start, apart=apart)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.compiler.stored import is_built_in
 from rtamt.engine.engine import BACKENDS, engine_of
@@ -11,6 +11,7 @@ from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
 from rtamt.language.formula import postorder, types_of
 from rtamt.language.undefined_value import UndefinedAtTickError
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.coding import codes_of
 

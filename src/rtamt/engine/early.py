@@ -6,7 +6,7 @@ prepares them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.causation import compile_causes
 from rtamt.compiler.shared import Shape
@@ -14,6 +14,7 @@ from rtamt.engine.backend import Session, TickDefinition
 from rtamt.engine.native import core
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:

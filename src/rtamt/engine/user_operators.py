@@ -9,7 +9,6 @@ the object, so that a failed update leaves it unchanged, too; a class may define
 from __future__ import annotations
 
 import copy
-import ctypes
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -80,6 +79,8 @@ def _kernel(site: CallSite, driver: type[_Driver], step: Fraction) -> Any:
 
 def _capsule(op: Operator, library: str, name: str) -> Any:
     """Load a shared library and return the address of one of its kernels."""
+    import ctypes  # few programs have a compiled kernel
+
     try:
         function = getattr(ctypes.CDLL(str(library)), name)
     except OSError as error:

@@ -7,19 +7,20 @@ A field describes one kind of value, for both directions. Numbers are in little 
 from __future__ import annotations
 
 import datetime as dt
-import re
 import struct
 from math import isnan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.lazy_numpy import np
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.outcomes import Interval
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-_DTYPE = re.compile(r"<[fi]8|<[mM]8\[\d{0,9}(?:Y|M|W|D|h|m|s|ms|us|ns|ps|fs|as)\]")
+_DTYPE = lazy_pattern(r"<[fi]8|<[mM]8\[\d{0,9}(?:Y|M|W|D|h|m|s|ms|us|ns|ps|fs|as)\]")
 
 
 def damaged(reason: str) -> UsageError:

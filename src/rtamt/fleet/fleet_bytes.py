@@ -8,10 +8,10 @@ from __future__ import annotations
 import struct
 import zlib
 from math import isfinite, isnan, nan
-from typing import NamedTuple
 
 from rtamt.errors import UsageError
 from rtamt.fleet.gaps import GAPS, Gaps
+from rtamt.lazy_tuples import NamedTuple
 
 #: The first bytes of a state with late data or gaps, with a monitor for each key, and with one for each requirement.
 _MAGIC, MONITORS, REQUIREMENTS = b"RTAMTFLE", b"RTAMTFLM", b"RTAMTFLS"

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import isnan, nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.fleet.fleet_bytes import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.arrays import timestamps
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.fleet.fleet_bytes import MONITORS, REQUIREMENTS
@@ -10,6 +10,7 @@ from rtamt.fleet.late_data import InOrder, Reordered
 from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.settings import EvaluationSettings
 from rtamt.signals.binding import Binding
 from rtamt.specification import Specification

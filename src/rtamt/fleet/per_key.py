@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from math import isnan, nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.fleet_keys import full, place_of
 from rtamt.errors import EvaluationError, TraceError, UsageError, shown
@@ -12,6 +12,7 @@ from rtamt.fleet.collectors import collector_of
 from rtamt.fleet.monitor_state import MonitorStates
 from rtamt.fleet.monitors_bytes import Monitors, packed, require_same, unpacked
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.verdicts.early.interval import LateSampleError

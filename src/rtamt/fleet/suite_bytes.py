@@ -25,6 +25,7 @@ from rtamt.fleet.verdict_table import SELECTABLE
 from rtamt.language.parsing.sampling import Sampling
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.signals.binding import Binding
 from rtamt.signals.discrete import DISCRETE
 from rtamt.signals.domains import DOMAINS
@@ -43,7 +44,7 @@ _MAGIC = b"RTAMTSTE"
 _VERSION = 1
 _HEAD = struct.Struct("<8sII")
 _COUNT = struct.Struct("<I")
-_FRACTION = re.compile(r"\d{1,99}(/\d{1,99})?", re.ASCII)
+_FRACTION = lazy_pattern(r"\d{1,99}(/\d{1,99})?", re.ASCII)
 
 # ---- to bytes ------------------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 _LARGEST = 2**31 - 1
 
 #: The grammar of the naming convention "structured": names with dots, or anything in single quotes.
-_STRUCTURED = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
+_STRUCTURED = lazy_pattern(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Formula, Parameter, Span, Var, postorder
 from rtamt.language.value_types import Boolean, Enumeration
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -56,17 +57,17 @@ _RESERVED = frozenset(
     ]
 )
 
-_COMMENT = re.compile(r"[#%][^\n]*")
-_AT = re.compile(r"(?P<name>[A-Za-z_]\w*)\[t\]")
-_SHIFTED = re.compile(r"[A-Za-z_]\w*\[\s*t\s*[-+][^]]*\]")
-_STATEMENT = re.compile(
+_COMMENT = lazy_pattern(r"[#%][^\n]*")
+_AT = lazy_pattern(r"(?P<name>[A-Za-z_]\w*)\[t\]")
+_SHIFTED = lazy_pattern(r"[A-Za-z_]\w*\[\s*t\s*[-+][^]]*\]")
+_STATEMENT = lazy_pattern(
     r"^[ \t]*(?:(?P<kind>signal|param)\b|(?P<name>[A-Za-z_]\w*)[ \t]*:=|(?P<test>test)\b)", re.MULTILINE
 )
-_VALUE = re.compile(
+_VALUE = lazy_pattern(
     r"\s*(?P<name>[A-Za-z_]\w*)\s*=\s*(?P<value>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 )
 #: Operators without an interval have no underscore.
-_UNBOUNDED = re.compile(r"\b(alw|ev|once|hist|until)_(?!\[)")
+_UNBOUNDED = lazy_pattern(r"\b(alw|ev|once|hist|until)_(?!\[)")
 _NOTE = (
     "Breach interpolates linearly between samples in continuous time; in discrete time only the samples count, in "
     "dense time (--time dense) each value holds until the next sample"

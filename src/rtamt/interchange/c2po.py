@@ -21,6 +21,7 @@ from rtamt.language.rows import function, infix
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Boolean, Enumeration
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,15 +30,15 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 _SECTIONS = ("STRUCT", "ENUM", "INPUT", "DEFINE", "FTSPEC", "PTSPEC")
-_MARK = re.compile(r"[A-Za-z_]\w*|[{};]")
-_COMMENT = re.compile(r"--[^\n]*")
-_NAME = re.compile(r"[A-Za-z_]\w*")
+_MARK = lazy_pattern(r"[A-Za-z_]\w*|[{};]")
+_COMMENT = lazy_pattern(r"--[^\n]*")
+_NAME = lazy_pattern(r"[A-Za-z_]\w*")
 #: What a variable cannot be called: the words of the lexer.
 _RESERVED = frozenset(
     ("STRUCT ENUM INPUT DEFINE FTSPEC PTSPEC TAU foreach forsome forexactly foratleast foratmost pow sqrt abs rate "
      "prev xor G F H O U R S T M true false bool int float").split()
 )  # fmt: skip
-_EXPONENT = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
+_EXPONENT = lazy_pattern(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
 #: What makes a file larger than any that is written by hand.
 _LONGEST = 2_000_000
 

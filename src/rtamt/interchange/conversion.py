@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_tuples import NamedTuple
 
 
 class Rejection(NamedTuple):

@@ -5,7 +5,6 @@ Its formulas are parsed and printed by the parser and the printer of the languag
 
 from __future__ import annotations
 
-import re
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_dataclasses import replace as with_changes
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.records import Operator
 
-_BOUNDS = re.compile(r"\[([^][:]*):([^][:]*)\]")
+_BOUNDS = lazy_pattern(r"\[([^][:]*):([^][:]*)\]")
 
 
 class InexpressibleError(StlError):

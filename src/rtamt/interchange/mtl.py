@@ -5,7 +5,6 @@ Facts: the grammar of github.com/mvcisback/py-metric-temporal-logic.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, UsageError
@@ -17,6 +16,7 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -54,9 +54,9 @@ MTL = Dialect(
     characters={"@": "\ue001", "< >": "F  ", "[ ]": "G  "},
 )
 
-_ATOM = re.compile(r"\b[a-z_][A-Za-z_\d]*\b")
+_ATOM = lazy_pattern(r"\b[a-z_][A-Za-z_\d]*\b")
 _WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
-_LABEL = re.compile(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
+_LABEL = lazy_pattern(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
 _NOTE = "py-metric-temporal-logic holds each value until the next sample: use --time dense for verdicts between samples"
 _END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
 

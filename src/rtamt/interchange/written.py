@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from rtamt.interchange.dialect import InexpressibleError
@@ -11,12 +10,13 @@ from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from fractions import Fraction
 
-_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 
 
 @dataclass(frozen=True, slots=True)

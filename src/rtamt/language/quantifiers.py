@@ -21,7 +21,7 @@ from functools import lru_cache
 from math import inf
 from operator import add
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
@@ -30,6 +30,7 @@ from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

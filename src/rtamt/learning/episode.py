@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, choices, shown
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:

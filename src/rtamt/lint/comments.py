@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Span
 from rtamt.language.parsing.lexer import comments
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 #: What a text contains that may have such a comment: most have none.
 MARK = "lint:"
-_IGNORE = re.compile(r"lint:\s*ignore\[([^\]]*)\]")
-_LINE_END = re.compile(r"\r\n|\r|\n")
+_IGNORE = lazy_pattern(r"lint:\s*ignore\[([^\]]*)\]")
+_LINE_END = lazy_pattern(r"\r\n|\r|\n")
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from math import inf, isfinite
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL, Source
 from rtamt.language.parsing.grammar import is_predicate
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import EQ, NE
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lint.edits import is_infix_here, keep_left, keep_right, spine
 from rtamt.lint.found import Fix, Found
 from rtamt.lint.structure import JUNCTIONS

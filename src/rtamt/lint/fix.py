@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError
 from rtamt.language.parsing.lexer import comments
 from rtamt.language.substitution import substituted
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lint.report import findings
 
 if TYPE_CHECKING:

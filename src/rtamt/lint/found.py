@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import caret
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.parsing.lexer import tokenize, unquoted
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted, tokenize
 from rtamt.language.units.durations import UNITS
 from rtamt.language.words import functions, logical, symbols, temporal
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
@@ -12,6 +11,8 @@ from rtamt.language.parsing.declarations import TYPES
 from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.parsing.lexer import NAME, is_word, quoted
 from rtamt.language.words import DECLARED_BY, QUANTIFYING, kind_of, meaning_of
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lint.found import Edit
 from rtamt.patterns import patterns
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from rtamt.lsp.document import Analysis
 
-_WORD = re.compile(r'[\w.$/]*$|"(?:[^"\r\n]|"")*$')
+_WORD = lazy_pattern(r'[\w.$/]*$|"(?:[^"\r\n]|"")*$')
 
 
 class Item(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError
 from rtamt.language.formula import Span
@@ -11,6 +11,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import tokenize
 from rtamt.language.units.durations import format_duration
 from rtamt.language.words import DECLARED_BY, meaning_of
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lsp.imported import place_of
 from rtamt.patterns import patterns
 from rtamt.requirement_info import info_of

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.parsing.imports import PACKAGED, called
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lsp.outline import outline
 
 if TYPE_CHECKING:

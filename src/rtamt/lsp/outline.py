@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Span
@@ -11,6 +10,7 @@ from rtamt.language.parsing.declarations import ROLES, TYPES
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted, unquoted
 from rtamt.language.quantifiers import QUANTIFIERS
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.lsp.symbols import Symbol
 from rtamt.lsp.tokens import CLOSING, OPENING
 from rtamt.lsp.uses import UseReader
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.lsp.symbols import Outline
 
-_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 _READERS = frozenset("specification from import enum table group input output def require sample".split())
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_right
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Span
 
 #: The ends of lines in the protocol, which are those of `//` comments, too.
-LINE_END = re.compile(r"\r\n|\n|\r")
+LINE_END = lazy_pattern(r"\r\n|\n|\r")
 
 #: How many units a character takes, by the encoding that client and server agree on.
 _UNITS: dict[str, Callable[[str], int]] = {

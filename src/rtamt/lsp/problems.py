@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.lint.fix import applied, mended
 from rtamt.lint.found import Edit
 from rtamt.lint.rules import ALL
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.lint.found import LintWarning, Rule
     from rtamt.lsp.document import Analysis
 
-_SUGGESTED = re.compile(r"did you mean '([^']+)'\?")
+_SUGGESTED = lazy_pattern(r"did you mean '([^']+)'\?")
 
 RULES: dict[str, Rule] = {rule.code: rule for rule in ALL}
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, floor
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.language.units.durations import exact
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.mining.grid import Grid, digits, hardest
 from rtamt.mining.region import number, written
 from rtamt.signals.arrays import is_number

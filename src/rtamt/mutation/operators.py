@@ -6,7 +6,7 @@ Which operators replace one another follows from the operator table of the langu
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, postorder
 from rtamt.language.operators import STL, Bounds, Fixity, Pointwise, Sort, Tense, Window
@@ -18,6 +18,7 @@ from rtamt.language.units.durations import UNITS
 from rtamt.language.unwritten import EQ, NE, TRUTH
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

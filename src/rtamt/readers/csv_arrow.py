@@ -9,9 +9,10 @@ from __future__ import annotations
 import os
 from importlib import import_module
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.readers.ahead import ahead
 from rtamt.readers.arrow import values_of
 from rtamt.readers.csv_cells import LARGEST

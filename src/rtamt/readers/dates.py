@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy_numpy import np
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.signals.datetimes import has_length, nanoseconds_of
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 EXAMPLE = "2026-05-01T12:00:00.5"
 
 #: ISO 8601: a date, perhaps a time, perhaps a time zone.
-_DATE = re.compile(
+_DATE = lazy_pattern(
     r"(?P<date>[0-9]{4}-[0-9]{2}-[0-9]{2})"
     r"(?:[T ](?P<time>[0-9]{2}:[0-9]{2}(?::[0-9]{2}(?:\.[0-9]{1,9})?)?)(?P<zone>Z|[+-][0-9]{2}:?[0-9]{2})?)?"
 )

@@ -9,15 +9,16 @@ from os.path import abspath, isfile
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import CHUNK, Source, guarded, library, missing_file, opening, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_URL = re.compile(r"[a-z][a-z0-9+]*://", re.IGNORECASE)
+_URL = lazy_pattern(r"[a-z][a-z0-9+]*://", re.IGNORECASE)
 #: The driver that our extra brings; the one that SQLAlchemy tries first is another.
-_POSTGRESQL = re.compile(r"postgres(?:ql)?://")
+_POSTGRESQL = lazy_pattern(r"postgres(?:ql)?://")
 
 
 def is_url(text: str) -> bool:

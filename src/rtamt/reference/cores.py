@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.ground import ground

@@ -8,7 +8,7 @@ Elsewhere only the declared range is known, until no more samples come: then the
 from __future__ import annotations
 
 from math import inf, isnan
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.definitions.enclosures import Enclosure
@@ -17,6 +17,7 @@ from rtamt.language.records import Sum
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense_robustness import last_read

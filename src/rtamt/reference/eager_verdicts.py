@@ -8,8 +8,9 @@ continuation of the trace. The verdict is reported once the instant itself is re
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.reference import dense_bounds, discrete_bounds
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.rewrite.semantics import boolean

@@ -9,13 +9,14 @@ window has no causation: :func:`causeless`.
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import is_share
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.presence import tracked
 

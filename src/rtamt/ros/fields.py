@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices, with_article
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.signals.arrays import is_number
 from rtamt.signals.recoding import Recoding
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from rtamt.language.value_types import ValueType
 
 #: Fields of messages begin with a letter; names with a leading underscore are Python's own.
-_STEP = re.compile(r"([A-Za-z]\w*)((?:\[\d+\])*)")
-_INDEX = re.compile(r"\[(\d+)\]")
+_STEP = lazy_pattern(r"([A-Za-z]\w*)((?:\[\d+\])*)")
+_INDEX = lazy_pattern(r"\[(\d+)\]")
 
 #: The path to a field: attribute names and array indices.
 Path = tuple["str | int", ...]

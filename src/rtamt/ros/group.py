@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import variables
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:

@@ -11,17 +11,18 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.files import replacing
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.scale.recordings import is_remote
 
 _MAGIC = b"RTAMT-CHECKPOINT 1\n"
 _DIGEST = hashlib.sha256().digest_size
-_NAME = re.compile(r"[A-Za-z0-9._-]{1,249}")
+_NAME = lazy_pattern(r"[A-Za-z0-9._-]{1,249}")
 
 
 class Checkpoint(NamedTuple):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.scale.manifest import Manifest
 
 if TYPE_CHECKING:

@@ -6,11 +6,12 @@ import glob
 import os
 import tempfile
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
 from rtamt.files import nearest_file
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.readers.formats import SUFFIXES, is_bag
 
 if TYPE_CHECKING:

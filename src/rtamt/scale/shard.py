@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import json
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, WaitedError
 from rtamt.fleet.fleet import Fleet
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.counting import is_implausible
 
 if TYPE_CHECKING:

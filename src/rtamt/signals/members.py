@@ -8,13 +8,14 @@ a channel that is 1 where it is present and 0 where it is not stands beside them
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.quantifiers import Field
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -29,14 +30,14 @@ SPELLINGS: Mapping[str, str] = MappingProxyType(
 _UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling in spellings.split()}
 #: Units at the end of a name: t_min may be a minimum, and t_h anything.
 _SUFFIXES = [spelling for spelling, unit in _UNIT_OF.items() if unit not in ("h", "min")]
-_STAMPS = re.compile(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_SUFFIXES)}))?")
-_BRACKETS = re.compile(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
+_STAMPS = lazy_pattern(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_SUFFIXES)}))?")
+_BRACKETS = lazy_pattern(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
 #: Words in the names of columns that may hold timestamps, but need not.
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
 #: Units that are also names of time columns; 's' and 'ms' are too ambiguous.
 _UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
-_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+_WORDS = lazy_pattern(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
 def split_unit(column: str) -> tuple[str, str]:

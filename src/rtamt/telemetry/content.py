@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from rtamt.errors import UsageError
 from rtamt.language.value_types import value_names
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
+from rtamt.lazy_patterns import lazy_pattern
 from rtamt.plot.band import band
 from rtamt.results import episodes_in_steps, first_violation
 from rtamt.rewrite.presence import channel_of
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 VERDICTS = SATISFIED, VIOLATED, UNKNOWN = "satisfied", "violated", "unknown"
 #: Characters of a name that a key keeps; metrics of MLflow may have 250 in all.
 _LONGEST = 150
-_OTHER = re.compile(r"[^A-Za-z0-9_-]+")
+_OTHER = lazy_pattern(r"[^A-Za-z0-9_-]+")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

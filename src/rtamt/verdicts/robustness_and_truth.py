@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.domain_interface import DomainTrace
 from rtamt.signals.signal import Signal

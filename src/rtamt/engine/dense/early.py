@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.early import EarlyDefinition, EarlyProgram, EarlyQuery, Group
 from rtamt.engine.native import core
 from rtamt.language.formula import own_variables
 from rtamt.language.operators import STL
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.coding import codes_of
 from rtamt.signals.outcomes import Causation
 

@@ -7,11 +7,12 @@ state; one that is gone runs on, as absent, until what it had can no longer matt
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.monitor import DenseMonitor, push_ticks
 from rtamt.engine.dense.steps import Steps, constant
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ The results are those of one :class:`Monitor` for each key, bit for bit.
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.discrete.reorder_buffer import ReorderBuffer
@@ -15,6 +15,7 @@ from rtamt.engine.native import core
 from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.arrays import TIME, columns_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible

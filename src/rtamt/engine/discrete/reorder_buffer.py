@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
 from rtamt.errors import TraceError, UsageError
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,12 +6,11 @@ one of them, with its own formulas in their places, is that sentence.
 
 from __future__ import annotations
 
-import re
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from math import isinf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.interchange.dialect import InexpressibleError
 from rtamt.interchange.fret.expressions import INFIX, KEYWORDS
@@ -23,6 +22,8 @@ from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _RESPONSE, _MODE, _CONDITION, _STOP = (Var(f"?{name}") for name in ("response", "mode", "condition", "stop"))
 #: The duration of placeholders in samples, which no bound of a formula of one has by chance.
 _SAMPLES = 1_000_003
-_NAME = re.compile(r"[A-Za-z][\w.%]*")
+_NAME = lazy_pattern(r"[A-Za-z][\w.%]*")
 _SYMBOLS = {name: (strength, symbol) for symbol, (strength, name) in reversed(INFIX.items())}
 _CALLS = {operator: function for function, operator in reversed(FUNCTIONS.items())}
 _WORDS = {"in": "While", "notin": "Except while", "before": "Before", "after": "After"}

@@ -6,19 +6,19 @@ from loose to tight: ``->`` and ``<->``, ``|`` and ``xor``, ``&``, ``!``, compar
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import SpecificationError
 from rtamt.language.formula import Span
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
 Kind = Literal["name", "number", "truth", "call", "operation"]
 
-_TOKEN = re.compile(
+_TOKEN = lazy_pattern(
     r"\s*(?:(?P<number>\d+(?:\.\d+)?(?:[Ee][+-]?\d+)?)|(?P<word>[A-Za-z][\w.%]*)"
     r"|(?P<symbol><->|<=>|->|=>|<=|>=|!=|[-=<>!~&|(),+*/^])|(?P<unknown>\S))"
 )

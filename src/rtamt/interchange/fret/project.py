@@ -17,6 +17,7 @@ from rtamt.interchange.written import Names, ReadRequirement, specification_text
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.units.durations import decimal
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -29,7 +30,7 @@ _BOOLEAN = ("boolean", "bool")
 _NUMBERS = ("integer", "unsigned integer", "int", "single", "double", "real")
 #: FRET's kinds of variables and their roles here; all others have none.
 _ROLES = {"input": "input", "output": "output"}
-_LABEL = re.compile(r"\s*(?P<label>[\w.-]+)\s*:\s*(?P<sentence>.*)", re.DOTALL)
+_LABEL = lazy_pattern(r"\s*(?P<label>[\w.-]+)\s*:\s*(?P<sentence>.*)", re.DOTALL)
 
 UNITS_NOTE = (
     "FRET counts one unit of time as one sample and converts no units; here durations are seconds, and 'sample' gives "

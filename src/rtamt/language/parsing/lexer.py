@@ -19,11 +19,13 @@ import re
 from collections.abc import Collection, Sequence
 from functools import lru_cache
 from itertools import accumulate
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, overload
 
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import NUMBER
+from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from rtamt.language.operators import Language
@@ -39,9 +41,9 @@ _COMMENT = r"//[^\n\r]*|/\*[\s\S]*?\*/"
 _QUOTED = r'"(?:[^"]|"")*"'
 
 #: A name that needs no quotes: a word, or words joined by dots.
-NAME = re.compile(_NAME)
+NAME = lazy_pattern(_NAME)
 #: A topic such as ``/ns/req``, which is also a name where an operand can begin.
-TOPIC = re.compile(rf"(?:/{_NAME})+")
+TOPIC = lazy_pattern(rf"(?:/{_NAME})+")
 #: What a comment or quoted name begins with.
 _OPENINGS = ("/*", '"')
 _DIGITS, _OTHER_LETTERS = frozenset("0123456789"), frozenset("_$")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from rtamt.errors import ParseError
@@ -14,6 +13,7 @@ from rtamt.language.parsing.parser import FormulaParser
 from rtamt.language.parsing.templates import begins_template
 from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.value_types import UNKNOWN
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rtamt.language.parsing.scope import Scope
 
 #: A requirement name that needs no quotes.
-_ID = re.compile(r"\w(?:[\w.-]*\w)?")
+_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 
 
 class RequirementParser(FormulaParser):

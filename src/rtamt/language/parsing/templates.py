@@ -16,13 +16,14 @@ from __future__ import annotations
 
 from copy import copy
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -6,7 +6,6 @@ different sentences. An operand at the end of a phrase extends as far to the rig
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, children
@@ -17,6 +16,7 @@ from rtamt.language.printing.printer import number, rational_text
 from rtamt.language.printing.writing import LONGEST, text_of
 from rtamt.language.units.durations import UNITS
 from rtamt.language.unwritten import TRUTH, WHERE_PRESENT, is_truth
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rtamt.language.operators import Operator
     from rtamt.language.printing.writing import Piece
 
-_PLACE = re.compile(r"\{(\w)\}")
+_PLACE = lazy_pattern(r"\{(\w)\}")
 
 
 def to_english(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from math import isinf
 from typing import TYPE_CHECKING
@@ -25,6 +24,7 @@ from rtamt.language.printing.parentheses import (
 from rtamt.language.printing.writing import EXCERPT, LONGEST, text_of
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rtamt.language.printing.writing import Piece
 
 #: RTAMT identifiers that are not names here: RTAMT treats a slash as a letter.
-_RTAMT_PATH = re.compile(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
+_RTAMT_PATH = lazy_pattern(r"[^\W\d][\w$.]*(?:/[\w$.]+)+")
 
 
 def to_text(

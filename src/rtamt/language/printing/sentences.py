@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.printing.english import to_english
 from rtamt.language.printing.writing import PAGE
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

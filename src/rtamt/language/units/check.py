@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Var, fold, postorder
 from rtamt.language.printing.printer import excerpt
@@ -11,6 +11,7 @@ from rtamt.language.quantifiers import FieldOf
 from rtamt.language.records import Tense
 from rtamt.language.units.dimensions import UNCHECKED, MisfitError, Number, Quantity, declared
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.lazy_numpy import np
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -50,13 +51,13 @@ UNITS: Mapping[str, Fraction] = MappingProxyType(
 #: Durations with more digits than this are shortened in messages.
 _LONGEST = 40
 
-_DURATION = re.compile(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
+_DURATION = lazy_pattern(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*)?([A-Za-z]*)\s*")
 
 
 #: A number in formulas and durations: decimal, ASCII digits, with single underscores between them, as in Python.
 _DIGITS = r"[0-9]+(?:_[0-9]+)*"
 NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
-_DECIMAL = re.compile(f"[+-]?{NUMBER}")
+_DECIMAL = lazy_pattern(f"[+-]?{NUMBER}")
 
 
 @lru_cache(maxsize=1024)

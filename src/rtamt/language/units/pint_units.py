@@ -5,7 +5,6 @@ Angles are base units here, as in pint: radians have no dimension, but one rpm i
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from functools import lru_cache
 from math import inf
@@ -14,14 +13,15 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.errors import StlError
 from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: Products of powers of units: nothing that a library of units would have to compute for long.
-_UNIT = re.compile(r"(?:[^\W\d]|[°%µμΩ_])+")
+_UNIT = lazy_pattern(r"(?:[^\W\d]|[°%µμΩ_])+")
 _POWER = r"(?:(?:\^|\*\*)?-?\d|[⁻]?[⁰¹²³⁴-⁹])?"
-_TEXT = re.compile(
+_TEXT = lazy_pattern(
     rf"\(*(?:1|{_UNIT.pattern}){_POWER}\)*(?:\s*[*/·⋅ ]\s*\(*(?:1|{_UNIT.pattern}){_POWER}\)*)*"
 )
 #: The longest unit that is looked up.
