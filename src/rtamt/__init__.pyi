@@ -86,6 +86,7 @@ from rtamt.errors import StlError as StlError
 from rtamt.errors import STLParseException as STLParseException
 from rtamt.errors import TraceError as TraceError
 from rtamt.errors import UsageError as UsageError
+from rtamt.errors import WaitedError as WaitedError
 from rtamt.fleet.fleet import Fleet as Fleet
 from rtamt.fleet.reports import FleetBounds as FleetBounds
 from rtamt.fleet.reports import FleetCausation as FleetCausation

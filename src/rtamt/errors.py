@@ -9,6 +9,7 @@
     │   └── BoundError           an invalid interval
     ├── TraceError               the data is wrong: .variable, .index, .time
     ├── EvaluationError          the data makes a sub-formula undefined (0/0, sqrt(-1), inf - inf)
+    │   └── WaitedError          the same for a sample that waited in a fleet: .key, .time
     ├── UsageError               an invalid call, option or setting
     └── RTAMTException           raised by the paper's API; str() begins "RTAMT Exception: "
         └── STLParseException    the same, for text
@@ -108,11 +109,20 @@ class EvaluationError(StlError):
 
 
 class WaitedError(EvaluationError):
-    """A sample that waited in a fleet has no value; ``key`` and ``time``: which one."""
+    """A sample that waited in a fleet makes a sub-formula undefined; ``key`` and ``time``: which one.
 
-    def __init__(self, message: str, key: Any, time: float) -> None:
-        super().__init__(message)
-        self.key, self.time = key, time
+    It rejects each batch that would release it, until :meth:`rtamt.Fleet.discard` forgets it. ``reason``: the message
+    without this advice.
+    """
+
+    def __init__(self, reason: str, key: Any, time: float) -> None:
+        super().__init__(
+            f"{reason}; forget the sample with discard({key!r}, {time!r}), then give the batch again"
+        )
+        self.reason, self.key, self.time = reason, key, time
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.reason, self.key, self.time)
 
 
 class UsageError(StlError):

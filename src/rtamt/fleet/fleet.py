@@ -297,8 +297,23 @@ class Fleet(Generic[Update]):
             )
 
     @exclusive
-    def _discard(self, key: Any, time: float) -> bool:
-        """Forget a sample that waits; return whether there was one. The watermark of the key stays."""
+    def discard(self, key: Any, time: float) -> bool:
+        """Forget the sample of a key and a time in seconds that waits for earlier ones; return whether there was one.
+
+        For samples that turn out to have no value when they are released, see :class:`WaitedError`. The watermark of
+        the key stays, so that another sample of that time may come until it is late. What the sample leaves is a gap.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("sqrt(x) >= 3"), capacity=10, lateness="1s", gaps="restart")
+        >>> _ = fleet.update_many([7, 7], [0, 1], {"x": [25, -4]})
+        >>> try:
+        ...     fleet.update_many([7], [2], {"x": [16]})
+        ... except rtamt.WaitedError as error:
+        ...     fleet.discard(error.key, error.time)
+        True
+        >>> fleet.update_many([7, 7], [2, 3], {"x": [16, 9]}).values
+        array([1., 0.])
+        """
         return isinstance(self._samples, Reordered) and self._samples.discard(keys_of([key]), time)
 
     @exclusive

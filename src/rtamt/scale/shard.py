@@ -155,8 +155,8 @@ class Shard:
             if end - first == 1:
                 time = samples[first].time
                 plausible = isfinite(time) and not is_implausible(time)
-                if isinstance(error, WaitedError) and self._fleet._discard(error.key, error.time):
-                    taken.discarded.append(Discarded(error.key, error.time, str(error)))
+                if isinstance(error, WaitedError) and self._fleet.discard(error.key, error.time):
+                    taken.discarded.append(Discarded(error.key, error.time, error.reason))
                     waiting.append((first, end))  # what has released it may be right
                     continue
                 late = isinstance(error, TraceError) and error.variable == "time" and plausible

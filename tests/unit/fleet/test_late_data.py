@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import datetime as dt
+import pickle
 import struct
 import zlib
 from typing import Any
@@ -235,3 +236,54 @@ def test_damaged_states_are_rejected_or_harmless() -> None:
             forged.watermark(9)
         assert len(forged.snapshot()) > 100
     assert 100 < rejected < 400
+
+
+def waited(gaps: str = "restart") -> tuple[rtamt.Fleet, Any]:
+    """Return a fleet in which a sample waits that has no value, and the batch that releases it."""
+    fleet = rtamt.Fleet(rtamt.parse("once[0:1](sqrt(x) >= 3)"), 3, lateness=1, gaps=gaps)
+    fleet.update_many(["a", "b", "a"], [0, 0, 1], {"x": [16, 1, -4]})
+    return fleet, (["a", "b"], [2, 2], {"x": [25, 4]})
+
+
+def test_a_sample_that_waits_and_has_no_value_rejects_batches_until_it_is_discarded() -> None:
+    fleet, batch = waited()
+    for _ in range(2):
+        with pytest.raises(rtamt.WaitedError) as caught:
+            fleet.update_many(*batch)
+        assert (caught.value.key, caught.value.time, fleet.waiting) == ("a", 1.0, 2)
+    with pytest.raises(rtamt.WaitedError):
+        fleet.watermark(1)
+    assert str(caught.value) == (
+        "key 'a', a sample that waited: 'sqrt(x)' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, "
+        "or a function outside its domain; change the formula or the data so that this cannot happen; forget the sample "
+        "with discard('a', 1.0), then give the batch again"
+    )
+    fleet = rtamt.Fleet.restore(rtamt.parse("once[0:1](sqrt(x) >= 3)"), fleet.snapshot())
+    assert fleet.discard("a", 1.0)
+    assert not fleet.discard("a", 1.0)
+    fleet.update_many(*batch)
+    update = fleet.update_many(["a", "b"], [3, 3], {"x": [1, 1]})
+    assert update.released.keys.tolist() == ["a", "b"]
+    assert update.released.values.tolist() == [2.0, -1.0]
+
+
+def test_a_discarded_sample_may_come_again_with_another_value() -> None:
+    fleet, batch = waited("reject")
+    assert fleet.discard("a", 1.0)
+    fleet.update_many(["a"], [1.0], {"x": [36.0]})
+    assert fleet.update_many(*batch).released.values.tolist() == [3.0, -2.0]
+
+
+@pytest.mark.parametrize("settings", [{}, {"verdict": "eager"}, {"time": "dense"}, {"lateness": 1}])
+def test_where_no_sample_waits_none_is_discarded(settings: dict[str, Any]) -> None:
+    fleet: Any = rtamt.Fleet(rtamt.parse("x >= 3"), 3, **settings)
+    fleet.update_many(["a"], [0], {"x": [1]})
+    assert [fleet.discard(key, time) for key, time in (("a", 9.0), ("z", 0.0))] == [False, False]
+
+
+def test_errors_of_samples_that_waited_can_be_pickled() -> None:
+    fleet, batch = waited()
+    with pytest.raises(rtamt.WaitedError) as caught:
+        fleet.update_many(*batch)
+    again = pickle.loads(pickle.dumps(caught.value))  # noqa: S301 - its own
+    assert (str(again), again.key, again.time) == (str(caught.value), "a", 1.0)
