@@ -255,8 +255,8 @@ def test_a_sample_that_waits_and_has_no_value_rejects_batches_until_it_is_discar
         fleet.watermark(1)
     assert str(caught.value) == (
         "key 'a', a sample that waited: 'sqrt(x)' has no value at sample 1, time 1 s: it is 0/0, inf - inf, 0 * inf, "
-        "or a function outside its domain; change the formula or the data so that this cannot happen; forget the sample "
-        "with discard('a', 1.0), then give the batch again"
+        "or a function outside its domain; change the formula or the data so that this cannot happen; forget the "
+        "sample with discard('a', 1.0), then give the batch again"
     )
     fleet = rtamt.Fleet.restore(rtamt.parse("once[0:1](sqrt(x) >= 3)"), fleet.snapshot())
     assert fleet.discard("a", 1.0)
