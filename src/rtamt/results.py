@@ -61,22 +61,30 @@ class Result:
         # The __init__ of a frozen dataclass takes as long as the evaluation of a short trace.
         fields = self.__dict__
         fields["specification"] = specification
-        fields["trace"] = trace
-        fields["signal"] = signal
+        fields["_trace"] = trace
+        fields["_signal"] = signal
         fields["semantics"] = semantics
         fields["known"] = known
 
-    @cached_property
+    # No cached_property: its lock takes longer than the rest.
+    @property
     def trace(self) -> DomainTrace:
         """The recording."""
-        reading, found = self.__dict__["_found"]
-        return self.specification._with_units(reading.trace(found))
+        fields = self.__dict__
+        if "_trace" not in fields:
+            reading, found = fields["_found"]
+            fields["_trace"] = self.specification._with_units(reading.trace(found))
+        trace: DomainTrace = fields["_trace"]
+        return trace
 
-    @cached_property
+    @property
     def signal(self) -> Signal:
         """ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``."""
-        reading, found = self.__dict__["_found"]
-        signal: Signal = reading.signal(found)
+        fields = self.__dict__
+        if "_signal" not in fields:
+            reading, found = fields["_found"]
+            fields["_signal"] = reading.signal(found)
+        signal: Signal = fields["_signal"]
         return signal
 
     def __repr__(self) -> str:
@@ -185,7 +193,8 @@ class Result:
         """
         if self.trace.bounds:
             return self._decided
-        return self._first_violation is None
+        holds = self.specification._holds(self.trace) if self.known is None else None
+        return self._first_violation is None if holds is None else holds
 
     @property
     def _decided(self) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.batch_results import evaluate_rows
 from rtamt.engine import Evaluators, Query, engine_of
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
@@ -276,6 +276,20 @@ class Specification(OnlineSpecification):
     def _signals_of(self, formulas: tuple[Formula, ...], trace: DomainTrace) -> list[Signal]:
         """Return the robustness signals of formulas over a normalised recording, all from one program."""
         return self._evaluators(formulas, trace)
+
+    def _holds(self, trace: DomainTrace) -> bool | None:
+        """Return whether the formula holds at the first instant; None where that takes more than one evaluation."""
+        if trace.domain.held_at_end:
+            return None
+        try:
+            (truth,) = self._signals_of(self._truth, trace)
+        except EvaluationError:  # which need not concern the first instant
+            return None
+        return bool(truth.values[0] > 0)
+
+    @cached_property
+    def _truth(self) -> tuple[Formula]:
+        return (self._outputs().truth,)
 
     def _check(self, query: Query, recording: DomainTrace) -> None:
         if query.domain.step is None:  # else checked without a recording; many recordings have the same step

@@ -75,6 +75,14 @@ def test_a_specification_evaluates_one_recording_after_another_as_a_new_one(
         assert evaluated(spec, one) == evaluated(rtamt.parse(text, period=period), MappingProxyType(one))
 
 
+@settings(max_examples=300)
+@given(formulas(unbounded_future=True).map(str), recordings())
+def test_a_requirement_is_satisfied_if_it_is_never_violated(text: str, data: dict[str, Any]) -> None:
+    result = outcome(lambda: rtamt.parse(text).evaluate(data))
+    assume(not isinstance(result, str) and not result.trace.bounds)
+    assert outcome(lambda: result.satisfied) == outcome(lambda: rtamt.first_violation(result) is None)
+
+
 def evaluate_twice(text: str, data: Any) -> rtamt.Result:
     """Return the result of the second evaluation, which is direct."""
     spec = rtamt.parse(text)

@@ -44,20 +44,50 @@ def read_discrete(data: Any, names: Sequence[str], domain: Discrete) -> Discrete
     return DiscreteTrace(times, columns, period or _decimal(inferred), period is None)
 
 
+class _Seen(NamedTuple):
+    """The columns of a frame that was read, and the variables in them, each with its place in an index of pandas.
+
+    Frames that are parts of one frame share its index, and frames of one source have equal columns.
+    """
+
+    columns: Any
+    names: Sequence[str]
+    wanted: dict[str, Any]
+
+
+_last_seen = _Seen(None, (), {})
+
+
 def frame_columns(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
     """Return the columns of a frame of pandas or polars as arrays; None for anything else."""
-    kind = type(data)
-    library = kind.__module__.partition(".")[0]
-    if kind.__name__ != "DataFrame" or library not in ("pandas", "polars"):
+    library = _library_of(data.__class__)
+    if library is None:
         return None
-    columns = data.columns  # a list, or an index, of which a list takes longer than all the rest
-    wanted = [name for name in (TIME, *names) if name in columns]
-    if len(wanted) != len(columns) or wanted[0] != TIME:
-        check_frame(data, TIME, names)
-    if library == "pandas" and len(data.index) * len(columns) <= _SMALL and columns.is_unique:
-        values = data.to_numpy()  # a frame takes longer to return a column than an evaluation of it takes
-        return {name: values[:, columns.get_loc(name)] for name in wanted}
-    return {name: data[name].to_numpy() for name in wanted}
+    global _last_seen  # noqa: PLW0603 - replaced as a whole
+    columns, seen = data.columns, _last_seen
+    listed = columns.__class__ is list
+    same = seen.columns is columns or (listed and seen.columns.__class__ is list and seen.columns == columns)
+    if not same or seen.names != names:
+        wanted = {
+            name: None if listed else columns.get_loc(name) for name in (TIME, *names) if name in columns
+        }
+        if len(wanted) != len(columns) or TIME not in wanted:
+            check_frame(data, TIME, names)
+        seen = _Seen(columns, names, wanted)
+        if TIME in wanted:  # otherwise the check depends on more than names
+            _last_seen = seen
+    if library == "pandas" and len(columns) * len(data.index) <= _SMALL and columns.is_unique:
+        rows = data.values.T  # a frame takes longer to return a column than an evaluation of it takes
+        return {name: rows[place] for name, place in seen.wanted.items()}
+    column = data.__getitem__ if library == "pandas" else data.get_column
+    return {name: column(name).to_numpy() for name in seen.wanted}
+
+
+@lru_cache(16)
+def _library_of(kind: type) -> str | None:
+    """Return the library of a class of frames; None for any other class."""
+    library = kind.__module__.partition(".")[0]
+    return library if kind.__name__ == "DataFrame" and library in ("pandas", "polars") else None
 
 
 class Reading(NamedTuple):
@@ -73,24 +103,28 @@ class Reading(NamedTuple):
 
     def trace(self, found: Any) -> DiscreteTrace:
         """Return the recording."""
-        rows, timed = _rows_of(found), found[2]
-        columns = dict(zip(self.names, rows, strict=False))
-        times = rows[-2] if timed else RegularTimes(found[1], self.period)
+        _, count, timed = found
+        columns = {name: _row(found, place) for place, name in enumerate(self.names)}
+        times = _row(found, -2) if timed else RegularTimes(count, self.period)
         return DiscreteTrace(times, columns, self.period, timed and not self.given)
 
     def signal(self, found: Any) -> Signal:
         """Return the values; as everywhere, the timestamps cannot be written."""
-        rows = _rows_of(found)
-        if not found[2]:
-            return Signal(RegularTimes(found[1], self.period), rows[-1])
-        times = rows[-2].view()
+        _, count, timed = found
+        if not timed:
+            return Signal(RegularTimes(count, self.period), _row(found, -1))
+        times = _row(found, -2).view()
         times.flags.writeable = False
-        return Signal(times, rows[-1])
+        return Signal(times, _row(found, -1))
 
 
-def _rows_of(found: Any) -> Sequence[FloatArray]:
-    memory: Any = found[0]
-    return memory if memory.__class__ is list else list(np.frombuffer(memory).reshape(-1, found[1]))
+def _row(found: Any, place: int) -> FloatArray:
+    memory, count, _ = found
+    if memory.__class__ is list:
+        array: FloatArray = memory[place]
+        return array
+    first = 8 * count * place
+    return np.frombuffer(memory, np.float64, count, first if place >= 0 else len(memory) + first)
 
 
 @lru_cache(64)
