@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.unit.report.browser import chromium
+from tests.unit.html_report.browser import chromium
 from tools.images import IMAGES, shrink
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ SETTINGS = {
     "editor.minimap.enabled": False,
     "editor.hover.delay": 100,
     "editor.occurrencesHighlight": "off",
+    "editor.cursorBlinking": "solid",
     "git.enabled": False,
     "files.autoSave": "off",
     "workbench.reduceMotion": "on",

@@ -16,6 +16,7 @@ problems    errors and findings, and what mends them
 hover       what is known about the word under the pointer
 completion  what can stand at a position
 rename      another name, without a change of meaning
+meaning     what a text means, to compare two texts
 colors      semantic tokens
 lenses      the verdicts above requirements
 evaluation  the process that reads recordings

@@ -46,10 +46,15 @@ def place_of(analysis: Analysis, name: str) -> Elsewhere | None:
     if document is None:
         return None
     for file, text in dict(document.imported.values()).items():
-        found = _outline(text).named(name)
+        found = _outline(text).named(name) or _member(_outline(text), name)
         if found is not None and found.kind != "requirement":
             return Elsewhere(path_of(file), text, called(file), found)
     return None
+
+
+def _member(outline: Outline, name: str) -> Symbol | None:
+    """Return the member of an enumeration with a name."""
+    return next((each for each in outline.symbols if each.kind == "value" and each.name == name), None)
 
 
 def path_of(file: str) -> str:

@@ -8,9 +8,9 @@ from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.declarations import ROLES, TYPES
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted, unquoted
+from rtamt.language.parsing.requirements import ID
 from rtamt.language.quantifiers import QUANTIFIERS
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_patterns import lazy_pattern
 from rtamt.lsp.symbols import Symbol
 from rtamt.lsp.tokens import CLOSING, OPENING
 from rtamt.lsp.uses import UseReader
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.lsp.symbols import Outline
 
-_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 _READERS = frozenset("specification from import enum table group input output def require sample".split())
 
 
@@ -39,7 +38,7 @@ class _Reader(UseReader):
     """A position in the tokens of a text."""
 
     def __init__(self, text: str, document: Document | None) -> None:
-        super().__init__(text)
+        super().__init__(text, document)
         self.types = set(TYPES)
         self.classes: set[str] = set()  # imported ones
         templates = {} if document is None else document.templates
@@ -104,7 +103,7 @@ class _Reader(UseReader):
         kind = kinds.get(self.texts[at - 1] if at > begin else "", "variable")
         for word in range(begin, at):
             self.mark(word, "keyword")
-        self.mark(at, "type")
+        self.mark_type(at)
         first, last = at + 1, self.path(at + 1)
         end, recorded = self._rest(last + 1, kind)
         symbol = self.declare(first, last, kind, begin, end - 1)
@@ -177,9 +176,7 @@ class _Reader(UseReader):
             if self.texts[inside - 1] in ("{", ",") and (
                 is_name(self.texts[inside]) or is_quoted(self.texts[inside])
             ):
-                symbol = self.declare(inside, inside, "value", at, end, of=name)
-                self.values.setdefault(symbol.name, symbol)
-                self.values[f"{name}.{symbol.name}"] = symbol
+                self.declare(inside, inside, "value", at, end, of=name)
         return end + 1
 
     def _table(self, at: int) -> int:
@@ -201,11 +198,13 @@ class _Reader(UseReader):
         inside = at + 5
         while inside < end:
             if self.texts[inside] in self.types and self._is_declared(inside + 1):
-                self.mark(inside, "type")
-                self.declare(inside + 1, inside + 1, "field", inside, inside + 1, of=name)
+                self.mark_type(inside)
+                symbol = self.declare(inside + 1, inside + 1, "field", inside, inside + 1, of=name)
                 inside = self._unit(inside + 2)
                 if self.text_at(inside) == "=" and is_quoted(self.text_at(inside + 1)):
                     self.quote(inside + 1, "column")
+                else:
+                    self.found.ends[symbol] = self.ends[inside - 1]
             else:
                 inside += 1
         return end + 1
@@ -242,7 +241,7 @@ class _Reader(UseReader):
         begin, behind = self.starts[at + 1], at + 2
         end = self.ends[at + 1]
         if not is_quoted(after):
-            match = _ID.match(self.text, begin)
+            match = ID.match(self.text, begin)
             end = match.end() if match else end
             while behind < self.count and self.starts[behind] < end:
                 behind += 1

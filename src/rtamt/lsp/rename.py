@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 import os
+from bisect import bisect_right
 from itertools import islice, pairwise
 from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError, UsageError
-from rtamt.language.formula import Apply, Const, Span, Var, postorder
+from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.declarations import TYPES
-from rtamt.language.parsing.lexer import NAME, quoted, tokenize
+from rtamt.language.parsing.lexer import NAME, is_quoted, quoted, tokenize
+from rtamt.language.parsing.requirements import ID
 from rtamt.language.words import DECLARING, QUANTIFYING
 from rtamt.lint.found import Edit
 from rtamt.lsp.imported import place_of
-from rtamt.lsp.symbols import is_local
+from rtamt.lsp.meaning import Renamed, meaning
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
-    from rtamt.language.document import Declaration, Document
-    from rtamt.language.formula import Formula
+    from rtamt.language.parsing.lexer import Tokens
     from rtamt.lsp.document import Analysis
     from rtamt.lsp.symbols import Symbol
 
-#: What can be renamed.
-_RENAMED = ("variable", "constant", "parameter", "formula", "template", "argument")
+#: Names that are one word, and what they name.
+_ONE_WORD = {
+    "template": "a template",
+    "argument": "a parameter of a template",
+    "member": "a member of a group",
+    "group": "a group",
+    "enumeration": "an enumeration",
+}
 _RESERVED = frozenset((*DECLARING, *QUANTIFYING, *TYPES, "then", "else", "inf", "in", "nan"))
 #: The files of a folder that are searched for imports of the one that is changed.
 _MOST_FILES, _MOST_BYTES = 500, 2**20
@@ -50,14 +57,15 @@ def renamed_at(analysis: Analysis, offset: int, path: str | None = None) -> tupl
             f"float {name}, to give it another name"
         )
     span, symbol = found
-    if symbol.kind not in _RENAMED:
-        raise UsageError(
-            f"'{symbol.name}' is a {symbol.kind}; only variables, constants, parameters, named formulas and "
-            f"templates can be renamed"
-        )
-    if analysis.errors:
+    if symbol.kind == "class":
+        raise UsageError(f"'{symbol.name}' is a class of messages, whose name is that of its module")
+    document = analysis.document
+    if document is None:
         raise UsageError("the text has an error; correct it before a name is changed")
-    importer = None if path is None or is_local(symbol) else _importer_of(path)
+    classes = {each.name for each in document.imports}
+    if any(each.name == symbol.name and each.type in classes for each in document.declarations):
+        raise UsageError(f"'{symbol.name}' is a message, whose fields are recorded under this name")
+    importer = None if path is None or symbol.kind in ("member", "requirement") else _importer_of(path)
     if importer is not None:
         raise UsageError(
             f"'{importer}' imports this file, where '{symbol.name}' may be used; rename it in both by hand"
@@ -68,8 +76,8 @@ def renamed_at(analysis: Analysis, offset: int, path: str | None = None) -> tupl
 def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -> list[Edit]:
     """Return the edits that give the name at an offset another spelling.
 
-    ``path``: that of the file, to find those that import it. A variable goes on reading its column: where it has no
-    recorded name, it gets the old one. Raises :class:`UsageError` for names that are taken or reserved.
+    ``path``: that of the file, to find those that import it. A variable or a field goes on reading its column: where
+    it has no recorded name, it gets the old one. Raises :class:`UsageError` for names that are taken or reserved.
 
     >>> from rtamt.lsp.document import Analysis
     >>> text = "const float most = 3; always(x < most)"
@@ -81,9 +89,8 @@ def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -
     if new == symbol.name:
         return []
     _check_new(analysis, symbol, new)
-    plain = NAME.fullmatch(new) is not None
-    written = new if plain else quoted(new)
-    edits = [Edit(span, written) for span in analysis.outline.uses_of(symbol)]
+    tokens = tokenize(analysis.text, STL)
+    edits = [_written(analysis.text, tokens, span, symbol, new) for span in analysis.outline.uses_of(symbol)]
     end = analysis.outline.ends.get(symbol)
     if end is not None:
         edits.append(Edit(Span(end, end), f" = {quoted(symbol.name)}"))
@@ -91,29 +98,67 @@ def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -
     return sorted(edits)
 
 
+def _written(text: str, tokens: Tokens, span: Span, symbol: Symbol, new: str) -> Edit:
+    """Return the edit that writes a name at a span: in quotes, unless it needs none or stands in quotes already."""
+    pattern = ID if symbol.kind == "requirement" else NAME
+    if pattern.fullmatch(new) and not _is_word(new):
+        return Edit(span, new)
+    at = bisect_right(tokens.starts, span.start, 0, len(tokens) - 1) - 1
+    begin, end = tokens.starts[at], max(tokens.ends[at], span.end)
+    if is_quoted(tokens.texts[at]) and begin < span.start:
+        return Edit(span, quoted(new)[1:-1])
+    return Edit(Span(begin, end), quoted(text[begin : span.start] + new + text[span.end : end]))
+
+
+def _is_word(new: str) -> bool:
+    """Return whether a name is a word of the language."""
+    return STL.opening(new) is not None or STL.infix(new) is not None or new in _RESERVED
+
+
 def _check_new(analysis: Analysis, symbol: Symbol, new: str) -> None:
     """Raise :class:`UsageError` unless a name is free and can be one."""
     if not new or not new.isprintable():
         raise UsageError("a name is one line of visible characters")
-    if STL.opening(new) is not None or STL.infix(new) is not None or new in _RESERVED:
+    if _is_word(new) and symbol.kind != "requirement":
         raise UsageError(f"'{new}' is a word of the language; choose another name")
-    if symbol.kind in ("template", "argument") and ("." in new or NAME.fullmatch(new) is None):
-        what = "a parameter of a template" if symbol.kind == "argument" else "a template"
-        raise UsageError(f"the name of {what} is one word of letters, digits and '_', got '{new}'")
+    if symbol.kind in _ONE_WORD and ("." in new or NAME.fullmatch(new) is None):
+        raise UsageError(
+            f"the name of {_ONE_WORD[symbol.kind]} is one word of letters, digits and '_', got '{new}'"
+        )
+    taken = _taken(analysis, symbol)
+    heads = {name.partition(".")[0] for name in taken}
+    if new in taken or new in heads or new.partition(".")[0] in taken - {symbol.name}:
+        raise UsageError(f"'{new}' is a name of this text already; choose another name")
+
+
+def _taken(analysis: Analysis, symbol: Symbol) -> set[str]:
+    """Return the names of a text that a symbol cannot have: of others of its kind, and what means something there."""
+    siblings = {
+        each.name for each in analysis.outline.symbols if (each.kind, each.of) == (symbol.kind, symbol.of)
+    }
+    if symbol.kind == "field":
+        return siblings
     document = analysis.document
     assert document is not None
-    taken = {
-        *(each.name for each in analysis.outline.symbols),
+    return {
+        *siblings,
+        *(
+            each.name
+            for each in analysis.outline.symbols
+            if each.kind != "field" and _meet(each.scope, symbol.scope)
+        ),
         *analysis.outline.free,
         *document.definitions,
         *document.templates,
         *document.constants,
         *document.tables,
         *document.enumerations,
+        *document.groups,
     }
-    heads = {name.partition(".")[0] for name in taken}
-    if new in taken or new in heads or new.partition(".")[0] in taken - {symbol.name}:
-        raise UsageError(f"'{new}' is a name of this text already; choose another name")
+
+
+def _meet(one: Span, other: Span) -> bool:
+    return one.start < other.end and other.start < one.end
 
 
 def _check_meaning(analysis: Analysis, symbol: Symbol, new: str, text: str) -> None:
@@ -126,58 +171,8 @@ def _check_meaning(analysis: Analysis, symbol: Symbol, new: str, text: str) -> N
         raise UsageError(
             f"'{symbol.name}' cannot become '{new}': {getattr(error, 'message', error)}"
         ) from None
-    if _shape(before, symbol.name, new) != _shape(after, new, new):
+    if meaning(before, Renamed(symbol, symbol.name)) != meaning(after, Renamed(symbol, new)):
         raise UsageError(f"'{symbol.name}' cannot become '{new}': the text would have another meaning")
-
-
-def _shape(document: Document, old: str, new: str) -> object:
-    """Return what a document means, with one name for another."""
-
-    def called(name: str | None) -> str | None:
-        if name == old:
-            return new
-        # A field of a message.
-        return f"{new}{name[len(old) :]}" if name is not None and name.startswith(f"{old}.") else name
-
-    formulas = [
-        *(each.formula for each in document.assertions),
-        *(each.formula for each in document.requirements),
-    ]
-    declared = [
-        (called(each.name), each.type, each.kind, each.role, each.value, each.unit, _columns(each),
-         each.optional, each.range, each.rate)
-        for each in document.declarations
-    ]  # fmt: skip
-    names = (
-        [called(each.name) for each in document.assertions],
-        [called(each.name) for each in document.requirements],
-        [called(each) for each in document.templates],
-        sorted((called(each) or "", topic) for each, topic in document.topics.items()),
-    )
-    return declared, names, _nodes(formulas, called)
-
-
-def _columns(declared: Declaration) -> tuple[str, ...]:
-    """Return the names under which a variable is recorded."""
-    return declared.columns or (declared.name,) if declared.kind == "var" else ()
-
-
-def _nodes(formulas: Iterable[Formula], called: Callable[[str | None], str | None]) -> list[object]:
-    """Return the nodes of formulas, operands first, each with the numbers of its operands."""
-    numbers: dict[int, int] = {}
-    found: list[object] = []
-    for node in postorder(*formulas):
-        numbers[id(node)] = len(numbers)
-        if isinstance(node, Apply):
-            below = tuple(numbers[id(each)] for each in node.args)
-            constants = () if node.interval is None else tuple(map(called, node.interval.constants))
-            found.append((node.op.name, node.interval, constants, below))
-        elif isinstance(node, Const):
-            found.append((repr(node.value), called(node.name)))
-        else:
-            assert isinstance(node, Var)
-            found.append((called(node.name), str(node.type)))
-    return found
 
 
 def _edited(text: str, edits: Iterable[Edit]) -> str:

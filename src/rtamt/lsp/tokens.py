@@ -23,6 +23,7 @@ class TokenReader:
         self.found = Outline()
         self.taken: set[int] = set()  # tokens whose meaning is known
         self.everywhere = Span(0, len(text))
+        self.type_uses: list[int] = []
 
     def text_at(self, at: int) -> str:
         """Return the characters of a token, "" behind the last one."""
@@ -70,6 +71,11 @@ class TokenReader:
         if at < self.count:
             self.found.words[at] = kind
             self.taken.add(at)
+
+    def mark_type(self, at: int) -> None:
+        """Record that a token is the type of what is declared."""
+        self.mark(at, "type")
+        self.type_uses.append(at)
 
     def quote(self, at: int, kind: str) -> None:
         """Record that a quoted token is a text, and of which kind."""

@@ -3,47 +3,56 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Span
+from rtamt.language.formula import Const, Span, postorder
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import is_name, is_quoted, unquoted
 from rtamt.language.quantifiers import QUANTIFIERS
 from rtamt.language.units.durations import UNITS
+from rtamt.language.value_types import Enumeration
 from rtamt.lsp.symbols import Symbol, is_local
 from rtamt.lsp.tokens import TokenReader
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
+    from rtamt.language.document import Document
 _WORDS = frozenset(("then", "else", "inf", "in", "where", "of", *QUANTIFIERS))
 
 
 class UseReader(TokenReader):
     """What is known of names once all declarations have been read."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, document: Document | None = None) -> None:
         super().__init__(text)
-        self.values: dict[str, Symbol] = {}
+        self.document = document
         self.named_arguments: list[tuple[int, str]] = []
+        #: Names of the whole text, and those with a meaning in a part of it.
+        self.names: dict[str, Symbol] = {}
+        self.local: dict[str, list[Symbol]] = defaultdict(list)
+        #: Fields, members of enumerations and parameters of templates, by what they belong to.
+        self.parts: dict[tuple[str, str], Symbol] = {}
 
     def resolve(self) -> None:
         """Find the symbols of all names that declare nothing."""
-        everywhere: dict[str, Symbol] = {}
-        local: dict[str, list[Symbol]] = defaultdict(list)
-        arguments: dict[tuple[str, str], Symbol] = {}
         for symbol in self.found.symbols:
             if symbol.kind in ("argument", "member"):
-                local[symbol.name].append(symbol)
-                arguments.setdefault((symbol.of, symbol.name), symbol)
+                self.local[symbol.name].append(symbol)
             elif not is_local(symbol) and symbol.kind != "requirement":
-                everywhere.setdefault(symbol.name, symbol)
+                self.names.setdefault(symbol.name, symbol)
+            if is_local(symbol):
+                self.parts.setdefault((symbol.of, symbol.name), symbol)
         for at, template in self.named_arguments:
-            called = arguments.get((template, self.texts[at]))
+            called = self.parts.get((template, self.texts[at]))
             self.found.words[at] = "argument"
             if called is not None:
                 self.found.uses[Span(self.starts[at], self.ends[at])] = called
-        slashes = max((name.count("/") for name in everywhere), default=0)
+        for at in self.type_uses:
+            if self.texts[at] in self.names:
+                self.found.uses[Span(self.starts[at], self.ends[at])] = self.names[self.texts[at]]
+        slashes = max((name.count("/") for name in self.names), default=0)
         at = 0
         while at < self.count:
             text = self.texts[at]
@@ -53,7 +62,7 @@ class UseReader(TokenReader):
             last = self.path(at) if slashes else at
             for end in range(last, at - 1, -1):
                 name = unquoted(text) if is_quoted(text) else self.text[self.starts[at] : self.ends[end]]
-                if self._use(at, name, everywhere, local, whole=end > at or is_quoted(text)):
+                if self._use(at, name, path=end > at):
                     at = end
                     break
             else:
@@ -62,29 +71,56 @@ class UseReader(TokenReader):
                     self.found.free[name].append(Span(self.starts[at], self.ends[at]))
             at += 1
 
-    def _use(
-        self,
-        at: int,
-        name: str,
-        everywhere: Mapping[str, Symbol],
-        local: Mapping[str, list[Symbol]],
-        *,
-        whole: bool,
-    ) -> bool:
+    def _use(self, at: int, name: str, *, path: bool) -> bool:
         """Record the use of the longest declared name that a name begins with; return whether there is one."""
-        start = self.starts[at]
-        for part in [name] if whole else _beginnings(name):
-            inner = [each for each in local.get(part, ()) if each.scope.start <= start < each.scope.end]
-            symbol = (
-                inner[-1]
-                if inner
-                else everywhere.get(part) or (self.values.get(name) if part == name else None)
-            )
-            if symbol is not None:
-                quotes = len(self.texts[at]) if is_quoted(self.texts[at]) else len(part)
-                self.found.uses[Span(start, start + quotes)] = symbol
+        start, inside = self.starts[at], is_quoted(self.texts[at])
+        for part in [name] if path else _beginnings(name):
+            inner = [each for each in self.local.get(part, ()) if each.scope.start <= start < each.scope.end]
+            symbol = inner[-1] if inner else self.names.get(part)
+            if symbol is None and part == name:
+                symbol = self._value(name, start)
+            if symbol is None:
+                continue
+            if inside and part == name:
+                self.found.uses[Span(start, self.ends[at])] = symbol
                 return True
+            if inside and '"' in name:  # written twice in the text
+                return False
+            begin = start + inside
+            self.found.uses[Span(begin, begin + len(part))] = symbol
+            rest = name[len(part) + 1 :]
+            below = self.parts.get((symbol.of if symbol.kind == "member" else symbol.name, rest))
+            if below is not None and below.kind in ("field", "value"):
+                end = begin + len(name)
+                self.found.uses[Span(end - len(rest), end)] = below
+            return True
         return False
+
+    def _value(self, name: str, start: int) -> Symbol | None:
+        """Return the member of an enumeration with a name; of several the one that is meant at an offset."""
+        having = self._values.get(name, ())
+        of = self._types.get(start, "") if len(having) > 1 else ""
+        return self.parts.get((of, name)) or next(iter(having), None)
+
+    @cached_property
+    def _values(self) -> dict[str, list[Symbol]]:
+        """The members of enumerations, by name."""
+        found: dict[str, list[Symbol]] = defaultdict(list)
+        for symbol in self.found.symbols:
+            if symbol.kind == "value":
+                found[symbol.name].append(symbol)
+        return found
+
+    @cached_property
+    def _types(self) -> dict[int, str]:
+        """From the offsets of members of enumerations in formulas to their enumerations."""
+        if self.document is None:
+            return {}
+        return {
+            node.span.start: node.type.name
+            for node in postorder(*(each.formula for each in self.document.assertions))
+            if isinstance(node, Const) and isinstance(node.type, Enumeration) and node.span is not None
+        }
 
     def _is_operator(self, at: int) -> bool:
         text = self.texts[at]

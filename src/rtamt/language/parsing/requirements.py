@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rtamt.language.parsing.scope import Scope
 
 #: A requirement name that needs no quotes.
-_ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
+ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 
 
 class RequirementParser(FormulaParser):
@@ -85,7 +85,7 @@ class RequirementParser(FormulaParser):
         """Return the position of the name of a requirement."""
         if self.token.kind == "quoted":
             return self.token.span
-        match = _ID.match(self.text, self.token.start)
+        match = ID.match(self.text, self.token.start)
         if match is None:
             raise self._expected("the name of a requirement, such as REQ-12")
         return Span(match.start(), match.end())
@@ -135,7 +135,7 @@ class RequirementParser(FormulaParser):
         if self._plain_name(1) or self._at(1).kind == "number":
             return self._at(2).text != "="  # otherwise a declaration without a type
         # An infix operator such as S may be the name, unless an operand follows.
-        name = _ID.match(self.text, self._at(1).start)
+        name = ID.match(self.text, self._at(1).start)
         if name is None or self._at(1).kind != "name":
             return False
         ahead = next(k for k in range(2, len(self.tokens)) if self._at(k).start >= name.end())
