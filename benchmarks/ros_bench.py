@@ -23,8 +23,8 @@ from typing import Any
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
-from tests.integration.ros.processes import free_port  # noqa: E402
-from tests.integration.ros.workspace import build, missing  # noqa: E402
+from tests.integration.ros.processes import free_port  # noqa: E402 - found in the path set above
+from tests.integration.ros.workspace import build, missing  # noqa: E402 - found in the path set above
 
 HEADER = """\
 | node | topics heard | answers | lost | median (ms) | 99 % (ms) | most (ms) | node's processor time a message (ms) |

@@ -44,7 +44,7 @@ class Drawing:
     """Draws formulas and traces; everything from one seed, of small numbers, so that ties occur."""
 
     def __init__(self, seed: str, time: str, step: str) -> None:
-        self.random = random.Random(seed)  # noqa: S311 - no secret
+        self.random = random.Random(seed)
         self.dense = time == "dense"
         self.step = Fraction(step)
         operators = [op for op in STL if not (self.dense and op.discrete_only)]
@@ -220,7 +220,7 @@ def settled(formula: Formula) -> bool:
 
 def drawn(name: str, time: str, semantics: str, op: Operator | Literal["table"] | None = None) -> Case:
     """Draw a case that has an answer; ``op`` is the operator to ask, None for a nested formula."""
-    step = random.Random(f"{SEED} {name}").choice(STEPS)  # noqa: S311 - no secret
+    step = random.Random(f"{SEED} {name}").choice(STEPS)
     for attempt in itertools.count():
         draw = Drawing(f"{SEED} {name} {attempt}", time, step)
         asked = draw.table() if op == "table" else op

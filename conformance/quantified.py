@@ -158,7 +158,7 @@ def cases(
         for kind in KINDS:
             for k in range(DRAWN):
                 name = f"{time}/quantified/{kind}/{k:02}"
-                step = random.Random(f"{seed} {name}").choice(steps)  # noqa: S311 - no secret
+                step = random.Random(f"{seed} {name}").choice(steps)
                 semantics = "boolean" if kind == "boolean" else "standard"
                 yield _drawn(
                     drawing, answered, Case(name, time, "", step, {}, semantics=semantics), kind, seed

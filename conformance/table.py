@@ -24,11 +24,11 @@ from typing import TYPE_CHECKING, Any
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "peers")]
 
 from asking import Asked, Question, Talk, ask, question_of  # noqa: E402 - found by the line above
-from peers import HERE, PEERS  # noqa: E402
-from shrinking import shrunk  # noqa: E402
+from peers import HERE, PEERS  # noqa: E402 - found in the path set above
+from shrinking import shrunk  # noqa: E402 - found in the path set above
 
-from conformance import cases  # noqa: E402
-from rtamt.language.operators import STL  # noqa: E402
+from conformance import cases  # noqa: E402 - found in the path set above
+from rtamt.language.operators import STL  # noqa: E402 - found in the path set above
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -68,8 +68,7 @@ def prepare(formula, time, mode, signals):
     if time == "discrete":
         signals = {name: list(enumerate(column)) for name, column in signals.items()}
     rows = [
-        [(name, float(v), float(t)) for name, (t, v) in zip(signals, row)]  # noqa: B905
-        for row in zip(*signals.values())  # noqa: B905
+        [(name, float(v), float(t)) for name, (t, v) in zip(signals, row)] for row in zip(*signals.values())
     ]
 
     def run(begin, end):

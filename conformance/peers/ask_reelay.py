@@ -83,11 +83,11 @@ def prepare(formula, time, mode, signals):
     names = list(signals)
     monitor = reading(formula, time, mode, names)()
     if time == "discrete":
-        rows = [dict(zip(names, row)) for row in zip(*signals.values())]  # noqa: B905
+        rows = [dict(zip(names, row)) for row in zip(*signals.values())]
     else:
         rows = [
-            {"time": row[0][0], **{name: v for name, (_, v) in zip(names, row)}}  # noqa: B905
-            for row in zip(*signals.values())  # noqa: B905
+            {"time": row[0][0], **{name: v for name, (_, v) in zip(names, row)}}
+            for row in zip(*signals.values())
         ]
 
     def run(begin, end):

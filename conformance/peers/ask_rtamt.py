@@ -122,17 +122,14 @@ def prepare(formula, time, mode, signals):
         data = [[name, [list(pair) for pair in samples]] for name, samples in signals.items()]
         return lambda: spec.evaluate(*data)
     if time == "discrete":
-        rows = [(i, list(zip(signals, row))) for i, row in enumerate(zip(*signals.values()))]  # noqa: B905
+        rows = [(i, list(zip(signals, row))) for i, row in enumerate(zip(*signals.values()))]
 
         def run(begin, end):
             for i, values in rows[begin:end]:
                 spec.update(i, values)
 
         return run
-    rows = [
-        [[name, [list(pair)]] for name, pair in zip(signals, row)]  # noqa: B905
-        for row in zip(*signals.values())  # noqa: B905
-    ]
+    rows = [[[name, [list(pair)]] for name, pair in zip(signals, row)] for row in zip(*signals.values())]
 
     def run_dense(begin, end):
         for events in rows[begin:end]:

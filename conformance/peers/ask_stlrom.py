@@ -98,7 +98,7 @@ def prepare(formula, time, mode, signals):
     if time == "discrete":
         signals = {name: list(enumerate(column)) for name, column in signals.items()}
     driver, name = reading(formula, time, mode, list(signals))()
-    rows = [[float(row[0][0]), *(v for _, v in row)] for row in zip(*signals.values())]  # noqa: B905
+    rows = [[float(row[0][0]), *(v for _, v in row)] for row in zip(*signals.values())]
     if mode == "offline":
 
         def evaluate():

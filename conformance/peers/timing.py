@@ -26,7 +26,7 @@ def _signals(kind, names, n, time):
     if kind in timescales.FAMILIES:
         family, unit, wrong = names
         return timescales.signals(family, unit, n, wrong=wrong)
-    source = random.Random(1)  # noqa: S311 - no secrets
+    source = random.Random(1)
     size = min(n, BASE)
     columns = {name: [source.gauss(0, 1) for _ in range(size)] * -(-n // size) for name in names}
     columns = {name: column[:n] for name, column in columns.items()}
@@ -37,7 +37,7 @@ def _signals(kind, names, n, time):
     for _ in range(n):
         steps.append(now)
         now += source.randint(1, 15) / 8
-    return {name: [[t, v] for t, v in zip(steps, column)] for name, column in columns.items()}  # noqa: B905
+    return {name: [[t, v] for t, v in zip(steps, column)] for name, column in columns.items()}
 
 
 def signals(workload, time):

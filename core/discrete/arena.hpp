@@ -37,7 +37,7 @@ class Arena {
   private:
     struct Free {
         void operator()(std::byte* memory) const noexcept {
-            std::free(memory); // NOLINT(*-no-malloc)
+            std::free(memory); // NOLINT(*-no-malloc): goes with calloc
         }
     };
     std::unique_ptr<std::byte, Free> memory_;

@@ -79,7 +79,7 @@ class Spare {
 
 // Never destroyed: arrays may be freed after everything else.
 [[nodiscard]] Spare& spare() {
-    static auto* const spare = new Spare; // NOLINT(*-owning-memory)
+    static auto* const spare = new Spare; // NOLINT(*-owning-memory): never destroyed
     return *spare;
 }
 
@@ -88,7 +88,7 @@ class Spare {
 std::pair<void*, nb::capsule> LargeMemory::owned(std::size_t bytes) {
     std::unique_ptr<LargeMemory> made(new LargeMemory(bytes));
     const nb::capsule owner(made.get(), [](void* memory) noexcept {
-        delete static_cast<LargeMemory*>(memory); // NOLINT(*-owning-memory)
+        delete static_cast<LargeMemory*>(memory); // NOLINT(*-owning-memory): of a capsule
     });
     return {made.release()->piece_.memory, owner};
 }

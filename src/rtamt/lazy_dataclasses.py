@@ -104,7 +104,7 @@ def _processed(
     frozen: bool = False,
     slots: bool = False,
     eq: bool = True,
-    repr: bool = True,  # noqa: A002
+    repr: bool = True,  # noqa: A002 - as above
     init: bool = True,
 ) -> Any:
     """Return the class with its methods; with slots it is another class, as in the standard library."""
@@ -197,7 +197,7 @@ def _compiled_init(cls: Any, *, frozen: bool) -> Any:
         if not frozen:
             body.append(f" self.{name} = {value}")
         elif hasattr(slot, "__set__"):
-            names[f"_store_{name}"] = slot.__set__  # type: ignore[union-attr]
+            names[f"_store_{name}"] = slot.__set__  # type: ignore[union-attr] # which it has
             body.append(f" _store_{name}(self, {value})")
         else:
             body.append(f" _store(self, {name!r}, {value})")

@@ -15,7 +15,7 @@ PEERS = Path(__file__).parents[2] / "conformance" / "peers"
 sys.path.insert(0, str(PEERS))
 
 import asking  # noqa: E402 - found by the line above
-import shrinking  # noqa: E402
+import shrinking  # noqa: E402 - found in the path set above
 
 LIAR = """
 import sys

@@ -101,7 +101,7 @@ def _seconds(tick, case):
 
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.id) for case in CASES])
 def test_the_answer_of_every_completed_trace_lies_within_the_final_bounds(case):
-    rng = Random(case.id)  # noqa: S311 - no secret
+    rng = Random(case.id)
     formula = parse_formula(case.formula)
 
     def completed(name, value):

@@ -60,7 +60,7 @@ def test_a_half_open_interval_that_contains_no_step(
     text: str, settings: dict[str, object], sentence: str, marks: str
 ) -> None:
     with pytest.raises(rtamt.BoundError) as info:
-        rtamt.parse(text, **settings)  # type: ignore[arg-type]
+        rtamt.parse(text, **settings)
     assert str(info.value) == f"{sentence}\n  line 1, column {marks.index('^') + 1}:\n    {text}\n    {marks}"
 
 

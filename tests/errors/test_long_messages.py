@@ -47,7 +47,7 @@ LONG: dict[str, Callable[[], Any]] = {
     "a time": lambda: SPEC.monitor().update(NUMBER, x=1),
     "a dense time": lambda: SPEC.monitor(time="dense").update(NUMBER, x=1),
     "a column": lambda: SPEC.evaluate({"time": [0, 1], "x": [1, NUMBER]}),
-    "a semantics": lambda: rtamt.parse("x", semantics=DIGITS),  # type: ignore[arg-type]
+    "a semantics": lambda: rtamt.parse("x", semantics=DIGITS),
     "pairs": lambda: rtamts().update(0, DIGITS),
     "a type": lambda: rtamt.StlDiscreteTimeSpecification().declare_var("x", DIGITS),
     "a sampling period": lambda: rtamt.StlDiscreteTimeSpecification().set_sampling_period(NUMBER, "s"),

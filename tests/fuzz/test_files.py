@@ -68,7 +68,7 @@ def test_a_good_file_is_read(target: Target, tmp_path: Path) -> None:
 @settings(max_examples=min(settings.default.max_examples, MOST_EXAMPLES))
 @given(seed=st.integers(0, 2**63))
 def test_a_damaged_file_is_read_or_refused_in_a_sentence(target: Target, seed: int) -> None:
-    check(target, damaged(good(target), Random(seed)))  # noqa: S311 - damage, no secret
+    check(target, damaged(good(target), Random(seed)))
 
 
 @given(st.binary(max_size=60) | tables)

@@ -132,7 +132,7 @@ def test_units_and_semantics_belong_to_a_result_that_is_found_directly() -> None
 
 def test_a_result_that_is_found_directly_is_pickled() -> None:
     result = evaluate_twice(FORMULAS[2], {"x": np.arange(4.0), "time": np.arange(4) * 0.25})
-    assert facts(pickle.loads(pickle.dumps(result))) == facts(result)  # noqa: S301 - our own
+    assert facts(pickle.loads(pickle.dumps(result))) == facts(result)
 
 
 def test_threads_share_a_specification_that_evaluates_directly() -> None:

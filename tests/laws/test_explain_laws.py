@@ -287,7 +287,7 @@ def test_a_place_was_critical_that_changes_nothing_alone_beside_one_that_overtur
 
                     def against(which: int, place: int, column: np.ndarray) -> np.ndarray:
                         if (which, place) == (k, sign):  # noqa: B023 - called at once
-                            column[begin:end] = -sign * robustness  # noqa: B023
+                            column[begin:end] = -sign * robustness  # noqa: B023 - as above
                         return column
 
                     assert case.robustness(case.columns(against)) * robustness >= 0

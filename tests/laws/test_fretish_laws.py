@@ -35,7 +35,7 @@ def _sentence(scope: str, condition: str, timing: str, samples: int) -> str:
 
 @pytest.mark.parametrize("timing", TIMINGS)
 def test_every_form_of_sentence_means_what_fret_says(timing: str) -> None:
-    rng = random.Random(timing)  # noqa: S311 - the same traces every time
+    rng = random.Random(timing)
     for (scope, (name, only)), condition in product(SCOPES.items(), ("", "when", "whenever")):
         samples = rng.randint(0, 3)
         text = _sentence(scope, condition, timing, samples)

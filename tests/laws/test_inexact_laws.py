@@ -24,7 +24,7 @@ from tests.laws.early.definition import PERIOD, TICK
 
 def drawn(seed: int):
     """Draw a formula that reads a variable, a finished recording of it, and one of the traces that it may be."""
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     while True:
         asked = formula(rng, ("x", "y"), depth=rng.randint(1, 4), unbounded=True)
         if variables(asked):
@@ -54,7 +54,7 @@ def test_both_back_ends_give_the_same_bounds_to_the_last_bit(seed):
 
 def drawn_dense(seed: int):
     """Draw a formula and a finished recording of dense time, known in part."""
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     case = dense_case(rng)
     columns, bounds = {}, {}
     for name, (times, values) in case.truth.items():

@@ -209,7 +209,7 @@ def error_of(evaluate, data) -> str:
 def test_a_quantified_formula_prints_and_comes_back_from_a_pickle(formula):
     again = rtamt.parse(HEAD + str(formula)).formula
     assert again == formula, str(formula)
-    assert pickle.loads(pickle.dumps(formula)) == formula  # noqa: S301 - our own bytes
+    assert pickle.loads(pickle.dumps(formula)) == formula
     assert formula.latex().count("{") == formula.latex().count("}")
 
 
@@ -230,7 +230,7 @@ def test_back_ends_agree_on_members_and_their_monitors_come_back_from_pickles(da
         try:
             for t in range(n):
                 if t == n // 2:
-                    monitor = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own bytes
+                    monitor = pickle.loads(pickle.dumps(monitor))
                 known = monitor.update(
                     t, **{name: xs[t] for name, xs in columns.items() if xs[t] is not None}
                 )

@@ -69,7 +69,7 @@ def test_what_is_watched_is_what_an_offline_evaluation_says(
     for size in data.draw(chunkings(n)):
         if size == 1:
             sample = {name: columns[name][at] for name in monitor.input_names}
-            values = signals_of(monitor, watch, monitor.update(float(at), **sample))  # type: ignore[arg-type]
+            values = signals_of(monitor, watch, monitor.update(float(at), **sample))
             for output, value in enumerate(values):
                 if value is not None:
                     told[output].append((float(len(told[output])), value))
@@ -159,7 +159,7 @@ def test_a_copy_goes_on_as_the_original_would_whatever_that_does(
             np.testing.assert_array_equal(a.times, b.times)
             np.testing.assert_array_equal(a.values, b.values)
         for watched in watch:
-            np.testing.assert_array_equal(twin[watched.name].values, alone[watched.name].values)  # type: ignore[union-attr]
+            np.testing.assert_array_equal(twin[watched.name].values, alone[watched.name].values)
 
 
 @settings(max_examples=40)
@@ -240,7 +240,7 @@ def test_a_monitor_comes_back_from_a_pickle_with_its_state(formula: Formula) -> 
             try:
                 for i, sample in enumerate(samples[:2]):
                     monitor.update(i, **sample)
-                twin = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own bytes
+                twin = pickle.loads(pickle.dumps(monitor))
                 for i, sample in enumerate(samples[2:], 2):
                     assert repr(monitor.update(i, **sample)) == repr(twin.update(i, **sample))
                 assert repr(monitor.finish()) == repr(twin.finish())

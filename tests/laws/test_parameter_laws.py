@@ -111,7 +111,7 @@ def test_parameters_set_later_give_the_bits_of_constants_in_the_text(
     assigned = spec.with_parameters(**values)
     offline = outcome(lambda: plain.evaluate(given).signal)
     assert outcome(lambda: assigned.evaluate(given).signal) == offline
-    again = pickle.loads(pickle.dumps(assigned))  # noqa: S301 - written here
+    again = pickle.loads(pickle.dumps(assigned))
     assert outcome(lambda: again.evaluate(given).signal) == offline
     assert str(assigned) == str(plain)
     rows = [{name: float(column[i]) for name, column in given.items()} for i in range(len(columns["x"]))]

@@ -54,7 +54,7 @@ def value_at(signal: Any, times: Any) -> Any:
 
 
 def pickled(monitor: Any) -> Any:
-    return pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own
+    return pickle.loads(pickle.dumps(monitor))
 
 
 def told(result: Any) -> tuple[float, bool, Any]:

@@ -265,10 +265,10 @@ def command(*args: str, stdin: bytes = b"") -> tuple[int, str]:
     """Run the command line, return its exit code and what it prints."""
     before = sys.stdin, sys.stdout
     text = io.BytesIO(stdin)
-    sys.stdin, sys.stdout = SimpleNamespace(buffer=text, isatty=lambda: False), io.StringIO()  # type: ignore[assignment]
+    sys.stdin, sys.stdout = SimpleNamespace(buffer=text, isatty=lambda: False), io.StringIO()
     try:
         code = main(args)
-        return code, sys.stdout.getvalue()  # type: ignore[attr-defined]
+        return code, sys.stdout.getvalue()
     finally:
         sys.stdin, sys.stdout = before
 

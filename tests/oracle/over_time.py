@@ -162,7 +162,7 @@ NUMBERS: dict[str, Callable[..., Values]] = {
 
 def _needed(time: Time) -> tuple[int, bool]:
     """Return how many steps of the window are needed, and whether those outside the trace count."""
-    share: Any = time.interval.share  # type: ignore[union-attr]
+    share: Any = time.interval.share
     nominal = int(time.b) - time.a + (not time.dense)
     kind = str(getattr(share.kind, "value", share.kind))
     if kind == "percent":

@@ -57,10 +57,10 @@ class World:
         self.topic_of_output, self.type_of_output = topic, cls
         return SimpleNamespace(publish=lambda message: self.published.append(copy.deepcopy(message)))
 
-    def Subscriber(self, topic: str, cls: type, callback: Any, args: Any) -> None:  # noqa: N802
+    def Subscriber(self, topic: str, cls: type, callback: Any, args: Any) -> None:  # noqa: N802 - the same
         self.subscribed[topic] = (cls, callback, args)
 
-    def Rate(self, frequency: float) -> Any:  # noqa: N802
+    def Rate(self, frequency: float) -> Any:  # noqa: N802 - the same
         self.frequency = frequency
         self.deliver()
         return SimpleNamespace(sleep=self.tick)

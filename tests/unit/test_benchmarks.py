@@ -16,8 +16,8 @@ PEERS = FOLDER.parent / "conformance" / "peers"
 sys.path[:0] = [str(FOLDER), str(PEERS)]
 
 import summary  # noqa: E402 - found by the line above
-import timescales  # noqa: E402
-from cases import Case  # noqa: E402
+import timescales  # noqa: E402 - found in the path set above
+from cases import Case  # noqa: E402 - found in the path set above
 
 
 @pytest.mark.parametrize("unit", [1, 7])

@@ -50,7 +50,7 @@ def test_members_are_given_by_name_or_by_code(column):
     assert spec.evaluate({"mode": column}).signal.values.tolist() == [-inf, inf, inf, -inf]
     monitor = spec.monitor()
     assert [monitor.update(t, mode=value) for t, value in enumerate(column)] == [-inf, inf, inf, -inf]
-    again = pickle.loads(pickle.dumps(spec.monitor()))  # noqa: S301 - made here
+    again = pickle.loads(pickle.dumps(spec.monitor()))
     assert [again.step(value) for value in column] == [-inf, inf, inf, -inf]
     assert spec.monitor().update_many({"mode": column}).values.tolist() == [-inf, inf, inf, -inf]
 

@@ -128,7 +128,7 @@ def test_a_derived_operator_is_one_entry() -> None:
     nearly = Operator(
         "nearly", ("nearly",), Fixity.PREFIX, 75, (F,), F, "Within a second.", "nearly (x >= 3)",
         expansion=lambda a, _i: STL["eventually"](
-            a, interval=rtamt.parse("eventually[0:1] x").formula.interval  # type: ignore[attr-defined]
+            a, interval=rtamt.parse("eventually[0:1] x").formula.interval
         ),
     )  # fmt: skip
     for backend in ("cpp", "python"):

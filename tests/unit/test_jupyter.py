@@ -78,7 +78,7 @@ def test_what_no_slice_can_be():
     with pytest.raises(
         rtamt.UsageError, match=r"^'noon' cannot begin or end a slice of this trace; give a number"
     ):
-        trace["noon":]  # type: ignore[misc]
+        trace["noon":]
     with pytest.raises(rtamt.UsageError, match=r"takes two times; put it on another time base with resample"):
         trace[0:1:2]
     with pytest.raises(rtamt.TraceError, match="'x' has no timestamps"):
@@ -101,7 +101,7 @@ def test_a_derived_signal_is_a_signal_of_the_trace_and_the_trace_before_stays():
     assert (trace.names, more.names, more.units) == (("v",), ("v", "kmh"), {"v": "m/s", "kmh": "km/h"})
     assert rtamt.parse("always(kmh >= 18)").evaluate(more).robustness == 0
     with pytest.raises(rtamt.UsageError, match=r"^'w' is 3; give a signal, such as rtamt.Signal"):
-        trace.extended({"w": 3})  # type: ignore[dict-item]
+        trace.extended({"w": 3})
 
 
 def test_a_result_of_missing_samples_is_shown_with_the_bounds_that_are_known():

@@ -93,7 +93,7 @@ class Pair(lazy_tuples.NamedTuple):
 
 
 def test_instances_are_pickled_and_matched():
-    restored = pickle.loads(pickle.dumps(Pair(1, 2)))  # noqa: S301 - its own
+    restored = pickle.loads(pickle.dumps(Pair(1, 2)))
     assert (restored, type(restored)) == (Pair(1, 2), Pair)
     match Pair(1, 2):
         case Pair(x, y):

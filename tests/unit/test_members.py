@@ -146,7 +146,7 @@ def test_results_and_specifications_over_members_are_copied_and_pickled():
         'parameter float gap = 5  group cars = "car_*"; require R1: always forall v in cars: v.x > gap'
     )
     result = spec.evaluate({"car_1.x": [9, None, 7]})
-    for twin in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):  # noqa: S301
+    for twin in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):
         assert twin.robustness == 2
         assert twin["count v in cars: v.x > 8"].values.tolist() == [1, 0, 0]
         assert list(twin.requirements) == ["R1"]

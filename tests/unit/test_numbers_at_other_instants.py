@@ -38,7 +38,7 @@ def test_discrete_offline_and_online_through_a_pickle(text: str, expected: list[
     for i in range(len(X)):
         value = monitor.update(i / 2, **{name: column[i] for name, column in columns(spec).items()})
         told += [] if value is None else [value]
-        monitor = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own
+        monitor = pickle.loads(pickle.dumps(monitor))
     assert [*told, *monitor.finish().values] == expected
 
 

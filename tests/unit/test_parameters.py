@@ -22,7 +22,7 @@ DATA = {"x": [1, 2, 3, 1]}
 
 
 def pickled(one):
-    return pickle.loads(pickle.dumps(one))  # noqa: S301 - written here
+    return pickle.loads(pickle.dumps(one))
 
 
 @pytest.fixture(scope="module")

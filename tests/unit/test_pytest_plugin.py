@@ -99,7 +99,7 @@ def test_violated(stl):
 """
     result = run(folder, body, "--junit-xml=report.xml")
     result.assert_outcomes(passed=1, failed=1)
-    properties = ET.parse(folder.path / "report.xml").iter("property")  # noqa: S314
+    properties = ET.parse(folder.path / "report.xml").iter("property")
     report = {each.get("name"): each.get("value") for each in properties}
     assert report == {
         "rtamt.requirement_1.verdict": "violated",
@@ -161,7 +161,7 @@ def test_properties_reach_the_junit_report(folder):
     run(folder, body, "--junit-xml=report.xml", "--stl-plots=plots").assert_outcomes(failed=1)
     found = {
         each.attrib["name"]: each.attrib["value"]
-        for each in ET.parse(folder.path / "report.xml").iter("property")  # noqa: S314
+        for each in ET.parse(folder.path / "report.xml").iter("property")
     }
     assert found.pop("rtamt.plot").endswith("test_drive-low.png")
     assert found == {

@@ -66,9 +66,9 @@ def test_with_formula_takes_no_text(other):
 
 def test_a_specification_of_another_formula_is_pickled_with_that_formula():
     spec = SPEC.with_formula(SPEC.pastified())
-    twin = pickle.loads(pickle.dumps(spec))  # noqa: S301 - our own
+    twin = pickle.loads(pickle.dumps(spec))
     assert twin.formula == spec.formula != SPEC.formula
     monitor = spec.monitor()
     monitor.update(0.0, req=5.0, gnt=2.0)
-    resumed = pickle.loads(pickle.dumps(monitor))  # noqa: S301
+    resumed = pickle.loads(pickle.dumps(monitor))
     assert resumed.update(1.0, req=5.0, gnt=4.0) == monitor.update(1.0, req=5.0, gnt=4.0)

@@ -101,7 +101,7 @@ def test_a_monitor_is_reset_to_another_member(verdict, backend):
     monitor.reset(start="MANUAL")
     expected = told(spec.with_parameters(start="MANUAL").monitor(verdict=verdict))
     assert told(monitor) == expected != before
-    for twin in (copy.copy(monitor), pickle.loads(pickle.dumps(monitor))):  # noqa: S301 - made here
+    for twin in (copy.copy(monitor), pickle.loads(pickle.dumps(monitor))):
         twin.reset()
         assert told(twin) == expected
 

@@ -32,7 +32,7 @@ def _parts(text: str, parameters: Collection[str], described: dict[str, str]) ->
         if paragraph.startswith("==="):
             yield _table(paragraph.splitlines())
             continue
-        prose, sign, example = re.match(r"(?ms)(.*?)(^>>>|\Z)(.*)", paragraph).groups()  # type: ignore[union-attr]
+        prose, sign, example = re.match(r"(?ms)(.*?)(^>>>|\Z)(.*)", paragraph).groups()
         rest = _without_parameters(re.sub("::$", ":", prose.strip()), parameters, described)
         if rest:
             yield rest

@@ -81,14 +81,14 @@ def _print(found: Mutation, *, every: bool) -> None:
     count = len(found.recordings)
     recordings = f"{count} recording{'' if count == 1 else 's'}"
     say(f"{dead} of {len(found.mutants)} mutants killed by {recordings}: score {found.score:.0%}")
-    rows = [("mutant", "requirement", "line", "change", "killed by")]
+    rows: list[tuple[str, ...]] = [("mutant", "requirement", "line", "change", "killed by")]
     for mutant in found.mutants if every else survivors:
         killers = found.killers(mutant)
         by = "survives" if not killers else killers[0] if len(killers) == 1 else f"{len(killers)} recordings"
         line = "" if mutant.line is None else f"{mutant.line}:{mutant.column}"
         rows.append((mutant.name, mutant.requirement, line, mutant.change, by))
     if len(found.specification.requirements) == 1:
-        rows = [(name, *rest) for name, _, *rest in rows]  # type: ignore[misc]
+        rows = [(name, *rest) for name, _, *rest in rows]
     if len(rows) > 1:
         say()
         say(table(rows, width=width))

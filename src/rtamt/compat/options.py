@@ -60,7 +60,7 @@ class StlComparisonOperator(Enum):
     LESS = 0
     LEQ = 1
     EQ = 2
-    EQUAL = 2  # noqa: PIE796  # the name in comp_op
+    EQUAL = 2  # noqa: PIE796 - the name in comp_op
     NEQ = 3
     GREATER = 4
     GEQ = 5

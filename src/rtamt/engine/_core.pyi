@@ -16,7 +16,7 @@ _Types: TypeAlias = Mapping[str, Mapping[str, float] | None]
 class Refused(Exception):  # noqa: N818 - a word that reads well after except
     """An update was rejected; the monitor is unchanged."""
 
-class Undefined(Exception):  # noqa: N818
+class Undefined(Exception):  # noqa: N818 - as above
     """An operation yielded NaN; args are the instruction and the sample, or the tick in dense time.
 
     A discrete-time monitor also sets the ``time`` of the sample. If a call failed, a third argument is its

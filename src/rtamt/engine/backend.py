@@ -182,7 +182,7 @@ class Compiled(Backend):
     def check(self, code: bytes, inputs: Sequence[str]) -> None:
         """Raise :class:`ValueError` for the bytes of a program that the core does not run."""
 
-    def layout(self, program: Program) -> Sequence[Place]:  # noqa: ARG002
+    def layout(self, program: Program) -> Sequence[Place]:  # noqa: ARG002 - of the C++ back end
         """Return where the core computes and keeps the value of each instruction; empty where nothing is merged."""
         return ()
 
@@ -206,7 +206,7 @@ class Defined(Backend):
         self,
         formulas: tuple[Formula, ...],
         step: Fraction,  # noqa: ARG002 - that of the trace
-        inputs: tuple[str, ...],  # noqa: ARG002
+        inputs: tuple[str, ...],  # noqa: ARG002 - as above
     ) -> Callable[[Any], list[BoundedSignal]]:
         """See :class:`Backend`."""
         return lambda trace: [self.bounds_of(formula, trace) for formula in formulas]

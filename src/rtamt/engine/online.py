@@ -71,7 +71,7 @@ class OnlineMonitor:
         declared: Collection[str],
         factory: Callable[..., OnlineMonitor] | None,
     ) -> None:
-        self._base.__init__(self)  # type: ignore[misc]
+        self._base.__init__(self)  # type: ignore[misc] # the class of the core that it derives from
         self.input_names: tuple[str, ...] = variables(formula)
         for watched in watch:
             for name in variables(watched.formula):
@@ -175,12 +175,12 @@ class OnlineMonitor:
 
     def records(
         self,
-        capacity: int,  # noqa: ARG002 - here there are none
+        capacity: int,  # noqa: ARG002 - DiscreteFleet takes these
         *,
-        restart: bool,  # noqa: ARG002
-        state: bytes | None,  # noqa: ARG002
-        identities: Mapping[str, str],  # noqa: ARG002
-        watched: bool = False,  # noqa: ARG002
+        restart: bool,  # noqa: ARG002 - as above
+        state: bytes | None,  # noqa: ARG002 - as above
+        identities: Mapping[str, str],  # noqa: ARG002 - as above
+        watched: bool = False,  # noqa: ARG002 - as above
     ) -> Any:
         """Return what monitors this formula, or those watched, for many keys at once; None where each needs a monitor.
 
@@ -196,7 +196,7 @@ class OnlineMonitor:
 
     def __copy__(self: Self) -> Self:
         twin = type(self).__new__(type(self))
-        twin._base.__init__(twin)  # type: ignore[misc]
+        twin._base.__init__(twin)  # type: ignore[misc] # as in __init__
         twin.__dict__.update(self.__dict__)  # nothing in it is changed in place
         twin._usage = UsageGuard()
         twin._resume(self._state())

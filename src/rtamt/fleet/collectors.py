@@ -44,7 +44,7 @@ class Collector(ABC):
     def take(self, index: int, monitor: Any, report: Any) -> None:
         """Take what a monitor reported of a sample: the next one, at an index of the batch."""
 
-    def leave_out(self, index: int, monitor: Any) -> None:  # noqa: ARG002
+    def leave_out(self, index: int, monitor: Any) -> None:  # noqa: ARG002 - nothing was reported
         """Note that a sample came too late."""
         raise AssertionError("only bounds take late samples")
 
@@ -68,7 +68,7 @@ class _Values(Collector):
         self._values: list[float | None] = []
         self._times: list[Any] = []
 
-    def take(self, index: int, monitor: Monitor, report: float | None) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: Monitor, report: float | None) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._values.append(report)
         self._times.append(nan if report is None else settled_time(monitor))
@@ -95,7 +95,7 @@ class _Points(Collector):
         self._times: list[Any] = []
         self._values: list[float] = []
 
-    def take(self, index: int, monitor: DenseMonitor, report: Signal) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: DenseMonitor, report: Signal) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._index += [index] * len(report.values)
         self._times += _listed(report.times)
@@ -115,7 +115,7 @@ class _Verdicts(Collector):
         super().__init__()
         self._runs: list[tuple[Any, Any, bool, Any]] = []
 
-    def take(self, index: int, monitor: EagerMonitor, report: Sequence[Verdict]) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: EagerMonitor, report: Sequence[Verdict]) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._index += [index] * len(report)
         self._runs += [(each.time, each.time, each.satisfied, each.decided_at) for each in report]
@@ -131,7 +131,7 @@ class _Verdicts(Collector):
 class _Runs(_Verdicts):
     """Eager verdicts in dense time."""
 
-    def take(self, index: int, monitor: Any, report: Sequence[Any]) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: Any, report: Sequence[Any]) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         runs: Sequence[VerdictRun] = report
         self._index += [index] * len(runs)
@@ -148,7 +148,7 @@ class _Bounds(Collector):
         self._bounds: list[tuple[float, float, bool]] = []
         self._changes: list[Any] = []
 
-    def take(self, index: int, monitor: IntervalMonitor, report: None) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: IntervalMonitor, report: None) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         at_start = monitor.interval()
         self._bounds.append((at_start.lower, at_start.upper, False))
@@ -157,7 +157,7 @@ class _Bounds(Collector):
             self._index += [index] * len(changes)
             self._changes += changes
 
-    def leave_out(self, index: int, monitor: IntervalMonitor) -> None:  # noqa: ARG002
+    def leave_out(self, index: int, monitor: IntervalMonitor) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         at_start = monitor.interval()
         self._bounds.append((at_start.lower, at_start.upper, True))
@@ -193,7 +193,7 @@ class _Causes(Collector):
         super().__init__()
         self._causes: list[tuple[float, float]] = []
 
-    def take(self, index: int, monitor: CausationMonitor, report: Causation) -> None:  # noqa: ARG002
+    def take(self, index: int, monitor: CausationMonitor, report: Causation) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._causes.append((report.violation, report.satisfaction))
 

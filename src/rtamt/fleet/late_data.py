@@ -48,8 +48,6 @@ class Taken(NamedTuple):
 class InOrder:
     """Samples that arrive in the order of their times; ``records``: what monitors them."""
 
-    #: How many samples were late, and how many wait for earlier ones.
-    late = waiting = 0
     _lateness: float | None = None
 
     def __init__(self, records: Any, requirements: tuple[str, ...]) -> None:
@@ -100,7 +98,7 @@ class InOrder:
         warming = np.stack([each.warming for each in outputs], axis=1)
         return FleetUpdate(values, known, times, warming, taken.late, released, self._requirements)
 
-    def monitor(self, key: NDArray[Any], requirement: str | None) -> OnlineMonitor | None:  # noqa: ARG002
+    def monitor(self, key: NDArray[Any], requirement: str | None) -> OnlineMonitor | None:  # noqa: ARG002 - no key has one
         """Raise :class:`UsageError`: keys have records."""
         raise UsageError(
             "a fleet of delayed verdicts in discrete time has a record for each key, and no monitor; read update_many()"
@@ -111,11 +109,21 @@ class InOrder:
         self.records.check(keys, times, columns)
         return _all_in_order(keys, self.records.update(keys, times, columns))
 
-    def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002
+    def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002 - nothing waits
         """Release what waits up to a time in seconds."""
         raise UsageError(
             "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)"
         )
+
+    @property
+    def late(self) -> int:
+        """How many samples were late."""
+        return 0
+
+    @property
+    def waiting(self) -> int:
+        """How many samples wait for earlier ones."""
+        return 0
 
     @property
     def capacity(self) -> int:
@@ -143,7 +151,7 @@ class InOrder:
         missing: int | None = self.records.drop(keys)
         return missing
 
-    def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:  # noqa: ARG002
+    def expire(self, before: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> int:  # noqa: ARG002 - of Reordered
         """Forget the keys whose last sample is before a time; return how many."""
         return int(self.records.expire(before))
 
@@ -196,13 +204,13 @@ class Reordered(InOrder):
         return Taken(late, [_sorted_out(len(late), keys, ready, each) for each in known])
 
     @property
-    def late(self) -> int:  # type: ignore[override]
-        """How many samples were late."""
+    def late(self) -> int:
+        """See :class:`InOrder`."""
         return int(self._buffer.late)
 
     @property
-    def waiting(self) -> int:  # type: ignore[override]
-        """How many samples wait for earlier ones."""
+    def waiting(self) -> int:
+        """See :class:`InOrder`."""
         return int(self._buffer.waiting)
 
     @property

@@ -270,7 +270,7 @@ def _flat(node: Formula, places: dict[int, int]) -> tuple[Any, ...]:
     """Return a node as a constructor and its arguments, with operands replaced by their indices."""
     if isinstance(node, Apply):
         return Apply, node.op, tuple([places[id(operand)] for operand in node.args]), node.interval, node.span
-    return (type(node), *[getattr(node, each.name) for each in fields(node)])  # type: ignore[arg-type]
+    return (type(node), *[getattr(node, each.name) for each in fields(node)])  # type: ignore[arg-type] # lazy
 
 
 def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:

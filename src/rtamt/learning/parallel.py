@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _wrappers = library("pettingzoo.utils.wrappers", "ParallelRobustnessReward", "learning")
 
 
-class ParallelRobustnessReward(_wrappers.BaseParallelWrapper):  # type: ignore[misc, name-defined]
+class ParallelRobustnessReward(_wrappers.BaseParallelWrapper):  # type: ignore[misc, name-defined] # imported at run time
     """Rewards the agents of a parallel PettingZoo environment by one requirement of all, or by one of each.
 
     ``spec``: a specification that all agents share, whose rewards each of them receives; or a mapping from agent to its

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _gymnasium = library("gymnasium", "RobustnessReward", "learning")
 
 
-class RobustnessReward(_gymnasium.Wrapper, _gymnasium.utils.RecordConstructorArgs):  # type: ignore[misc, name-defined]
+class RobustnessReward(_gymnasium.Wrapper, _gymnasium.utils.RecordConstructorArgs):  # type: ignore[misc, name-defined] # imported at run time
     """Rewards each step of a Gymnasium environment by a requirement.
 
     ``signals``: for each variable a path, such as ``("observation", 0)``, ``("info", "speed")`` or ``("action",)``, or

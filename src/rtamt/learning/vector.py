@@ -25,7 +25,7 @@ _vector = library("gymnasium.vector", "VectorRobustnessReward", "learning")
 _FINAL = ("final_obs", "final_info")
 
 
-class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-defined]
+class VectorRobustnessReward(_vector.VectorWrapper):  # type: ignore[misc, name-defined] # imported at run time
     """Rewards each step of a vector environment by a requirement, as ``RobustnessReward`` does for one environment.
 
     One ``rtamt.Fleet`` monitors all environments, in every autoreset mode of Gymnasium. ``signals``: paths or a

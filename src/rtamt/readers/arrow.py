@@ -149,13 +149,15 @@ def _raw(column: Any) -> Raw:
         return values_of(column)
     missing = column.is_null().to_numpy() if column.null_count else None
     if kind.startswith(("timestamp", "date", "duration")):
-        return column.to_numpy()  # type: ignore[no-any-return]
+        times: Raw = column.to_numpy()
+        return times
     if kind == "bool":
         column = column.cast("uint8")
     elif kind in {"null", "string", "large_string"} or not _is_plain(column):
         return np.array(list(chain(column.to_pylist(), [None])), dtype=object)[:-1]
     if missing is None:
-        return column.to_numpy()  # type: ignore[no-any-return]
+        numbers: Raw = column.to_numpy()
+        return numbers
     return np.ma.masked_array(column.fill_null(0).to_numpy(), missing)
 
 

@@ -122,7 +122,7 @@ def _whole(column: Raw) -> Raw:
 
 def _joined(parts: Sequence[Raw]) -> Raw:
     if any(isinstance(part, np.ma.MaskedArray) for part in parts):
-        joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call]
+        joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call] # of NumPy
         return joined
     return np.concatenate(parts) if parts else np.empty(0)
 

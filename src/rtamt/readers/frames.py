@@ -143,7 +143,8 @@ def _pandas_column(series: Any) -> Raw:
     missing = series.isna().to_numpy()
     kind = series.dtype.kind
     if kind in "Mm":
-        return series.to_numpy()  # type: ignore[no-any-return]
+        times: Raw = series.to_numpy()
+        return times
     if kind in "fiub":
         values = series.to_numpy(dtype=np.float64, na_value=np.nan) if missing.any() else series.to_numpy()
     else:
@@ -164,9 +165,10 @@ def _polars_column(series: Any) -> Raw:
     kind = type(series.dtype).__name__
     if kind == "Datetime":
         zoned = series if series.dtype.time_zone is None else series.dt.convert_time_zone("UTC")
-        return zoned.dt.replace_time_zone(None).to_numpy()  # type: ignore[no-any-return]
-    if kind in {"Date", "Duration"}:
-        return series.to_numpy()  # type: ignore[no-any-return]
+        series = zoned.dt.replace_time_zone(None)
+    if kind in {"Datetime", "Date", "Duration"}:
+        times: Raw = series.to_numpy()
+        return times
     if not series.dtype.is_numeric() and kind != "Boolean":
         return np.array([*series.to_list(), None], dtype=object)[:-1]
     if missing is None and kind != "Decimal":

@@ -57,7 +57,7 @@ def _limited(core: Any, path: str) -> Any:
     """Return pyulog's reader, which does not spell out formats of nested arrays without end."""
     left = _MOST_FIELDS
 
-    class Topic(core.ULog._MessageAddLogged):  # type: ignore[misc]
+    class Topic(core.ULog._MessageAddLogged):  # type: ignore[misc] # imported at run time
         def _parse_nested_type(self, prefix_str: str, type_name: str, message_formats: Any) -> None:
             nonlocal left
             before = len(self.field_data)
@@ -69,7 +69,7 @@ def _limited(core: Any, path: str) -> Any:
                     f"of arrays included; the file is damaged: copy or export it again"
                 )
 
-    class Log(core.ULog):  # type: ignore[misc]
+    class Log(core.ULog):  # type: ignore[misc] # imported at run time
         _MessageAddLogged = Topic
 
     return Log

@@ -63,7 +63,7 @@ class Job:
     def key(self) -> str:
         """A hash of everything but the recording that decides about its rows: programs, options, semantics."""
         parts = [self.suite.fingerprint, self.suite.select, SEMANTICS_VERSION]
-        parts += [[name, self.options[name]] for name in sorted(self.options)]  # type: ignore[literal-required]
+        parts += [[name, self.options[name]] for name in sorted(self.options)]  # type: ignore[literal-required] # its own names
         return hashlib.sha256(json.dumps(parts, default=list).encode()).hexdigest()
 
     def table(self, path: str) -> VerdictTable:

@@ -38,7 +38,7 @@ class Manifest:
         self._places: dict[Recording, int] = {}
         self._synced = time.monotonic()
         try:  # closed by __exit__
-            self._file: IO[bytes] = tempfile.TemporaryFile() if path is None else open(path, "a+b")  # noqa: SIM115
+            self._file: IO[bytes] = tempfile.TemporaryFile() if path is None else open(path, "a+b")  # noqa: SIM115 - see above
         except OSError as error:
             raise UsageError(f"cannot write the manifest '{path}': {error.strerror}") from None
         try:

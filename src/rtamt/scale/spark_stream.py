@@ -91,13 +91,13 @@ def _processor(spec: Specification, options: dict[str, Any], width: int, *, held
     """Return what Spark runs for each group; the class exists where Spark does."""
     base = library("pyspark.sql.streaming", "rtamt.scale.spark.stream", "spark").StatefulProcessor
 
-    class Fleets(base):  # type: ignore[misc, valid-type]
+    class Fleets(base):  # type: ignore[misc, valid-type] # imported at run time
         def init(self, handle: Any) -> None:
             self._handle = handle
             self._fleet = handle.getValueState("fleet", "state binary")
             self._held: Any = handle.getValueState("held", "samples binary") if held else None
 
-        def handleInputRows(self, _key: Any, rows: Iterable[Any], timers: Any) -> Iterator[Any]:  # noqa: N802
+        def handleInputRows(self, _key: Any, rows: Iterable[Any], timers: Any) -> Iterator[Any]:  # noqa: N802 - Spark gives the name
             samples = [sample for frame in rows for sample in _samples(frame, width)]
             if self._held is None:
                 yield self._results(samples)
@@ -107,9 +107,9 @@ def _processor(spec: Specification, options: dict[str, Any], width: int, *, held
 
         def handleExpiredTimer(  # noqa: N802 - Spark gives the names
             self,
-            key: Any,  # noqa: ARG002
-            timerValues: Any,  # noqa: N803
-            expiredTimerInfo: Any,  # noqa: ARG002, N803
+            key: Any,  # noqa: ARG002 - of an empty shard
+            timerValues: Any,  # noqa: N803 - as above
+            expiredTimerInfo: Any,  # noqa: ARG002, N803 - as above
         ) -> Iterator[Any]:
             yield from self._release(_read(self._held), timerValues.getCurrentWatermarkInMs())
 

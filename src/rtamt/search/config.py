@@ -135,7 +135,8 @@ def _plant(data: dict[str, Any], folder: Path) -> Callable[..., Any]:
     found = getattr(made, name, None)
     if not callable(found):
         raise UsageError(f"the module '{module}' has no function '{name}'{did_you_mean(name, dir(made))}")
-    return found  # type: ignore[no-any-return]
+    function: Callable[..., Any] = found
+    return function
 
 
 def _module(name: str, folder: Path) -> ModuleType:

@@ -158,7 +158,7 @@ class _Shape(ABC):
                 )
 
     def _given(self) -> dict[str, Number]:
-        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type] # classes derived from it are
 
     def parameters(self) -> dict[str, Range]:
         """Return the ranges among the numbers of this signal."""

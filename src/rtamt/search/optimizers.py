@@ -71,7 +71,7 @@ def cma_es(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:
         strategy.tell(points, list(values))
 
 
-def differential_evolution(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:  # noqa: ARG001
+def differential_evolution(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:  # noqa: ARG001 - its own
     """Differential evolution (scipy), one generation per batch."""
     optimize = library("scipy.optimize", "this optimizer", "falsify")
     optimize.differential_evolution(
@@ -84,7 +84,7 @@ def differential_evolution(evaluate: Evaluate, dimensions: int, seed: int, batch
     )
 
 
-def dual_annealing(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:  # noqa: ARG001
+def dual_annealing(evaluate: Evaluate, dimensions: int, seed: int, batch: int) -> None:  # noqa: ARG001 - it has none
     """Dual annealing (scipy), one point at a time."""
     optimize = library("scipy.optimize", "this optimizer", "falsify")
     optimize.dual_annealing(

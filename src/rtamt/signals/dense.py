@@ -73,7 +73,7 @@ class Dense(TimeDomain):
         object.__setattr__(self, "resolution", positive_period(resolution, "resolution"))
 
     @classmethod
-    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Dense:  # noqa: ARG003
+    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Dense:  # noqa: ARG003 - it has neither
         """See :class:`TimeDomain`."""
         return cls(resolution)
 

@@ -92,7 +92,7 @@ class Discrete(TimeDomain):
         object.__setattr__(self, "tolerance", tolerance)
 
     @classmethod
-    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Discrete:  # noqa: ARG003
+    def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Discrete:  # noqa: ARG003 - it has none
         """See :class:`TimeDomain`."""
         return cls(period, tolerance)
 
@@ -228,11 +228,11 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return replace(self, units=units)
 
-    def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002
+    def started(self, names: Collection[str]) -> DiscreteTrace:  # noqa: ARG002 - all start together
         """See :class:`DomainTrace`: all variables start with the first sample."""
         return self
 
-    def held_until(self, end: int) -> DiscreteTrace:  # noqa: ARG002
+    def held_until(self, end: int) -> DiscreteTrace:  # noqa: ARG002 - values are not held
         """See :class:`DomainTrace`: there is nothing after the last sample."""
         return self
 
@@ -270,7 +270,7 @@ class DiscreteTrace(DomainTrace):
         scale = TimeScale.of(NANOSECOND, [self.timestamps], self.unit)
         return scale.ticks(self.timestamps[np.asarray(positions, np.int64)], TIME)
 
-    def sampled(self, name: str) -> NDArray[np.int64]:  # noqa: ARG002
+    def sampled(self, name: str) -> NDArray[np.int64]:  # noqa: ARG002 - the same for all
         """See :class:`DomainTrace`: all variables have the same samples."""
         return np.arange(len(self))
 

@@ -212,7 +212,7 @@ class DomainTrace(ABC):
     def started(self, names: Collection[str]) -> Self:
         """Return the recording for formulas of these variables: it starts when all of them have started."""
 
-    def ended_by(self, names: Collection[str]) -> Self:  # noqa: ARG002
+    def ended_by(self, names: Collection[str]) -> Self:  # noqa: ARG002 - most domains end so
         """Return the recording that ends with the last sample of these variables, whatever the others have later."""
         return self
 

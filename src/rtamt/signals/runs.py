@@ -23,7 +23,7 @@ def clipped(runs: Iterable[R], begin: int, end: int) -> Iterator[R]:
     """
     for first, last, *rest in runs:
         if max(first, begin) < min(last, end):
-            yield max(first, begin), min(last, end), *rest  # type: ignore[misc]
+            yield max(first, begin), min(last, end), *rest  # type: ignore[misc] # an R again
 
 
 def without(runs: Iterable[Decided], others: Sequence[Decided]) -> Iterator[Decided]:
@@ -69,7 +69,7 @@ def merged(runs: Iterable[R]) -> tuple[R, ...]:
     merged: list[R] = []
     for run in runs:
         if merged and merged[-1][1] == run[0] and merged[-1][2:] == run[2:]:
-            merged[-1] = (merged[-1][0], *run[1:])  # type: ignore[assignment]
+            merged[-1] = (merged[-1][0], *run[1:])  # type: ignore[assignment] # an R again
         else:
             merged.append(run)
     return tuple(merged)

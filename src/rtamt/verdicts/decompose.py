@@ -100,7 +100,7 @@ def anchor(formula: Formula) -> Anchored:
         if id(node) not in reached:
             continue
         if facts[id(node)].joins:
-            parts[id(node)] = replace(node, args=tuple([parts[id(arg)] for arg in children(node)]))  # type: ignore[type-var]
+            parts[id(node)] = replace(node, args=tuple([parts[id(arg)] for arg in children(node)]))  # type: ignore[type-var] # an Apply
         elif facts[id(node)].looks_ahead:
             parts[id(node)] = leaf(_ahead(node))
         else:

@@ -245,7 +245,7 @@ def check(number: int) -> str | None:
     """Check a case; return the name of its law and of its implementation, or None where there is nothing to check."""
     law, made = PAIRS[number % len(PAIRS)]
     try:
-        law(Random(number), made)  # noqa: S311 - no secret
+        law(Random(number), made)
     except laws.NothingToCheck:
         return None
     return f"{law.__name__} of {made.name}"

@@ -142,7 +142,7 @@ def _twin(rng: Random, monitor: Any) -> Any:
     kind = rng.choice(("same", "same", "copy", "pickle"))
     if kind == "copy":
         return copy.copy(monitor)
-    return pickle.loads(pickle.dumps(monitor)) if kind == "pickle" else monitor  # noqa: S301 - our own
+    return pickle.loads(pickle.dumps(monitor)) if kind == "pickle" else monitor
 
 
 def _watched(rng: Random, spec: Specification) -> list[str]:

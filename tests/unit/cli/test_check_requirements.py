@@ -91,7 +91,7 @@ def test_reports_name_requirements_by_their_ids(run, write):
     write("drive.csv", DRIVE)
     reports = ("--junit", "r.xml", "--sarif", "r.sarif", "--html", "r.html", "-o", "r.csv", "--quiet")
     assert run("check", "braking.stl", "drive.csv", *reports).code == 1
-    suites = ET.parse("r.xml").getroot()  # noqa: S314 - our own text
+    suites = ET.parse("r.xml").getroot()
     told = "REQ-7 (brakes in time) is violated by drive.csv: robustness -0.5, first violated at 1 s"
     assert [(s.get("name"), s.get("tests"), s[0][0].get("message")) for s in suites] == [
         ("REQ-7", "1", told),

@@ -31,7 +31,7 @@ def test_what_a_file_is_called_drives_no_terminal_and_breaks_no_report(run, tmp_
     assert not ACTIVE.search(re.sub("\x1b\\[(31|1|0)m", "", answer.out + answer.err))
     if options == ["--json"]:
         assert json.loads(answer.out)["trace"].encode().decode().startswith(name[:3])
-    ET.fromstring((tmp_path / "junit").read_bytes())  # noqa: S314 - we have just written it
+    ET.fromstring((tmp_path / "junit").read_bytes())
     uri = json.loads((tmp_path / "sarif").read_bytes())["runs"][0]
     assert uri["tool"]["driver"]["name"] == "rtamt"
     assert (tmp_path / "html").read_bytes().decode().rstrip().endswith("</html>")

@@ -63,7 +63,7 @@ def test_dates_are_told_as_dates(run, write):
 
 def test_junit(run, files):
     assert run("check", *files, "nowhere.csv", "--junit", "report.xml", "--quiet").code == 2
-    root = ET.parse("report.xml").getroot()  # noqa: S314 - our own text
+    root = ET.parse("report.xml").getroot()
     assert (root.get("tests"), root.get("failures"), root.get("errors")) == ("6", "3", "2")
     assert [(s.get("name"), s.get("tests"), s.get("failures")) for s in root] == [
         ("low", "3", "1"),

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Copy = pytest.mark.parametrize(
     "copied",
-    [copy.copy, copy.deepcopy, lambda spec: pickle.loads(pickle.dumps(spec))],  # noqa: S301
+    [copy.copy, copy.deepcopy, lambda spec: pickle.loads(pickle.dumps(spec))],
     ids=["copy", "deepcopy", "pickle"],
 )
 

@@ -99,7 +99,7 @@ def test_a_specification_can_be_copied_and_pickled_and_says_what_it_is(mode):
     spec = cls()
     spec.declare_var("u", "float")
     spec.set_var_io_type("u", "input")
-    for again in (copy.deepcopy(spec), pickle.loads(pickle.dumps(spec))):  # noqa: S301 - our own bytes
+    for again in (copy.deepcopy(spec), pickle.loads(pickle.dumps(spec))):
         assert type(again) is cls
         assert again.semantics is rtamt.Semantics.INPUT_VACUITY
         assert again.var_io_dict == {"u": "input"}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def compiled(*texts: str, **options: object) -> Program:
-    return compile_program([desugar(parse_formula(text)) for text in texts], Fraction(1), **options)  # type: ignore[arg-type]
+    return compile_program([desugar(parse_formula(text)) for text in texts], Fraction(1), **options)
 
 
 def opcodes(program: Program) -> Counter[str]:

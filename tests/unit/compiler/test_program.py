@@ -75,7 +75,7 @@ def test_memory_is_told_before_it_runs() -> None:
 @pytest.mark.parametrize("code", [None, 3, "RTAMTPRG", ["RTAMTPRG"]])
 def test_what_is_no_bytes_is_no_program_and_the_message_says_so(code: object) -> None:
     with pytest.raises(UsageError) as caught:
-        Program.from_bytes(code)  # type: ignore[arg-type]
+        Program.from_bytes(code)
     assert str(caught.value) == (
         f"expected the bytes of a program, as to_bytes() returns them, got {code!r}; "
         f"read them from a file with open(..., 'rb')"

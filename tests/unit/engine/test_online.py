@@ -53,7 +53,7 @@ def test_a_chunk_makes_all_of_it_known(backend: str) -> None:
     monitor.step(0, 0)
     assert (monitor["asked"], monitor["granted"]) == (-3.0, -3.0)
     monitor.update_many({"req": [], "gnt": []})
-    assert len(monitor["asked"]) == 0  # type: ignore[arg-type]
+    assert len(monitor["asked"]) == 0
 
 
 @BACKENDS
@@ -120,7 +120,7 @@ def test_what_cannot_be_watched_says_why(time: Any) -> None:
 def test_a_look_ahead_goes_its_own_way(backend: str, time: Any) -> None:
     monitor: Any = rtamt.parse("historically(x >= 0)", backend=backend).monitor(time=time, watch="x")
     monitor.update(0, x=5)
-    for branch in (copy.copy(monitor), copy.deepcopy(monitor), pickle.loads(pickle.dumps(monitor))):  # noqa: S301
+    for branch in (copy.copy(monitor), copy.deepcopy(monitor), pickle.loads(pickle.dumps(monitor))):
         assert repr(branch["x"]) == repr(monitor["x"])
         branch.update(1, x=-9)
         branch.finish()
@@ -132,7 +132,7 @@ def test_a_look_ahead_goes_its_own_way(backend: str, time: Any) -> None:
 @TIMES
 def test_a_fresh_and_a_finished_monitor_can_be_copied_too(time: Any) -> None:
     fresh: Any = rtamt.parse("x >= 0", period="100ms").monitor(time=time)
-    twin = pickle.loads(pickle.dumps(fresh))  # noqa: S301 - our own bytes
+    twin = pickle.loads(pickle.dumps(fresh))
     twin.update(0.5, x=1)
     assert (fresh.samples, twin.samples) == (0, 1)
     twin.finish()
@@ -143,7 +143,7 @@ def test_a_fresh_and_a_finished_monitor_can_be_copied_too(time: Any) -> None:
 def test_settings_survive_a_pickle() -> None:
     monitor = rtamt.parse("once[0:200ms](x >= 0)").monitor(period="100ms", tolerance=0.5, watch="x")
     monitor.update(0, x=1)
-    twin = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own bytes
+    twin = pickle.loads(pickle.dumps(monitor))
     assert (twin.update(0.14, x=-3), twin["x"]) == (1.0, -3.0)
 
 

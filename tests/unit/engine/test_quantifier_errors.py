@@ -50,7 +50,7 @@ def test_an_operation_without_a_value_is_named_as_written_without_internal_names
     with pytest.raises(EvaluationError) as error:
         spec.evaluate(columns)
     assert f"'{offline}' has no value at" in str(error.value)
-    for monitor in (spec.monitor(), pickle.loads(pickle.dumps(spec.monitor()))):  # noqa: S301
+    for monitor in (spec.monitor(), pickle.loads(pickle.dumps(spec.monitor()))):
         with pytest.raises(EvaluationError) as error:
             whole_stream(monitor, columns)
         assert f"'{online}' has no value at" in str(error.value)

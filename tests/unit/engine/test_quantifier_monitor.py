@@ -125,7 +125,7 @@ def test_a_new_member_compiles_nothing_in_dense_time_either(monkeypatch):
 def test_copies_and_pickles_of_dense_monitors_go_on_on_their_own(backend):
     monitor = spec("forall v in cars: once[0:2](v.x > ego)", backend=backend, time="dense").monitor()
     monitor.update(0, ego=0.0, **{"car_1.x": 3.0})
-    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301
+    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]
     assert monitor.update(1, ego=9.0, **{"car_1.x": 3.0}).points() == [(1, 3)]
     for twin in twins:
         assert twin.update(1, ego=0.0, **{"car_1.x": 4.0, "car_2.x": 1.0}).points() == [(1, 1)]
@@ -212,7 +212,7 @@ def test_a_sample_of_a_member_that_comes_too_late_is_one_sentence():
 def test_copies_and_pickles_go_on_on_their_own(backend):
     monitor = spec("forall v in cars: once[0:2](v.x > ego)", backend=backend).monitor()
     monitor.update(0, ego=0.0, **{"car_1.x": 3.0})
-    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301
+    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]
     assert monitor.update(1, ego=9.0, **{"car_1.x": 3.0}) == 3
     for twin in twins:
         assert twin.update(1, ego=0.0, **{"car_1.x": 4.0, "car_2.x": 1.0}) == 1
@@ -224,7 +224,7 @@ def test_a_monitor_whose_formula_shares_a_quantifier_comes_back_from_a_pickle():
     both = STL["and"](shared, STL["gt"](STL["if"](shared, Const(1.0), Const(0.0)), Const(0.5)))
     monitor = parsed.with_formula(both).monitor()
     monitor.update(0, **{"car_1.x": 3.0})
-    twin = pickle.loads(pickle.dumps(monitor))  # noqa: S301
+    twin = pickle.loads(pickle.dumps(monitor))
     assert twin.update(1, **{"car_1.x": 4.0}) == monitor.update(1, **{"car_1.x": 4.0}) == 0.5
 
 

@@ -34,7 +34,7 @@ def test_a_value_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
     value = Meddler(lambda: call(monitor))
     tried(monitor, lambda m: take(m, value))
     assert value.again
-    plain: Action = lambda m: take(m, 2.0)  # noqa: E731
+    plain: Action = lambda m: take(m, 2.0)  # noqa: E731 - one of several actions
     orders: tuple[tuple[Action, ...], ...] = ((call, plain), (plain, call), (call,), (plain,), ())
     assert seen(monitor) in [seen(tried(begun(domain, backend), *order)) for order in orders]
 
@@ -66,7 +66,7 @@ def test_a_field_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
     value = Meddler(lambda: call[calling](monitor))
     tried(monitor, lambda m: m.update(3.0, req=Message(value)))
     assert value.again
-    plain: Action = lambda m: m.update(3.0, req=Message(2.0))  # noqa: E731
+    plain: Action = lambda m: m.update(3.0, req=Message(2.0))  # noqa: E731 - one of several actions
     orders: tuple[tuple[Action, ...], ...] = (
         (call[calling], plain),
         (plain, call[calling]),

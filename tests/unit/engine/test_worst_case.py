@@ -23,7 +23,7 @@ FORMULAS = [
 ]
 RANDOM = np.random.default_rng(1)
 X, Y = RANDOM.integers(1, 20, (2, 60)) / 4.0
-COPIES = (copy.copy, copy.deepcopy, lambda monitor: pickle.loads(pickle.dumps(monitor)))  # noqa: S301 - our own
+COPIES = (copy.copy, copy.deepcopy, lambda monitor: pickle.loads(pickle.dumps(monitor)))
 
 
 def values(monitor: Any) -> list[float]:

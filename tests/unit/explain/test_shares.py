@@ -82,7 +82,7 @@ def test_causes_are_made_when_they_are_read():
 
 def test_an_explanation_can_be_pickled():
     explanation = rtamt.parse("always(maximum[0:2](x) > 3)").evaluate({"x": [5, 1, 1, 1]}).explain()
-    twin = pickle.loads(pickle.dumps(explanation))  # noqa: S301 - our own
+    twin = pickle.loads(pickle.dumps(explanation))
     assert (twin.implicant, twin.critical, str(twin)) == (
         explanation.implicant,
         explanation.critical,

@@ -36,7 +36,7 @@ def rows(suite, data, **more):
 def both(specs, **settings):
     """Return a suite, and the same read from bytes."""
     suite = rtamt.Suite(specs, **settings)
-    return suite, pickle.loads(pickle.dumps(suite))  # noqa: S301 - our own
+    return suite, pickle.loads(pickle.dumps(suite))
 
 
 def test_types_parameters_recorded_names_units_and_optional_signals_are_kept():

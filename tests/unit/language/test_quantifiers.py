@@ -37,7 +37,7 @@ def test_quantifiers_print_as_they_are_parsed(text):
     formula = parse_document(DECLARED + text).formula
     assert str(formula) == text
     assert parse_document(DECLARED + str(formula)).formula == formula
-    assert pickle.loads(pickle.dumps(formula)) == formula  # noqa: S301
+    assert pickle.loads(pickle.dumps(formula)) == formula
 
 
 def test_what_follows_the_colon_extends_as_far_to_the_right_as_it_can():

@@ -99,10 +99,10 @@ def test_a_formula_names_its_tables():
 
 def test_a_specification_with_tables_is_pickled():
     spec = rtamt.parse(TEXT)
-    again = pickle.loads(pickle.dumps(spec))  # noqa: S301 - written here
+    again = pickle.loads(pickle.dumps(spec))
     assert again.formula == spec.formula
-    assert pickle.loads(pickle.dumps(spec.formula)) == spec.formula  # noqa: S301 - written here
-    past = pickle.loads(pickle.dumps(spec.with_formula(spec.pastified())))  # noqa: S301 - written here
+    assert pickle.loads(pickle.dumps(spec.formula)) == spec.formula
+    past = pickle.loads(pickle.dumps(spec.with_formula(spec.pastified())))
     assert past.monitor().update(0, x=5) is not None
 
 

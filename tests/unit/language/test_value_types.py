@@ -45,7 +45,7 @@ def test_the_printed_text_of_typed_formulas_has_their_names_and_parses_back(text
     again = parse_formula(
         printed, variables=document.variables, types=document.types, enumerations=document.enumerations
     )
-    assert again == formula == pickle.loads(pickle.dumps(formula))  # noqa: S301 - made here
+    assert again == formula == pickle.loads(pickle.dumps(formula))
     assert types_of(again) == types_of(formula)
 
 

@@ -71,7 +71,7 @@ class Pair(ParallelEnv):
     def _now(self):
         return {agent: np.array([float(self.columns[agent][self.at])]) for agent in self.agents}
 
-    def reset(self, seed=None, options=None):  # noqa: ARG002
+    def reset(self, seed=None, options=None):  # noqa: ARG002 - it starts the same every time
         self.agents, self.at = list(self.possible_agents), 0
         return self._now(), {agent: {} for agent in self.agents}
 

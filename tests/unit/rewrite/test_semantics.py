@@ -174,9 +174,9 @@ def test_a_function_is_watched_with_too():
 
 def test_a_semantics_survives_pickling():
     spec = rtamt.parse("u >= 3", roles=ROLES, semantics="output-robustness")
-    again = pickle.loads(pickle.dumps(spec))  # noqa: S301 - our own bytes
+    again = pickle.loads(pickle.dumps(spec))
     assert (again.semantics, dict(again.roles)) == ("output_robustness", ROLES)
-    own = pickle.loads(pickle.dumps(rtamt.parse("u >= 3", semantics=outputs_alone)))  # noqa: S301 - our own bytes
+    own = pickle.loads(pickle.dumps(rtamt.parse("u >= 3", semantics=outputs_alone)))
     assert own.semantics is outputs_alone
 
 

@@ -124,7 +124,7 @@ def test_each_of_several_requirements_has_its_episodes():
 
 @BACKENDS
 @pytest.mark.parametrize("time", ["discrete", "dense"])
-@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])
 def test_copy_remembers_episodes_of_its_own(twin, time, backend):
     monitor = rtamt.parse("x >= 0", backend=backend).monitor(time=time, episodes=True)
     monitor.update(0, x=-1)

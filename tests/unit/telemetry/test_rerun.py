@@ -46,7 +46,7 @@ class Rerun:
 
         self.Scalars, self.TextLog, self.RecordingStream = Scalars, TextLog, RecordingStream
 
-    def TimeColumn(self, timeline, *, sequence=None, duration=None, timestamp=None):  # noqa: N802
+    def TimeColumn(self, timeline, *, sequence=None, duration=None, timestamp=None):  # noqa: N802 - the name of Rerun
         assert (timeline, sequence) == ("time", None)
         return duration if timestamp is None else timestamp
 

@@ -27,7 +27,7 @@ def both(spec, **settings):
 def test_both_back_ends_report_the_same_changes_of_random_formulas(lateness):
     compared = 0
     for seed in range(60):
-        rng = Random(seed)  # noqa: S311 - no secret
+        rng = Random(seed)
         drawn = case(rng, odd=False)
         ranges = {name: limits for name, limits in drawn.ranges.items() if name in drawn.names}
         made = both(str(drawn.formula), ranges=ranges, lateness=lateness)
@@ -57,7 +57,7 @@ def test_changes_hold_what_they_declare():
         )
         assert newest == (3.0, 3.0, rtamt.Interval(float("-inf"), float("inf")), False, False)
         assert hash(newest) == hash(tuple(newest))
-        assert pickle.loads(pickle.dumps(newest)) == newest  # noqa: S301 - our own
+        assert pickle.loads(pickle.dumps(newest)) == newest
 
 
 def test_changes_have_the_times_of_the_caller():

@@ -130,7 +130,7 @@ class ImportsOthersError(Exception):
 class NoLibrary(Library):
     """That of a file which imports no other: what is in it depends on its text alone."""
 
-    def read(self, path: str) -> tuple[str, str]:  # noqa: ARG002
+    def read(self, path: str) -> tuple[str, str]:  # noqa: ARG002 - it reads none
         """Raise :class:`ImportsOthersError`."""
         raise ImportsOthersError
 

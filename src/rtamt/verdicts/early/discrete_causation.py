@@ -46,7 +46,8 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
 
     def _update_carefully(self, *given: Any, **values: Any) -> Causation:
         """Take a sample that the core rejected, or report what is wrong with it."""
-        return self._take_in_order(time_of(given), values)  # type: ignore[no-any-return]
+        caused: Causation = self._take_in_order(time_of(given), values)
+        return caused
 
     def _bounds_of(
         self, values: Mapping[str, Any], index: int, time: float

@@ -82,7 +82,8 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
 
     def __getitem__(self, name: str | Formula) -> list[Verdict]:
         """Return the verdicts of a formula that is watched which the last call settled."""
-        return self._as_given(self._backend.verdicts(self._output(name)))  # type: ignore[no-any-return]
+        news: list[Verdict] = self._as_given(self._backend.verdicts(self._output(name)))
+        return news
 
     def _as_given(self, verdicts: Any) -> Any:
         """Return verdicts with their times in the form of the caller's."""

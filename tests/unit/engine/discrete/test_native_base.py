@@ -72,7 +72,7 @@ def test_without_a_compiled_monitor_the_function_is_called() -> None:
         watcher = Watcher(backend)
         assert (watcher.update(0.0, a=1.0, b=1.0), watcher.step(1.0)) == ("asked", "asked")
     with pytest.raises(TypeError, match="MonitorBase"):
-        Watcher.update(object(), 0.0)  # type: ignore[arg-type]
+        Watcher.update(object(), 0.0)
     with pytest.raises(TypeError, match=r"^The monitor was never initialised\.$"):
         Watcher.__new__(Watcher).update(0.0)
 

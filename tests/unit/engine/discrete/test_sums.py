@@ -37,7 +37,7 @@ def test_every_chunking_gives_the_same_bits(text):
                 monitor.update_many({"x": chunk, "time": np.arange(begin, begin + len(chunk))}).values
             )
             if begin == 5 * size:
-                monitor = pickle.loads(pickle.dumps(copy.deepcopy(monitor)))  # noqa: S301 - our own bytes
+                monitor = pickle.loads(pickle.dumps(copy.deepcopy(monitor)))
         np.testing.assert_array_equal(np.concatenate(known), expected)
 
 

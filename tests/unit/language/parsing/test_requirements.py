@@ -145,7 +145,7 @@ def test_a_formula_cannot_read_a_requirement():
 def test_one_of_several_is_a_specification_of_its_own_also_after_pickling():
     spec = rtamt.parse("specification s; low = x <= 3; require A: always(low); require B: y > 1", period=2)
     one = spec.requirements["A"]
-    for again in (one, pickle.loads(pickle.dumps(one)), copy.deepcopy(one)):  # noqa: S301 - our own bytes
+    for again in (one, pickle.loads(pickle.dumps(one)), copy.deepcopy(one)):
         assert (str(again.formula), again.name, again.input_names) == ("always(x <= 3)", "A", ("x",))
         assert again.period == 2
         assert list(again.requirements) == ["A"]

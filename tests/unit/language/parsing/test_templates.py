@@ -146,11 +146,11 @@ def test_a_hostile_file_is_rejected_in_seconds():
 def test_templates_are_no_requirements_and_survive_pickling():
     spec = rtamt.parse(SETTLES + "require R: settles(v, 1, 2, 3)")
     assert list(spec.requirements) == ["R"]
-    again = pickle.loads(pickle.dumps(spec))  # noqa: S301
+    again = pickle.loads(pickle.dumps(spec))
     assert again.formula == spec.formula
     monitor = again.monitor(time="discrete", watch=["settles(v, 1, 2, 3)"], verdict="interval")
     assert monitor is not None
-    document = pickle.loads(pickle.dumps(spec.document))  # noqa: S301
+    document = pickle.loads(pickle.dumps(spec.document))
     assert document.templates["settles"].signature == "settles(x, target, band, within)"
 
 

@@ -10,7 +10,7 @@ from tests.unit.signals.third_domain.turns import TURN
 
 
 class Definition(Defined):
-    def evaluator(self, formulas, step, inputs):  # noqa: ARG002
+    def evaluator(self, formulas, step, inputs):  # noqa: ARG002 - the interface has it
         return lambda trace: [evaluate(f, trace.columns, len(trace), step) for f in formulas]
 
     def bounds_of(self, formula, trace):
@@ -23,7 +23,7 @@ class Definition(Defined):
 class TurnMonitor:
     """Takes a value of every variable a turn, and no time."""
 
-    def __init__(self, formula, domain, **settings):  # noqa: ARG002
+    def __init__(self, formula, domain, **settings):  # noqa: ARG002 - the interface has it
         self.input_names = variables(formula)
         self.samples = 0
         self._formula = formula

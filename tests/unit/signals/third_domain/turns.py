@@ -31,7 +31,7 @@ class Turns(TimeDomain):
     }
 
     @classmethod
-    def of(cls, period, tolerance, resolution):  # noqa: ARG003
+    def of(cls, period, tolerance, resolution):  # noqa: ARG003 - it has none
         return cls()
 
     @property

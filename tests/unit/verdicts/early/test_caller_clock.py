@@ -33,7 +33,7 @@ _SAMPLES = st.lists(st.tuples(st.integers(-8, 8), st.integers(0, 2)), min_size=1
 
 def _continued(monitor, how):
     if how == "pickle":
-        return pickle.loads(pickle.dumps(monitor))  # noqa: S301 - its own
+        return pickle.loads(pickle.dumps(monitor))
     return copy.copy(monitor) if how == "copy" else monitor
 
 
@@ -114,7 +114,7 @@ def test_watermark_and_clock_take_dates_as_samples_do():
 def test_first_samples_survive_a_pickle_before_it_is_known_where_the_trace_starts():
     monitor = rtamt.parse("x > 0").monitor(verdict="interval", lateness=2)
     monitor.update(1, x=3)
-    monitor = pickle.loads(pickle.dumps(monitor))  # noqa: S301 - its own
+    monitor = pickle.loads(pickle.dumps(monitor))
     monitor.finish()
     assert monitor.interval() == Interval(3.0, 3.0)
 

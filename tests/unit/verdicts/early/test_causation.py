@@ -63,7 +63,7 @@ def test_runs_of_a_formula_that_reads_the_past_go_on_beyond_the_newest_sample(ba
 
 
 @BACKENDS
-@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])
 def test_copy_goes_its_own_way(twin, backend):
     monitor = rtamt.parse(RESPONSE, backend=backend).monitor(verdict="causation")
     monitor.update(0, req=5, gnt=0)

@@ -64,7 +64,7 @@ def test_runs_that_read_the_past_never_end(backend):
 
 
 @BACKENDS
-@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])
 def test_copy_goes_its_own_way(twin, backend):
     monitor = opened("x >= 0 until[0:3] y >= 3", backend)
     for name, value in (("x", 1), ("y", 1)):

@@ -174,7 +174,7 @@ def test_correction_is_replayed_and_reported_as_a_retraction():
         monitor.update(3.5, x=1)
 
 
-@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])
 def test_copy_goes_its_own_way(twin):
     monitor = interval()
     monitor.update(0, x=4)

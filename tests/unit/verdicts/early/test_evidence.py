@@ -42,7 +42,7 @@ def settings_of(drawn):
 @settings(max_examples=25)
 @given(seed=st.integers(0, 2**32), backend=st.sampled_from(BACKENDS))
 def test_causes_decide_the_verdict_alone_and_none_can_be_left_out(seed, backend):
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     drawn = case(rng, odd=False)
     spec = rtamt.parse(to_text(drawn.formula), period=1, backend=backend)
     assume(spec.input_names == drawn.names)
@@ -72,7 +72,7 @@ def test_causes_decide_the_verdict_alone_and_none_can_be_left_out(seed, backend)
 @settings(max_examples=25)
 @given(seed=st.integers(0, 2**32), backend=st.sampled_from(BACKENDS))
 def test_causes_in_dense_time_decide_the_run_alone(seed, backend):
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     drawn = dense_case(rng, odd=False)
     spec = rtamt.parse(to_text(drawn.formula), time="dense", resolution=1, backend=backend)
     assume(spec.input_names == drawn.names)
@@ -111,7 +111,7 @@ def test_a_copied_and_a_pickled_monitor_explain_on_their_own():
     spec = rtamt.parse("once[0:3](x >= 3)")
     monitor = spec.monitor(verdict="eager", explain=True)
     monitor.update(0, x=5)
-    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301 - our own
+    twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]
     for k, each in enumerate([*twins, monitor]):
         (verdict,) = each.update(1, x=k)
         assert each.explain(verdict) == [Cause("x", 0, 5)]

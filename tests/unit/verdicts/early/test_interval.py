@@ -24,7 +24,7 @@ def ends(monitor, *time):
     return found.lower, found.upper
 
 
-@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])  # noqa: S301
+@pytest.mark.parametrize("twin", [copy.copy, lambda monitor: pickle.loads(pickle.dumps(monitor))])
 def test_copy_goes_its_own_way(twin):
     monitor = interval()
     monitor.update(0, x=4)

@@ -61,7 +61,7 @@ def test_copies_pickles_and_failed_updates(backend):
     monitor = spec(text, backend=backend).monitor(verdict="interval")
     for t in range(3):
         monitor.update(t, ego=0.0, **{"car_1.x": 1.0 + t, "car_2.x": 2.0})
-        twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]  # noqa: S301
+        twins = [copy.copy(monitor), pickle.loads(pickle.dumps(monitor))]
         with pytest.raises(EvaluationError):
             monitor.update(t + 1, ego=0.0, **{"car_1.x": inf, "car_3.x": -0.0, "car_2.x": -inf})
         with pytest.raises(TraceError):

@@ -48,7 +48,7 @@ def draw(rng, drawn, i):
 
 @given(seed=st.integers(0, 2**32), late=st.booleans())
 def test_robustness_lies_within_the_bounds_under_a_prediction_that_comes_true(seed, late):
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     drawn = case(rng, odd=False)
     assume(horizon(drawn.formula) is not None)
     monitors = [
@@ -102,7 +102,7 @@ def dense_draw(rng, drawn, came):
 
 @given(seed=st.integers(0, 2**32), late=st.booleans())
 def test_dense_robustness_lies_within_the_bounds_under_a_prediction_that_comes_true(seed, late):
-    rng = Random(seed)  # noqa: S311 - no secret
+    rng = Random(seed)
     drawn = dense_case(rng, ordered=True)
     if late:  # what has not come by its lateness never will
         came, last = {(t, name) for t, row in drawn.updates for name in row}, drawn.updates[-1][0]
