@@ -15,7 +15,7 @@ CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak vsix vscode fuzz clean
+.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak vsix vscode viewers fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -112,6 +112,10 @@ vsix: ## build the extension for Visual Studio Code with npm: editors/vscode/rta
 
 vscode: $(VENV)/.core $(VENV)/.extras vsix ## use the extension in a real Visual Studio Code, which npm installs into build/vscode, and draw docs/images/editor*.png
 	$(RUN) tools/vscode.py
+
+viewers: $(VENV)/.core $(VENV)/.extras ## open exported files in Foxglove Studio, which npm installs into build/foxglove, and in Rerun, and draw their images; needs xvfb and mesa-vulkan-drivers
+	$(RUN) -m pip install --quiet "rtamt[rerun]"
+	$(RUN) tools/viewers.py
 
 FUZZ_SECONDS ?= 60
 fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input that breaks the core, the parser or the readers: FUZZ_SECONDS, then some minutes

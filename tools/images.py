@@ -38,7 +38,6 @@ HOW_TO = {
     "lint": "ranges.png",
     "mutate": "matrix.png",
     "simulators": "drive.png",
-    "telemetry": "verdicts.png",
 }
 
 README = "always((req >= 3) -> eventually[0:2](gnt >= 3))"

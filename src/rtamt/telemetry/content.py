@@ -65,9 +65,9 @@ class Variable:
 class Finding:
     """What came of a requirement, over time and at the start.
 
-    ``verdicts``: the verdict at the first instant, and at each at which it changes. ``known``: bounds of the
-    robustness at the start, after each sample; None if they were not asked for. ``satisfied``: None if the samples
-    do not decide it.
+    ``verdicts``: the verdict at the first instant, at each at which it changes, and at the last one. ``known``: bounds
+    of the robustness at the start, after each sample; None if they were not asked for. ``satisfied``: None if the
+    samples do not decide it.
     """
 
     name: str
@@ -224,9 +224,11 @@ def _bounded(signal: Signal, result: Result) -> Bounded:
 
 
 def _changes(truth: Bounded) -> Iterator[tuple[int, str]]:
-    """Yield the first verdict, and every other than the one before."""
+    """Yield the first verdict, every other than the one before, and the last, to which viewers draw the one before."""
     codes = np.where(truth.lower > 0, 1, np.where(truth.upper < 0, -1, 0))
-    places = np.flatnonzero(np.concatenate(([True], codes[1:] != codes[:-1])))
+    shown = np.concatenate(([True], codes[1:] != codes[:-1]))
+    shown[-1] = True
+    places = np.flatnonzero(shown)
     texts = {1: SATISFIED, -1: VIOLATED, 0: UNKNOWN}
     for place in places.tolist():
         yield int(truth.times[place]), texts[int(codes[place])]

@@ -96,11 +96,11 @@ def _plot(title: str, paths: Sequence[str]) -> dict[str, Any]:
             "showXAxisLabels": True,
             "showYAxisLabels": True,
             "showLegend": True,
-            "legendDisplay": "floating",
+            "legendDisplay": "top",
             "showPlotValuesInLegend": True,
             "isSynced": True,
             "xAxisVal": "timestamp",
-            "sidebarDimension": 240,
+            "sidebarDimension": 32 + 24 * len(paths),  # the height of the legend
         },
     )
 

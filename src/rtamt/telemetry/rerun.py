@@ -35,10 +35,12 @@ def log_rerun(
     """Log signals, robustness, bounds, verdicts and violations to a recording of Rerun.
 
     ``result``: of any specification, or results by the names of their requirements. ``path``: the file to write
-    (``.rrd``). Without it they are logged to ``recording``, a ``rerun.RecordingStream``, by default the current
-    one. Entities have the names of the topics of :func:`~rtamt.telemetry.write_mcap`; the timeline ``time`` has the
-    times of the trace: dates if it has dates or counts from 1970, else durations. ``bounds``: also the bounds of
-    the robustness at the start, as known after each sample.
+    (``.rrd``), which also has a layout of the viewer: a page for each requirement, with a plot of its signals and a
+    plot of its robustness, beside the verdicts and violations. Without it they are logged to ``recording``, a
+    ``rerun.RecordingStream``, by default the current one. Entities have the names of the topics of
+    :func:`~rtamt.telemetry.write_mcap`; the timeline ``time`` has the times of the trace: dates if it has dates or
+    counts from 1970, else durations. ``bounds``: also the bounds of the robustness at the start, as known after each
+    sample.
 
     Raises :class:`UsageError` if the package ``rerun-sdk`` is missing, and :class:`TraceError` if the file cannot
     be written.
@@ -55,11 +57,50 @@ def log_content(content: Content, path: str | os.PathLike[str] | None = None, re
     try:
         with replacing(path) as new:
             stream = rerun.RecordingStream(APPLICATION)
-            stream.save(new)
+            stream.save(new, default_blueprint=_blueprint(content))
             _Log(rerun, stream, dated=content.dated).content(content)
             stream.disconnect()  # writes what is still in memory
     except OSError as error:
         raise TraceError(f"cannot write '{path}': {error.strerror or error}") from None
+
+
+def _blueprint(content: Content) -> Any:
+    """Return a layout of the viewer: the plots of each requirement, and a list of verdicts and violations."""
+    panels = library("rerun.blueprint", "logging to Rerun", "rerun")
+    keys = {variable.key: variable for variable in content.variables}
+    pages = []
+    for finding in content.findings:
+        plots = [
+            panels.TimeSeriesView(
+                name=f"{finding.name}: robustness",
+                contents=[
+                    *_lines(topic(finding, "robustness"), finding.robustness, topic(finding, "interval")),
+                    *([] if finding.known is None else _ends(topic(finding, "known"))),
+                ],
+            )
+        ]
+        if finding.variables:
+            signals = [f"{ROOT}/signals/{key}" for key in finding.variables]
+            contents = [
+                line
+                for signal, key in zip(signals, finding.variables, strict=True)
+                for line in _lines(signal, keys[key].samples, signal)
+            ]
+            plots.insert(0, panels.TimeSeriesView(name=f"{finding.name}: signals", contents=contents))
+        pages.append(panels.Vertical(*plots, name=finding.name))
+    texts = [topic(finding, what) for finding in content.findings for what in ("verdict", "violations")]
+    log = panels.TextLogView(name="Verdicts and violations", contents=texts)
+    return panels.Blueprint(panels.Horizontal(panels.Tabs(*pages), log, column_shares=[3, 2]))
+
+
+def _lines(entity: str, samples: Bounded, bounds: str) -> list[str]:
+    """Return the entities that show samples: one of what is known exactly, and two of bounds."""
+    exact = samples.lower == samples.upper
+    return ([entity] if exact.any() else []) + ([] if exact.all() else _ends(bounds))
+
+
+def _ends(entity: str) -> list[str]:
+    return [f"{entity}/{end}" for end in ("lower", "upper")]
 
 
 class _Log:
@@ -83,13 +124,13 @@ class _Log:
                 self._scalars(f"{topic(finding, what)}/lower", bounded.times, bounded.lower)
                 self._scalars(f"{topic(finding, what)}/upper", bounded.times, bounded.upper)
         levels = {SATISFIED: "INFO", VIOLATED: "ERROR"}
-        self._texts(
-            topic(finding, "verdict"),
-            [
-                (time, f"{finding.name}: {verdict}", levels.get(verdict, "WARN"))
-                for time, verdict in finding.verdicts
-            ],
-        )
+        before = [None, *(verdict for _, verdict in finding.verdicts)]
+        changes = [
+            (time, f"{finding.name}: {verdict}", levels.get(verdict, "WARN"))
+            for (time, verdict), last in zip(finding.verdicts, before, strict=False)
+            if verdict != last  # a list needs no end of the last one
+        ]
+        self._texts(topic(finding, "verdict"), changes)
         rows = []
         for episode in finding.episodes:
             worst = f"worst robustness {episode.worst:g}"

@@ -70,12 +70,14 @@ def test_signals_and_robustness_are_those_of_the_result(found):
         assert values == part.signal.values.tolist()
 
 
-def test_a_verdict_is_written_at_the_start_and_at_every_change(found):
+def test_a_verdict_is_written_at_the_start_at_every_change_and_at_the_end(found):
     assert [(time, row["verdict"]) for time, row in found[f"{REQUIREMENT}/SPEED/verdict"]] == [
-        (0, "violated")
+        (0, "violated"),
+        (*seconds(4), "violated"),
     ]
     result = rtamt.parse("x >= 3").evaluate({"x": [5, 4, 1, 1, 3]})
     assert verdicts(result) == [(0, "satisfied"), (2, "violated"), (4, "satisfied")]
+    assert verdicts(rtamt.parse("x >= 3").evaluate({"x": [5]})) == [(0, "satisfied")]
 
 
 def verdicts(result):

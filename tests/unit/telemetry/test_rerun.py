@@ -32,18 +32,21 @@ class Rerun:
                 assert color is None
                 return list(zip(text, level, strict=True))
 
+        fake = self
+
         class RecordingStream:
             def __init__(self, application_id, *, recording_id=None, make_default=False):
                 assert (application_id, recording_id, make_default) == ("rtamt", None, False)
                 self.path = None
 
             def save(self, path, default_blueprint=None, *, write_footer=True):
-                assert (default_blueprint, write_footer) == (None, True)
-                self.path = path
+                assert write_footer is True
+                self.path, fake.blueprint = path, default_blueprint
 
             def disconnect(self):
                 Path(self.path).write_text("recording")
 
+        self.blueprint = None
         self.Scalars, self.TextLog, self.RecordingStream = Scalars, TextLog, RecordingStream
 
     def TimeColumn(self, timeline, *, sequence=None, duration=None, timestamp=None):  # noqa: N802 - the name of Rerun
@@ -58,10 +61,45 @@ class Rerun:
         self.sent[entity_path] = (times.dtype.str[1:], times.astype(np.int64).tolist(), columns)
 
 
+class Blueprints:
+    """Panels as tuples, with the signatures of rerun.blueprint."""
+
+    @staticmethod
+    def TimeSeriesView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802
+        assert origin == "/"
+        return "plot", name, contents
+
+    @staticmethod
+    def TextLogView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802
+        assert origin == "/"
+        return "list", name, contents
+
+    @staticmethod
+    def Vertical(*contents, row_shares=None, name=None):  # noqa: N802
+        assert row_shares is None
+        return name, *contents
+
+    @staticmethod
+    def Horizontal(*contents, column_shares=None, name=None):  # noqa: N802
+        assert (len(column_shares), name) == (len(contents), None)
+        return contents
+
+    @staticmethod
+    def Tabs(*contents, active_tab=None, name=None):  # noqa: N802
+        assert active_tab is name is None
+        return contents
+
+    @staticmethod
+    def Blueprint(*parts, auto_layout=None, auto_views=None, collapse_panels=False):  # noqa: N802
+        assert (auto_layout, auto_views, collapse_panels) == (None, None, False)
+        return parts
+
+
 @pytest.fixture
 def rerun(monkeypatch):
     fake = Rerun()
     monkeypatch.setitem(sys.modules, "rerun", fake)
+    monkeypatch.setitem(sys.modules, "rerun.blueprint", Blueprints)
     return fake
 
 
@@ -115,6 +153,36 @@ def test_a_file_is_written_as_a_whole(rerun, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["drive.rrd"]
     assert (tmp_path / "drive.rrd").read_text() == "recording"
     assert len({id(each) for each in rerun.recordings}) == 1
+
+
+def plots(blueprint):
+    """Return the lines of each plot by its name, and the texts of the list."""
+    ((pages, (_, _, texts)),) = blueprint
+    return {name: contents for _, *panels in pages for _, name, contents in panels}, texts
+
+
+def test_a_file_has_a_layout_whose_entities_are_in_it(rerun, tmp_path):
+    log_rerun(drive(), tmp_path / "drive.rrd", bounds=True)
+    found, texts = plots(rerun.blueprint)
+    assert found["SPEED: signals"] == ["/rtamt/signals/speed"]
+    assert found["SPEED: robustness"] == [
+        f"{SPEED}/robustness",
+        f"{SPEED}/known/lower",
+        f"{SPEED}/known/upper",
+    ]
+    assert list(found) == ["SPEED: signals", "SPEED: robustness", "BRAKE: signals", "BRAKE: robustness"]
+    assert {line for lines in found.values() for line in lines} <= set(rerun.sent)
+    assert {text for text in texts if "BRAKE/violations" not in text} <= set(rerun.sent)
+    log_rerun(rtamt.parse("x >= 3").evaluate({"x": [1, 2]}, uncertainty={"x": 0.5}), tmp_path / "x.rrd")
+    found, _ = plots(rerun.blueprint)
+    assert [line for lines in found.values() for line in lines] == [
+        "/rtamt/signals/x/lower",
+        "/rtamt/signals/x/upper",
+        "/rtamt/requirements/requirement_1/interval/lower",
+        "/rtamt/requirements/requirement_1/interval/upper",
+    ]
+    log_rerun(rtamt.parse("true").evaluate({"time": [0, 1]}), tmp_path / "x.rrd")
+    assert len(plots(rerun.blueprint)[0]) == 1
 
 
 @pytest.mark.usefixtures("rerun")
