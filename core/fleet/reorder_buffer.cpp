@@ -129,7 +129,7 @@ std::optional<Rejected> ReorderBuffer::offer_one(const Batch& batch, std::size_t
                      [&](std::size_t input) { return batch.columns[input][index]; });
     }
     if (!wait(line, time, batch, index)) return divert();
-    return release(place, at);
+    return release(place, at, watermark_of(line));
 }
 
 // Remembers how a key was before the batch.
@@ -185,10 +185,10 @@ bool ReorderBuffer::wait(Line& line, double time, const Batch& batch, std::size_
     return true;
 }
 
-// Lets leave what the watermark of a key has reached; `at`: the place in the batch.
-std::optional<Rejected> ReorderBuffer::release(std::uint32_t place, std::int64_t at) {
+// Lets leave what a watermark of a key has reached; `at`: the place in the batch.
+std::optional<Rejected> ReorderBuffer::release(std::uint32_t place, std::int64_t at,
+                                               double watermark) {
     Line& line = lines_[place];
-    const double watermark = watermark_of(line);
     while (line.first != nothing && times_[line.first] <= watermark) {
         const std::uint32_t first = line.first;
         gone_.push_back(first);
@@ -240,24 +240,44 @@ std::optional<Rejected> ReorderBuffer::leave(std::uint32_t place, std::int64_t a
     return std::nullopt;
 }
 
-std::optional<Rejected> ReorderBuffer::advance(double watermark) {
+// Changes lines by visit(), which returns why that is impossible; then nothing has changed.
+template <class Visit>
+std::optional<Rejected> ReorderBuffer::without_samples(Visit&& visit) {
     begin();
-    watermark_ = std::max(watermark_, watermark);
+    std::optional<Rejected> wrong;
     try {
-        for (std::uint32_t place = 0; place < size(); ++place) {
-            const Line& line = lines_[place];
-            if (line.first == nothing || times_[line.first] > watermark_) continue;
-            touch(place);
-            if (auto wrong = release(place, place)) {
-                withdraw();
-                return wrong;
-            }
-        }
+        wrong = std::forward<Visit>(visit)();
     } catch (...) {
         withdraw();
         throw;
     }
-    return std::nullopt;
+    if (wrong) withdraw();
+    return wrong;
+}
+
+std::optional<Rejected> ReorderBuffer::advance(double watermark) {
+    return without_samples([&]() -> std::optional<Rejected> {
+        watermark_ = std::max(watermark_, watermark);
+        for (std::uint32_t place = 0; place < size(); ++place) {
+            const Line& line = lines_[place];
+            if (line.first == nothing || times_[line.first] > watermark_) continue;
+            touch(place);
+            if (auto wrong = release(place, place, watermark_of(line))) return wrong;
+        }
+        return std::nullopt;
+    });
+}
+
+std::optional<Rejected> ReorderBuffer::release(const KeySpan& keys) {
+    return without_samples([&]() -> std::optional<Rejected> {
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const auto place = place_of(keys, i);
+            if (!place) continue;
+            touch(*place);
+            if (auto wrong = release(*place, *place, -never)) return wrong;
+        }
+        return std::nullopt;
+    });
 }
 
 void ReorderBuffer::accept() noexcept {

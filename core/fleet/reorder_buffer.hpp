@@ -60,6 +60,10 @@ class ReorderBuffer {
     // The same without samples: none before this time will come. `places` are those of keys.
     [[nodiscard]] std::optional<Rejected> advance(double watermark);
 
+    // The same of some keys alone: all that waits of them leaves. Keys that are not there are left
+    // out.
+    [[nodiscard]] std::optional<Rejected> release(const KeySpan& keys);
+
     [[nodiscard]] const Ready& ready() const noexcept { return ready_; }
     void accept() noexcept;
     void withdraw() noexcept;
@@ -152,7 +156,10 @@ class ReorderBuffer {
     void touch(std::uint32_t place);
     [[nodiscard]] std::uint32_t make_room();
     [[nodiscard]] bool wait(Line& line, double time, const Batch& batch, std::size_t index);
-    [[nodiscard]] std::optional<Rejected> release(std::uint32_t place, std::int64_t at);
+    [[nodiscard]] std::optional<Rejected> release(std::uint32_t place, std::int64_t at,
+                                                  double watermark);
+    template <class Visit>
+    [[nodiscard]] std::optional<Rejected> without_samples(Visit&& visit);
     template <class Value>
     [[nodiscard]] std::optional<Rejected> leave(std::uint32_t place, std::int64_t at, bool own,
                                                 double time, Value&& value);

@@ -101,6 +101,12 @@ void add_reorder_buffer(const nb::module_& m) {
                 return rejection_of(self.advance(watermark));
             },
             nb::arg("watermark"), "Let leave what is not after a time.")
+        .def(
+            "release",
+            [](ReorderBuffer& self, const nb::object& keys) {
+                return rejection_of(self.release(GivenKeys(keys).span()));
+            },
+            nb::arg("keys"), "Let leave all that waits of some keys.")
         .def("ready", &ready, "What has left: places, whether of the batch, times, columns.")
         .def("accept", &ReorderBuffer::accept, "Keep the batch that was offered.")
         .def("withdraw", &ReorderBuffer::withdraw, "Forget the batch that was offered.")

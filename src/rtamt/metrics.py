@@ -63,6 +63,11 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
                 "counter",
                 "messages that are no samples, and samples with wrong values",
             ),
+            Metric(
+                "rtamt_expired_total",
+                "counter",
+                "keys that have expired, because no message of them came for long",
+            ),
             Metric("rtamt_keys", "gauge", "keys, such as vehicles, that are monitored"),
             Metric(
                 "rtamt_lag_messages",

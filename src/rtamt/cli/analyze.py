@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
 import rtamt
 from rtamt.analysis import NotCoveredError, analyze
-from rtamt.cli.arguments import specification_files
+from rtamt.cli.arguments import specification_paths
 from rtamt.cli.command import CommandError, add_specification_options, add_time_option, read_specifications
 from rtamt.cli.conclusions import add_analysis_options, show
 from rtamt.cli.parser import ERROR, complain
@@ -59,18 +58,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Analyse every specification."""
     recordings = {path: rtamt.read(path) for path in args.recordings}
-    codes = [_analyzed(name, args, recordings) for name in _files([args.spec, *args.more])]
+    codes = [_analyzed(name, args, recordings) for name in specification_paths([args.spec, *args.more])]
     return max(codes)
-
-
-def _files(given: list[str]) -> list[str]:
-    found: list[str] = []
-    for each in given:
-        files = specification_files(each) if os.path.isdir(each) else [each]
-        if not files:
-            raise CommandError(f"the folder '{each}' has no specification files (.stl)")
-        found += files
-    return found
 
 
 def _analyzed(name: str, args: argparse.Namespace, recordings: Mapping[str, Any]) -> int:

@@ -144,6 +144,17 @@ def specification_files(folder: str) -> list[str]:
     )
 
 
+def specification_paths(given: Sequence[str]) -> list[str]:
+    """Return specifications, with the files in a folder in its place."""
+    found: list[str] = []
+    for each in given:
+        files = specification_files(each) if os.path.isdir(each) else [each]
+        if not files:
+            raise CommandError(f"the folder '{each}' has no specification files (.stl)")
+        found += files
+    return found
+
+
 def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
     """Evaluate one specification over one recording; return the name of the recording, and the result."""
     requirement, trace, reading = _one(args, command)

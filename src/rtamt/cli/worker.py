@@ -6,24 +6,28 @@ import os
 import signal
 from typing import TYPE_CHECKING, Any
 
+from rtamt.cli.arguments import specification_paths
 from rtamt.cli.command import (
     METRICS,
     READING,
     CommandError,
     add_specification_options,
     add_stamp_options,
+    add_time_option,
     options,
-    read_specification,
+    read_specifications,
 )
 from rtamt.cli.parser import OK, complain
+from rtamt.language.units.durations import duration
 from rtamt.metrics import add_metrics_options
-from rtamt.signals.domains import DEFAULT
 
 if TYPE_CHECKING:
     import argparse
     from collections import Counter
 
+    from rtamt.fleet.suite import Suite
     from rtamt.metrics import Metrics
+    from rtamt.specification import Specification
 
 _DESCRIPTION = """\
 Monitor the samples of a Kafka topic, and write the robustness to another one. Workers of one group share the
@@ -37,8 +41,13 @@ a field time, t, timestamp, stamp or datetime, or the one that --time-column nam
 partition, one period apart; after a gap, the trace of the key starts again. They are in the order of their times, or
 come late by at most --lateness.
 
+With --time dense, each variable has samples of its own: a message may lack some, and its time is after that of the
+sample before of the same variable. There are no gaps and no lateness then.
+
 output: {"key": "car-1", "time": 0.0, "robustness": 3.0, "satisfied": true}, with the key as the key of the message;
-the time is that of the sample minus the horizon. "satisfied" is null at robustness 0, whose sign does not decide it;
+the time is that of the sample minus the horizon, in dense time one from which on the robustness holds. Of several
+requirements, each has its results, with its name in "requirement"; a sample without a value for one of them is
+rejected for all. "satisfied" is null at robustness 0, whose sign does not decide it;
 with --semantics boolean it is always decided. Infinities are the strings "inf" and "-inf", because JSON has none.
 
 A message that is not a sample, and a sample whose time is not after the one before of its key, or behind by more than
@@ -46,6 +55,10 @@ A message that is not a sample, and a sample whose time is not after the one bef
 rtamt.topic, rtamt.partition and rtamt.offset. One that is too large for that topic goes there without key and value,
 with the header rtamt.omitted. With --lateness, a sample that has waited and then has no value is discarded: its key
 and the error go there. The other samples of the key are not affected.
+
+With --expire-after, keys without messages are forgotten. What waits of them is monitored before that; their next sample
+starts a trace. A key expires by the timestamps of the messages of its partition, so that a worker that resumes has the
+same results. A partition without messages forgets nothing.
 
 Checkpoints are written after the broker has confirmed the results: a state and an offset, in one object for each
 partition. After a crash or a kill, the same command continues there, and nothing is lost. Results after the last
@@ -57,7 +70,8 @@ and --message. With a schema registry, messages begin with an ID: --schema 7=FIL
 
 examples:
   rtamt worker limits.stl --brokers localhost:9092 --topic cars --checkpoint /var/lib/rtamt
-  rtamt worker limits.stl --brokers localhost:9092 --topic cars --format avro --schema cars.avsc"""
+  rtamt worker limits.stl --brokers localhost:9092 --topic cars --format avro --schema cars.avsc
+  rtamt worker limits.stl --brokers localhost:9092 --topic cars --checkpoint /var/lib/rtamt --expire-after 1h"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,6 +79,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
     add_specification_options(parser)
+    parser.add_argument(
+        "more",
+        metavar="SPEC",
+        nargs="*",
+        help="more specifications; a folder: those in it. Each requirement has results of its own",
+    )
+    add_time_option(parser)
     add_stamp_options(parser, "field")
     reading = options(parser, READING)
     reading.add_argument(
@@ -90,6 +111,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DURATION",
         help="how late a sample may arrive: seconds, or with a unit, such as 2s; samples of a key then come in any "
         "order, and wait until one is newer by that (default: they come in the order of their times)",
+    )
+    reading.add_argument(
+        "--expire-after",
+        metavar="DURATION",
+        help="forget a key without a message for so long, by the timestamps of the messages of its partition: seconds, "
+        "or with a unit, such as 30min (default: never)",
     )
     group = options(parser, "Kafka")
     group.add_argument("--brokers", required=True, metavar="HOST:PORT", help="brokers, separated by commas")
@@ -143,9 +170,10 @@ def run(args: argparse.Namespace) -> int:
 
     with exported(args) as metrics:
         counts = _worked(args, metrics)
+    expired = f", {counts['expired']} keys expired" if counts["expired"] else ""
     complain(
         f"{counts['samples']} samples, {counts['results']} results, {counts['violations']} of them violations, "
-        f"{counts['late']} late, {counts['rejected']} rejected"
+        f"{counts['late']} late, {counts['rejected']} rejected{expired}"
     )
     return OK
 
@@ -154,10 +182,11 @@ def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
     from rtamt.scale.kafka import Worker
     from rtamt.scale.kafka_settings import Settings
     from rtamt.scale.messages import MessageReader, decoder
+    from rtamt.specification import Specification
 
     if not args.interval > 0:
         raise CommandError(f"--interval is {args.interval:g}; give a number of seconds, such as 10")
-    spec = read_specification(args, DEFAULT)
+    spec = _spec_of(args)
     decode = decoder(args.format, _schemas(args.schema), args.message)
     if args.time_column == "":
         raise CommandError("a worker needs the time of each sample: name its field with --time-column")
@@ -177,8 +206,10 @@ def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
     if len({settings.topic, settings.output, settings.dead_letters}) < 3:
         raise CommandError("the topics of samples, results and dead letters must be three different ones")
     given: dict[str, Any] = {} if args.capacity is None else {"capacity": args.capacity}
-    given |= {} if args.tolerance is None else {"tolerance": args.tolerance}
+    if args.tolerance is not None and isinstance(spec, Specification):  # a suite has it
+        given["tolerance"] = args.tolerance
     given |= {} if args.lateness is None else {"lateness": args.lateness}
+    given |= {} if args.expire_after is None else {"expire_after": _lifetime(args.expire_after)}
     worker = Worker(spec, reader, settings, say=complain, metrics=metrics, **given)
     before = [
         (each, signal.signal(each, lambda *_: worker.stop())) for each in (signal.SIGTERM, signal.SIGINT)
@@ -189,6 +220,23 @@ def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
         for each, handler in before:
             signal.signal(each, handler)
     return worker.counts
+
+
+def _spec_of(args: argparse.Namespace) -> Specification | Suite:
+    """Return the specification, or a suite of all requirements if there are several."""
+    from rtamt.fleet.suite import Suite
+
+    specs = read_specifications(args, args.time, specification_paths([args.spec, *args.more]))
+    if len(specs) == 1 and len(specs[0].requirements) == 1:
+        return specs[0]
+    return Suite(specs, tolerance=args.tolerance)
+
+
+def _lifetime(given: str) -> float:
+    seconds = duration(given)
+    if seconds <= 0:
+        raise CommandError(f"--expire-after is {given}; give a duration, such as 30min")
+    return float(seconds)
 
 
 def _schemas(given: list[str]) -> dict[int | None, str]:

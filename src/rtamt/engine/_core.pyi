@@ -201,6 +201,9 @@ class ReorderBuffer:
     def advance(self, watermark: float) -> tuple[int, str, int, float | None, int, float | None] | None:
         """Release what is not after a time. Return None, or why it was rejected, with the place of the key."""
 
+    def release(self, keys: NDArray[Any]) -> tuple[int, str, int, float | None, int, float | None] | None:
+        """Release all that waits of some keys. Return as :meth:`advance` does."""
+
     def ready(
         self,
     ) -> tuple[NDArray[np.int64], NDArray[np.uint8], NDArray[np.float64], list[NDArray[np.float64]]]:

@@ -297,6 +297,21 @@ class Fleet(Generic[Update]):
             )
 
     @exclusive
+    def release(self, keys: Any) -> Update:
+        """Release all samples that wait of some keys: no earlier ones will come, such as at the end of a trip.
+
+        Samples that are not after those are late from now on. Returns an update with an empty batch, see
+        ``FleetUpdate.released``. Raises :class:`UsageError` for a key that is not there.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10, lateness="2s")
+        >>> _ = fleet.update_many([7, 7, 8], [1, 0, 0], {"x": [5, 4, 2]})
+        >>> fleet.release([7]).released.values, fleet.waiting
+        (array([1., 2.]), 1)
+        """
+        return self._samples.release_keys(keys_of(keys), keys_of)  # type: ignore[return-value]
+
+    @exclusive
     def discard(self, key: Any, time: float) -> bool:
         """Forget the sample of a key and a time in seconds that waits for earlier ones; return whether there was one.
 

@@ -77,6 +77,14 @@ class InOrder:
         """Set the current time: release what waits up to the lateness before it."""
         return self._updated(self.release(_seconds(now) - (self._lateness or 0.0), arrays))
 
+    def release_keys(
+        self,
+        keys: NDArray[Any],  # noqa: ARG002
+        arrays: Callable[[Sequence[Any]], NDArray[Any]],  # noqa: ARG002
+    ) -> FleetUpdate:
+        """Release all that waits of some keys."""
+        raise _nothing_waits()
+
     def _updated(self, taken: Taken) -> FleetUpdate:
         outputs = taken.outputs
         released = (
@@ -111,9 +119,7 @@ class InOrder:
 
     def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002 - nothing waits
         """Release what waits up to a time in seconds."""
-        raise UsageError(
-            "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)"
-        )
+        raise _nothing_waits()
 
     @property
     def late(self) -> int:
@@ -192,6 +198,20 @@ class Reordered(InOrder):
             return super().release(time, arrays)
         keys, ready = self._buffer.advance(time)
         return self._taken(np.empty(0, np.bool_), arrays(keys), ready)
+
+    def release_keys(
+        self, keys: NDArray[Any], arrays: Callable[[Sequence[Any]], NDArray[Any]]
+    ) -> FleetUpdate:
+        """See :class:`InOrder`."""
+        if self._lateness is None:
+            return super().release_keys(keys, arrays)
+        for index in range(len(keys)):
+            if not self.contains(keys[index : index + 1]):
+                raise UsageError(
+                    f"the fleet has no key {keys[index].item()!r} (index {index}); nothing was released"
+                )
+        found, ready = self._buffer.release(keys)
+        return self._updated(self._taken(np.empty(0, np.bool_), arrays(found), ready))
 
     def _taken(self, late: NDArray[np.bool_], keys: NDArray[Any], ready: Any) -> Taken:
         """Have what is ready monitored; ``keys``: of each of these samples."""
@@ -282,6 +302,12 @@ def _sorted_out(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output
         out[at] = found[own]
     others = ~own & known.known
     return Output(values, final, times, warming, keys[others], known.times[others], known.values[others])
+
+
+def _nothing_waits() -> UsageError:
+    return UsageError(
+        "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)"
+    )
 
 
 def _seconds(time: Any) -> float:

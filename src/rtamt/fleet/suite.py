@@ -205,20 +205,26 @@ class Suite:
 
         Raises :class:`UsageError` where the requirements do not share a time domain, or have no formulas.
         """
-        self._require_formulas()
+        specs = self.specifications
         if len({(way.domain, way.unit) for way in self.ways}) > 1:
             raise _apart_in_fleets()
         given = {name: setting for name, setting in self._settings.items() if setting is not None}
         if "robustness" not in self.select:
             given["semantics"] = "boolean"
         found = {}
-        for name, spec in self._specs.items():
+        for name, spec in specs.items():
             spec.require_no_groups("a fleet")
             try:
                 found[name] = spec, spec.monitor(**given, **settings)
             except StlError as error:
                 raise placed(error, name) from None
         return found
+
+    @property
+    def specifications(self) -> Mapping[str, Specification]:
+        """The specification of each requirement, by its name; raises :class:`UsageError` where there are none."""
+        self._require_formulas()
+        return self._specs
 
     def _require_formulas(self) -> None:
         if not self._specs:

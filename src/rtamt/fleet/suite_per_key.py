@@ -69,6 +69,10 @@ class SuitePerKey:
         """See :class:`~rtamt.fleet.per_key.MonitorPerKey`."""
         return self._each(lambda _, part: part.marked("advance", now, arrays))
 
+    def release_keys(self, keys: NDArray[Any], arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
+        """Raise :class:`UsageError`: no sample waits."""
+        return self._first.release_keys(keys, arrays)
+
     # ---- keys ------------------------------------------------------------------------------------
 
     @property

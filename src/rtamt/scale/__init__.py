@@ -16,6 +16,8 @@ spark_stream          fleets on streams of Spark, whose state is in RocksDB
 ray                   the engine on Ray Data
 engines               the list of engines, and all recordings of a job: new ones by an engine
 shard                 a fleet that takes any samples, and rejects those that are wrong one by one
+inputs                what a message has of each variable
+arrivals              when keys had their last message, so that silent ones expire
 messages              messages of a broker to samples: JSON, Avro, protobuf
 avro                  messages in Avro, whose schemas are bounded
 protobuf              messages in protobuf, by descriptors

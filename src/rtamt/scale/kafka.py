@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import time
 from collections import Counter
-from math import isfinite
+from math import inf, isfinite, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from rtamt.scale.shard import Sample, Shard
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from rtamt.fleet.suite import Suite
     from rtamt.metrics import Metrics
     from rtamt.scale.kafka_settings import Settings
     from rtamt.scale.messages import MessageReader
@@ -50,12 +51,14 @@ class _Partition:
 class Worker:
     """Monitors the samples of a topic; ``say``: takes sentences for the operator; ``metrics``: what exporters read.
 
-    ``counts``: what has happened since the start: ``samples``, ``results``, ``violations``, ``late``, ``rejected``.
+    ``spec``: a specification, or a suite, each of whose requirements has its results. ``options``: those of
+    :class:`~rtamt.scale.shard.Shard`. ``counts``: what has happened since the start: ``samples``, ``results``,
+    ``violations``, ``late``, ``rejected``, ``expired``.
     """
 
     def __init__(
         self,
-        spec: Specification,
+        spec: Specification | Suite,
         reader: MessageReader,
         settings: Settings,
         *,
@@ -66,7 +69,8 @@ class Worker:
         self._kafka = library("confluent_kafka", "a worker on Kafka", "kafka")
         self._spec, self._reader, self._settings, self._say = spec, reader, settings, say
         self._options, self._metrics = options, metrics
-        self._name = spec.name or "requirement"
+        #: The name of a requirement that is no one of a suite.
+        self._name = getattr(spec, "name", None) or "requirement"
         Shard(spec, **options)  # what a fleet cannot monitor is an error now
         place = settings.checkpoints
         self._checkpoints = None if place is None else Checkpoints(place, settings.group, settings.topic)
@@ -201,7 +205,7 @@ class Worker:
                 if sample is not None:
                     samples.append(sample)
                     origins.append(message)
-            taken = partition.shard.take(samples)
+            taken = partition.shard.take(samples, [_seconds_of(message) for message in origins])
             self._send(taken.results)
             self._note(samples, taken)
             for rejected in taken.rejected:
@@ -210,6 +214,7 @@ class Worker:
                 self._note_wrong("rejected")
                 headers = self._headers(discarded.error, "rejected")
                 self._produce(self._settings.dead_letters, None, discarded.key.encode(), headers)
+            self.counts["expired"] += len(taken.expired)
             partition.offset = some[-1].offset() + 1
             self.counts["samples"] += len(samples) - len(taken.rejected)
 
@@ -219,11 +224,15 @@ class Worker:
         if metrics is None:
             return
         metrics.count("rtamt_samples_total", len(samples) - len(taken.rejected))
-        for verdict, count in Counter(result.satisfied for result in taken.results).items():
-            metrics.verdict(self._name, verdict, count)
-        if taken.results:
-            lowest = min(result.robustness for result in taken.results)
-            metrics.set("rtamt_robustness", lowest, requirement=self._name)
+        metrics.count("rtamt_expired_total", len(taken.expired))
+        named = [(result.requirement or self._name, result) for result in taken.results]
+        for (name, verdict), count in Counter((name, result.satisfied) for name, result in named).items():
+            metrics.verdict(name, verdict, count)
+        lowest: dict[str, float] = {}
+        for name, result in named:
+            lowest[name] = min(result.robustness, lowest.get(name, inf))
+        for name, robustness in lowest.items():
+            metrics.set("rtamt_robustness", robustness, requirement=name)
         if samples:
             metrics.set("rtamt_lag_seconds", time.time() - max(sample.time for sample in samples))
 
@@ -386,10 +395,15 @@ def row_of(result: Result) -> bytes:
     value = result.robustness + 0.0
     number = repr(value) if isfinite(value) else f'"{value}"'
     verdict = {True: "true", False: "false", None: "null"}[result.satisfied]
-    key = json.dumps(result.key)
-    return (
-        f'{{"key": {key}, "time": {result.time!r}, "robustness": {number}, "satisfied": {verdict}}}'.encode()
-    )
+    named = "" if result.requirement is None else f', "requirement": {json.dumps(result.requirement)}'
+    fields = f'"time": {result.time!r}, "robustness": {number}, "satisfied": {verdict}'
+    return f'{{"key": {json.dumps(result.key)}{named}, {fields}}}'.encode()
+
+
+def _seconds_of(message: Any) -> float:
+    """Return the time of a message as the broker has it; NaN if it has none."""
+    kind, milliseconds = message.timestamp()
+    return milliseconds / 1000 if kind else nan
 
 
 def _text(error: Any) -> str:

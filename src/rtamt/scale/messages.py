@@ -11,19 +11,21 @@ import json
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from fractions import Fraction
-from math import isfinite
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import UNITS, check_unit
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.dates import EXAMPLE, date_in
+from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.scale.shard import Sample, key_problem
 from rtamt.signals.counting import is_implausible
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.time_columns import NAMES
 
 if TYPE_CHECKING:
+    from rtamt.fleet.suite import Suite
     from rtamt.specification import Specification
 
 Decode = Callable[[bytes], Mapping[str, Any]]
@@ -108,8 +110,9 @@ def framed(value: bytes) -> tuple[int, bytes]:
 
 
 class MessageReader:
-    """Reads the samples of a specification from messages.
+    """Reads the samples of a specification, or of all requirements of a suite, from messages.
 
+    In dense time a message may lack variables.
     ``key``: the field with the key of a sample; None for the key of the message. ``time``: the field with its time;
     None for the first of the fields that have the name of a clock. ``unit``: of times that are numbers.
 
@@ -121,7 +124,7 @@ class MessageReader:
 
     def __init__(
         self,
-        spec: Specification,
+        spec: Specification | Suite,
         decode: Decode,
         *,
         key: str | None = None,
@@ -132,11 +135,8 @@ class MessageReader:
         self._key = key
         self._clocks = NAMES if time is None else (time,)
         self._scale = UNITS[check_unit(unit)]
-        columns, others = dict(spec.binding.columns), dict(spec.binding.others)
-        self._fields = [
-            (name, (columns.get(name, name), *others.get(name, ())), spec.types.get(name))
-            for name in spec.input_names
-        ]
+        self._inputs = inputs_of(spec)
+        self._partial = is_dense(spec, {})
 
     def read(self, value: bytes | None, message_key: bytes | None) -> Sample:
         """Return the sample in a message; raise :class:`TraceError` for anything else."""
@@ -145,7 +145,22 @@ class MessageReader:
         data = self._decode(value)
         key = self._key_of(data, message_key)
         time = self._time_of(data)
-        return Sample(key, time, tuple(_number(data, *field) for field in self._fields))
+        if self._partial:
+            return Sample(key, time, self._values(data))
+        return Sample(key, time, tuple(_number(data, *each) for each in self._inputs))
+
+    def _values(self, data: Mapping[str, Any]) -> tuple[float, ...]:
+        """Return the values of the variables that a message has, NaN for the others; in dense time."""
+        has = [any(_member(data, column) is not _MISSING for column in each.columns) for each in self._inputs]
+        if not any(has):
+            names = " or ".join(f"'{each.columns[0]}'" for each in self._inputs)
+            raise TraceError(f"the message has no {names}")
+        values = []
+        for each, here in zip(self._inputs, has, strict=True):
+            values.append(_number(data, *each) if here else nan)
+            if here and isnan(values[-1]):
+                raise TraceError(f"'{each.columns[0]}' is NaN: leave it out", variable=each.name)
+        return tuple(values)
 
     def _key_of(self, data: Mapping[str, Any], message_key: bytes | None) -> str:
         if self._key is None:

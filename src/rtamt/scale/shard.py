@@ -7,19 +7,25 @@ that is read again from a snapshot has the same results.
 from __future__ import annotations
 
 import json
-from math import isfinite
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, WaitedError
 from rtamt.fleet.fleet import Fleet
+from rtamt.fleet.reports import FleetPoints, SuiteUpdate
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.scale.arrivals import Arrivals
+from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.signals.counting import is_implausible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
+    from rtamt.fleet.suite import Suite
     from rtamt.fleet.updates import FleetUpdate
     from rtamt.language.units.durations import Duration
     from rtamt.specification import Specification
@@ -45,7 +51,7 @@ def key_problem(key: str) -> str:
 
 
 class Sample(NamedTuple):
-    """A sample of one key; ``values``: in the order of :attr:`Shard.names`."""
+    """A sample of one key; ``values``: in the order of :attr:`Shard.columns`; NaN: without one, in dense time."""
 
     key: str
     time: float
@@ -53,11 +59,15 @@ class Sample(NamedTuple):
 
 
 class Result(NamedTuple):
-    """A robustness that has become known; ``time``: the time that it is for."""
+    """A robustness that has become known; ``time``: the time that it is for, in dense time from which on it holds.
+
+    ``requirement``: its name, of a suite.
+    """
 
     key: str
     time: float
     robustness: float
+    requirement: str | None = None
 
     @property
     def satisfied(self) -> bool | None:
@@ -88,62 +98,116 @@ class Taken:
     results: list[Result] = field(default_factory=list)
     rejected: list[Rejected] = field(default_factory=list)
     discarded: list[Discarded] = field(default_factory=list)
+    #: The keys that have expired.
+    expired: list[str] = field(default_factory=list)
 
 
 class Shard:
     """The monitors of all keys of a shard.
 
-    ``state``: what :meth:`snapshot` returned, perhaps for another specification. A gap between two samples of a key
+    ``spec``: a specification, or a suite, each of whose requirements has its results. ``state``: what :meth:`snapshot`
+    returned; in discrete time perhaps for another specification. In discrete time a gap between two samples of a key
     restarts its trace. ``lateness``: how late a sample may arrive (:class:`rtamt.Fleet`); by default those of a key
     come in the order of their times. A sample that has waited and turns out to have no value is discarded, as if it had
-    not come.
-    ``settings``: those of ``Specification.monitor``.
+    not come. ``expire_after``: for how many seconds a key may have no message until it is forgotten, by the times that
+    :meth:`take` is given; what waits of it is released. ``settings``: those of ``Specification.monitor``.
 
     >>> import rtamt
     >>> shard = Shard(rtamt.parse("x >= 3"))
     >>> taken = shard.take([Sample("car-1", 0.0, (5.0,)), Sample("car-1", -1.0, (5.0,)), Sample("car-2", 7.0, (1.0,))])
-    >>> taken.results
-    [Result(key='car-1', time=0.0, robustness=2.0), Result(key='car-2', time=7.0, robustness=-2.0)]
+    >>> [(each.key, each.time, each.robustness) for each in taken.results]
+    [('car-1', 0.0, 2.0), ('car-2', 7.0, -2.0)]
     >>> [(each.position, each.late) for each in taken.rejected]
     [(1, True)]
     """
 
     def __init__(
         self,
-        spec: Specification,
+        spec: Specification | Suite,
         *,
         capacity: int = CAPACITY,
         state: bytes | None = None,
         lateness: Duration | None = None,
+        expire_after: float | None = None,
         **settings: Any,
     ) -> None:
         self._waits = lateness is not None
-        self.names = tuple(spec.input_names)
+        #: What a message has, in the order of the values of a sample.
+        self.inputs = inputs_of(spec)
         #: The recorded names of the variables.
-        self.columns = tuple(dict(spec.binding.columns).get(name, name) for name in self.names)
-        if state is None:
-            self._fleet = Fleet(spec, capacity, lateness=lateness, gaps="restart", **settings)
-        else:
-            self._fleet = Fleet.restore(
-                spec, state, capacity=capacity, lateness=lateness, gaps="restart", **settings
+        self.columns = tuple(each.columns[0] for each in self.inputs)
+        self._partial = is_dense(spec, settings)
+        if self._partial and self._waits:
+            raise UsageError(
+                "lateness needs discrete time, and this is dense time: send the samples of a key in the order of their "
+                "times"
             )
+        self._arrivals = None if expire_after is None else Arrivals(expire_after)
+        if not self._partial:
+            settings["gaps"] = "restart"
+        if state is None:
+            self._fleet: Fleet[Any] = Fleet(spec, capacity, lateness=lateness, **settings)
+        else:
+            inner = (self._arrivals or Arrivals(inf)).unpacked(state)
+            self._fleet = Fleet.restore(spec, inner, capacity=capacity, lateness=lateness, **settings)
+        if self._arrivals is not None:
+            self._arrivals.begin(self._fleet.keys())
 
     def __len__(self) -> int:
         return len(self._fleet)
 
     def snapshot(self) -> bytes:
         """Return the state of all keys."""
-        return self._fleet.snapshot()
+        state = self._fleet.snapshot()
+        return state if self._arrivals is None else self._arrivals.packed(state)
 
-    def take(self, samples: Sequence[Sample]) -> Taken:
-        """Take samples of any keys; those of one key in the order in which they came."""
+    def take(self, samples: Sequence[Sample], arrivals: Sequence[float] = ()) -> Taken:
+        """Take samples of any keys; those of one key in the order in which they came.
+
+        ``arrivals``: the time of the message of each sample in seconds, for ``expire_after``.
+        """
         taken = Taken()
         if not samples:
             return taken
-        batch = _Batch(samples, self.columns)
-        if self._update(batch, 0, len(samples), taken) is None:
-            return taken
-        waiting = [(first, min(first + _CHUNK, len(samples))) for first in range(0, len(samples), _CHUNK)]
+        batch = _Batch(samples, self.columns, masked=self._partial)
+        first = 0
+        if self._arrivals is not None:
+            for place, (sample, time) in enumerate(zip(samples, arrivals, strict=True)):
+                if self._arrivals.note(sample.key, time):
+                    self._take(batch, first, place, taken)
+                    self._forget([sample.key], taken)
+                    first = place
+        self._take(batch, first, len(samples), taken)
+        if self._arrivals is not None:
+            self._forget(self._arrivals.expired(), taken)
+        return taken
+
+    def _forget(self, expired: Sequence[str], taken: Taken) -> None:
+        """Forget keys, after what waits of them."""
+        keys = [key for key in expired if key in self._fleet]
+        if not keys:
+            return
+        taken.expired.extend(keys)
+        while self._waits:
+            try:
+                update = self._fleet.release(keys)
+            except WaitedError as error:
+                self._discard(error, taken)
+                continue
+            taken.results.extend(self._results(update))
+            break
+        self._fleet.drop(keys)
+
+    def _discard(self, error: WaitedError, taken: Taken) -> None:
+        self._fleet.discard(error.key, error.time)
+        taken.discarded.append(Discarded(error.key, error.time, error.reason))
+
+    def _take(self, batch: _Batch, start: int, stop: int, taken: Taken) -> None:
+        """Take a part of a batch."""
+        samples = batch.samples
+        if start == stop or self._update(batch, start, stop, taken) is None:
+            return
+        waiting = [(first, min(first + _CHUNK, stop)) for first in range(start, stop, _CHUNK)]
         waiting.reverse()
         while waiting:
             first, end = waiting.pop()
@@ -155,8 +219,8 @@ class Shard:
             if end - first == 1:
                 time = samples[first].time
                 plausible = isfinite(time) and not is_implausible(time)
-                if isinstance(error, WaitedError) and self._fleet.discard(error.key, error.time):
-                    taken.discarded.append(Discarded(error.key, error.time, error.reason))
+                if isinstance(error, WaitedError):
+                    self._discard(error, taken)
                     waiting.append((first, end))  # what has released it may be right
                     continue
                 late = isinstance(error, TraceError) and error.variable == "time" and plausible
@@ -170,7 +234,6 @@ class Shard:
             else:
                 wrong = first + index
                 waiting += [(wrong + 1, end), (wrong, wrong + 1), (first, wrong)]
-        return taken
 
     def _update(self, batch: _Batch, first: int, end: int, taken: Taken) -> StlError | None:
         """Take a part of a batch; return why it was rejected as a whole, if it was."""
@@ -179,21 +242,43 @@ class Shard:
             update = self._fleet.update_many(batch.keys[first:end], batch.times[first:end], columns)
         except (TraceError, EvaluationError, UsageError) as error:
             return error
-        known = np.flatnonzero(update.known)
-        for i, time, value in zip(
-            known.tolist(), update.times[known].tolist(), update.values[known].tolist(), strict=True
-        ):
-            taken.results.append(Result(batch.samples[first + i].key, time, value))
+        taken.results.extend(self._results(update, batch.keys[first:end]))
         if self._waits:
-            self._released(batch, first, update, taken)
+            self._note_late(batch, first, update, taken)
         return None
 
-    def _released(self, batch: _Batch, first: int, update: FleetUpdate, taken: Taken) -> None:
-        """Note what samples have made known that waited, in the order of their times, and which came too late."""
+    def _results(self, update: Any, keys: Any = ()) -> list[Result]:
+        """Return what a batch has made known; with lateness in the order of times."""
+        if isinstance(update, SuiteUpdate):
+            return [
+                result._replace(requirement=name)
+                for name, one in update.updates.items()
+                for result in self._results(one, keys)
+            ]
+        if isinstance(update, FleetPoints):
+            points = zip(update.keys.tolist(), update.times.tolist(), update.values.tolist(), strict=True)
+            return [Result(*point) for point in points]
+        known = np.nonzero(update.known)
+        names: Any = update.requirements or (None,)
+        numbers = known[1].tolist() if len(known) > 1 else [0] * len(known[0])
+        rows = zip(
+            known[0].tolist(),
+            update.times[known].tolist(),
+            update.values[known].tolist(),
+            numbers,
+            strict=True,
+        )
+        found = [Result(str(keys[i]), time, value, names[number]) for i, time, value, number in rows]
         out = update.released
-        for key, time, value in zip(out.keys.tolist(), out.times.tolist(), out.values.tolist(), strict=True):
-            taken.results.append(Result(key, time, value))
-        taken.results.sort(key=lambda result: result.time)
+        columns = (out.keys, out.times, out.values, out.requirements)
+        for key, time, value, number in zip(*(column.tolist() for column in columns), strict=True):
+            found.append(Result(key, time, value, names[number]))
+        if self._waits:
+            found.sort(key=lambda result: result.time)
+        return found
+
+    def _note_late(self, batch: _Batch, first: int, update: FleetUpdate, taken: Taken) -> None:
+        """Note which samples came too late."""
         for i in np.flatnonzero(update.late).tolist():
             sample = batch.samples[first + i]
             text = (
@@ -206,9 +291,17 @@ class Shard:
 class _Batch:
     """Samples as arrays."""
 
-    def __init__(self, samples: Sequence[Sample], columns: Sequence[str]) -> None:
+    def __init__(self, samples: Sequence[Sample], columns: Sequence[str], *, masked: bool) -> None:
         self.samples = samples
         self.keys = np.array([sample.key for sample in samples])
         self.times = np.array([sample.time for sample in samples], np.float64)
         values = np.array([sample.values for sample in samples], np.float64).reshape(len(samples), -1)
         self.columns = {name: np.ascontiguousarray(values[:, i]) for i, name in enumerate(columns)}
+        if masked:
+            self.columns = {name: _without_nan(each) for name, each in self.columns.items()}
+
+
+def _without_nan(values: NDArray[np.float64]) -> Any:
+    """Return values of which those that are not there are masked."""
+    absent = np.isnan(values)
+    return np.ma.array(values, mask=absent) if absent.any() else values

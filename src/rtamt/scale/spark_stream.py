@@ -163,7 +163,10 @@ def _rows(shard: Shard, samples: list[Sample]) -> list[tuple[Any, ...]]:
         else:
             good.append(sample)
     taken = shard.take(good)
-    rows += [(*result, result.satisfied, None, False) for result in taken.results]
+    rows += [
+        (result.key, result.time, result.robustness, result.satisfied, None, False)
+        for result in taken.results
+    ]
     for position, error, late in taken.rejected:
         rows.append((*good[position][:2], None, None, error, late))
     rows += [(key, time, None, None, error, False) for key, time, error in taken.discarded]

@@ -287,3 +287,58 @@ def test_errors_of_samples_that_waited_can_be_pickled() -> None:
         fleet.update_many(*batch)
     again = pickle.loads(pickle.dumps(caught.value))
     assert (str(again), again.key, again.time) == (str(caught.value), "a", 1.0)
+
+
+def test_what_waits_of_some_keys_can_be_released() -> None:
+    fleet = streamed()
+    fleet.update_many(["a", "b"], [1, 7], {"x": [6, 9]})
+    update = fleet.release(["a", "a"])
+    assert (len(update), fleet.waiting, fleet.keys()) == (0, 1, ["a", "b"])
+    assert update.released.keys.tolist() == ["a", "a"]
+    assert update.released.times.tolist() == [0.0, 1.0]
+    assert update.released.values.tolist() == [2.0, 1.0]
+    late = fleet.update_many(["a", "a"], [2, 3], {"x": [1, 8]})
+    assert (late.late.tolist(), fleet.late) == ([True, False], 1)
+    assert fleet.release(["b"]).released.times.tolist() == []
+    assert fleet.release(["a"]).released.values.tolist() == [1.0]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (
+            {},
+            "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., lateness=...)",
+        ),
+        (
+            {"gaps": "hold"},
+            "the fleet was made without lateness=, so that no sample waits; make it with Fleet(..., ",
+        ),
+        ({"lateness": 1}, "the fleet has no key 'z' (index 1); nothing was released"),
+        (
+            {"verdict": "eager"},
+            "no sample of this fleet waits, since each key has a monitor, which takes each sample at once",
+        ),
+    ],
+)
+def test_what_cannot_be_released_is_an_error(settings: dict[str, Any], message: str) -> None:
+    fleet: Any = rtamt.Fleet(SPEC, 3, **settings)
+    fleet.update_many(["a"], [0], {"x": [1]})
+    with pytest.raises(rtamt.UsageError) as caught:
+        fleet.release(["a", "z"])
+    assert str(caught.value).startswith(message)
+
+
+def test_a_release_that_fails_changes_nothing() -> None:
+    fleet, _ = waited()
+    state = fleet.snapshot()
+    with pytest.raises(rtamt.WaitedError):
+        fleet.release(["a"])
+    assert fleet.snapshot() == state
+    held = rtamt.Fleet(SPEC, 3, lateness=90_000, gaps="hold")
+    held.update_many(["a", "a"], [0, 20_000], {"x": [1, 2]})
+    with pytest.raises(
+        rtamt.TraceError, match=r"^key 'a', a sample that waited: the gap from 0 s to 20000 s"
+    ):
+        held.release(["a"])
+    assert held.waiting == 2

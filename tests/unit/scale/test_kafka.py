@@ -200,6 +200,45 @@ def test_late_samples_and_those_that_wait_are_in_the_checkpoint(brokers, tmp_pat
     assert len(found) == 2  # up to 3 s, which 5 s has released, less the horizon
 
 
+def test_several_dense_specifications_and_keys_that_expire(brokers, tmp_path):
+    specs = tmp_path / "specs"
+    specs.mkdir()
+    (specs / "slow.stl").write_text("require SLOW: always[0:1](speed <= 30)")
+    (specs / "calm.stl").write_text("require CALM: acc <= 2; require STILL: historically(acc <= 5)")
+    producer = Producer({"bootstrap.servers": brokers, "linger.ms": 5})
+    begun = 1_700_000_000_000
+    sent = [
+        ("a", begun, {"time": 0, "speed": 20, "acc": 1}),
+        ("a", begun + 1, {"time": 0.5, "acc": 6}),
+        ("b", begun + 2, {"time": 0, "speed": 10}),
+        ("b", begun + 3, {"time": 1}),
+        ("a", begun + 4, {"time": 1.5, "speed": 25}),
+        ("b", begun + 70_000, {"time": 70, "speed": 20, "acc": 1}),
+        ("a", begun + 70_001, {"time": 0.25, "acc": 3}),
+    ]
+    for key, milliseconds, value in sent:
+        producer.produce("dense", json.dumps(value), key, partition=0, timestamp=milliseconds)
+    assert producer.flush(30) == 0
+    more = ["--until-end", "--time", "dense", "--expire-after", "1min"]
+    _, text = process(brokers, "dense", tmp_path, *more, specs=[str(specs)]).communicate(timeout=60)
+    assert text == (
+        "rtamt: 6 samples, 10 results, 3 of them violations, 0 late, 1 rejected, 2 keys expired\n"
+    )
+    found = [list(row.values()) for row in rows(brokers, "dense")]
+    assert sorted(found) == [
+        ["a", "CALM", 0.0, 1.0, True],
+        ["a", "CALM", 0.25, -1.0, False],
+        ["a", "CALM", 0.5, -4.0, False],
+        ["a", "SLOW", 0.0, 10.0, True],
+        ["a", "SLOW", 0.5, 5.0, True],
+        ["a", "STILL", 0.0, 4.0, True],
+        ["a", "STILL", 0.25, 2.0, True],
+        ["a", "STILL", 0.5, -1.0, False],
+        ["b", "CALM", 70.0, 1.0, True],
+        ["b", "STILL", 70.0, 4.0, True],
+    ]
+
+
 def test_partitions_move_between_workers_with_their_state(brokers, tmp_path):
     keys = [f"car-{i}" for i in range(40)]
     series = {key: [20 + i % 15, 25, 28 - i % 7, 31, 22] for i, key in enumerate(keys)}
@@ -249,8 +288,8 @@ def test_partitions_move_between_workers_with_their_state(brokers, tmp_path):
     assert sorted(found) == offline(series)
 
 
-def process(brokers, topic, place, *more):
-    command = [sys.executable, "-m", "rtamt", "worker", FORMULA, "--brokers", brokers, "--topic", topic]
+def process(brokers, topic, place, *more, specs=(FORMULA,)):
+    command = [sys.executable, "-m", "rtamt", "worker", *specs, "--brokers", brokers, "--topic", topic]
     command += ["--checkpoint", str(place), "--interval", "0.1", *OPTIONS, *more]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 

@@ -1,5 +1,7 @@
 """A shard: what each sample leads to does not depend on batches, and wrong samples affect their key alone."""
 
+from math import isnan, nan
+
 import numpy as np
 import pytest
 
@@ -112,7 +114,7 @@ def test_samples_in_any_order_have_the_results_of_those_in_order():
     results = [result for each in taken for result in each.results]
     signal = SPEC.evaluate({"time": np.arange(60.0), "x": values}).signal
     known = list(zip(signal.times.tolist(), signal.values.tolist(), strict=True))[: len(results)]
-    assert [result[1:] for result in results] == known
+    assert [result[1:3] for result in results] == known
     assert len(results) > 50
     (late,) = shard.take([Sample("a", 7.0, (1.0,))]).rejected
     assert (late.late, late.error) == (
@@ -157,6 +159,124 @@ def test_a_robustness_of_zero_does_not_decide():
     assert [result.satisfied for result in found.results] == [True]
 
 
+def test_each_requirement_of_a_suite_has_its_results():
+    suite = rtamt.Suite(rtamt.parse("require LOW: always[0:1](x <= 9); require ROOT: sqrt(y) >= 1"))
+    shard = Shard(suite)
+    taken = shard.take(
+        [Sample("a", 0.0, (4.0, 9.0)), Sample("a", 1.0, (12.0, -1.0)), Sample("a", 1.0, (5.0, 4.0))]
+    )
+    assert taken.results == [
+        Result("a", 0.0, 2.0, "ROOT"),
+        Result("a", 0.0, 4.0, "LOW"),
+        Result("a", 1.0, 1.0, "ROOT"),
+    ]
+    assert [each.position for each in taken.rejected] == [1]
+
+
+def test_late_samples_of_a_suite_are_released_by_requirement():
+    suite = rtamt.Suite(rtamt.parse("require A: x >= 3; require B: x <= 7"))
+    shard = Shard(suite, lateness=2)
+    first = shard.take([Sample("a", float(t), (float(t),)) for t in (0, 2, 1)])
+    again = Shard(suite, lateness=2, state=shard.snapshot()).take([Sample("a", 4.0, (4.0,))])
+    assert first.results == [Result("a", 0.0, -3.0, "A"), Result("a", 0.0, 7.0, "B")]
+    assert again.results == [
+        Result("a", t, v, n) for t in (1.0, 2.0) for n, v in (("A", t - 3), ("B", 7 - t))
+    ]
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_dense_time_takes_samples_of_some_variables(several):
+    text = "require A: always[0:1](x >= 3); require B: y >= 3" if several else "x >= 3 or y >= 3"
+    spec = rtamt.parse(text, time="dense")
+    given = [(0.0, 4.0, 2.0), (0.5, nan, 5.0), (2.5, 1.0, nan), (2.0, 1.0, nan), (3.0, nan, 1.0)]
+    found = []
+    for some in ([given], [[each] for each in given]):
+        shard, results, rejected = Shard(rtamt.Suite(spec) if several else spec), [], []
+        for batch in some:
+            taken = shard.take([Sample("a", time, values) for time, *values in batch])
+            results += taken.results
+            rejected += [each.error for each in taken.rejected]
+            shard = Shard(rtamt.Suite(spec) if several else spec, state=shard.snapshot())
+        found.append((sorted(results, key=str), rejected))
+    assert found[0] == found[1]
+    assert len(found[0][1]) == 1
+    expected = []
+    for name, one in spec.requirements.items() if several else [(None, spec)]:
+        monitor = one.monitor(time="dense")
+        for time, x, y in (each for each in given if each[0] != 2.0):
+            values = {n: v for n, v in (("x", x), ("y", y)) if not isnan(v) and n in one.input_names}
+            known = monitor.update(time, **values)
+            expected += [Result("a", *point, name) for point in zip(known.times, known.values, strict=True)]
+    assert found[0][0] == sorted(expected, key=str)
+
+
+def test_silent_keys_expire_in_whatever_batches_messages_come():
+    spec = rtamt.parse("once[0:1](sqrt(x) >= 3)")
+    samples = [
+        *(Sample("a", float(t), (16.0,)) for t in (0, 2, 1, 3)),
+        Sample("b", 0.0, (1.0,)),
+        Sample("c", 0.0, (-1.0,)),
+        Sample("b", 1.0, (1.0,)),
+        Sample("a", 4.0, (25.0,)),
+        Sample("a", 5.0, (25.0,)),
+        Sample("d", 0.0, (4.0,)),
+    ]
+    arrivals = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 62.0, 63.5, nan, 200.0]
+    found = []
+    for size in (1, 3, 10):
+        shard, results, expired, discarded = Shard(spec, lateness=2, expire_after=60), [], [], []
+        for first in range(0, 10, size):
+            taken = shard.take(samples[first : first + size], arrivals[first : first + size])
+            results += taken.results
+            expired += taken.expired
+            discarded += [(each.key, each.time) for each in taken.discarded]
+            shard = Shard(spec, lateness=2, expire_after=60, state=shard.snapshot())
+        found.append((sorted(results), sorted(expired), discarded))
+        assert len(shard) == 1
+    assert found[0] == found[1] == found[2]
+    results, expired, discarded = found[0]
+    assert expired == ["a", "a", "b", "c"]
+    assert discarded == [("c", 0.0)]
+    # What waited of "a" was released before it was forgotten; then its trace started again.
+    assert [(each.time, each.robustness) for each in results if each.key == "a"] == [
+        *((t, 1.0) for t in (0.0, 1.0, 2.0, 3.0)),
+        (4.0, 2.0),
+        (5.0, 2.0),
+    ]
+
+
+def test_a_state_goes_on_with_and_without_expiry():
+    plain = Shard(SPEC)
+    plain.take([Sample("a", 0.0, (4.0,))])
+    begun = Shard(SPEC, state=plain.snapshot(), expire_after=60)
+    assert begun.take([Sample("b", 1.0, (4.0,))], [1e9]).expired == []
+    assert begun.take([Sample("b", 2.0, (4.0,))], [1e9 + 61]).expired == ["b", "a"]
+    ended = Shard(SPEC, state=begun.snapshot())
+    assert len(ended) == 1
+    assert ended.take([Sample("b", 3.0, (4.0,)), Sample("b", 4.0, (4.0,))]).results == [Result("b", 2.0, 1.0)]
+
+
+@pytest.mark.parametrize("place", range(0, 60, 3))
+def test_a_damaged_state_with_expiry_is_refused(place):
+    shard = Shard(SPEC, expire_after=60)
+    shard.take([Sample("a", 0.0, (4.0,))], [5.0])
+    state = bytearray(shard.snapshot())
+    state[place] ^= 4
+    with pytest.raises(rtamt.UsageError, match=r"^this is not the state of a fleet"):
+        Shard(SPEC, expire_after=60, state=bytes(state))
+
+
 def test_what_no_fleet_monitors_is_an_error_at_once():
-    with pytest.raises(rtamt.UsageError, match=r"^gaps='restart' needs delayed verdicts in discrete time"):
-        Shard(rtamt.parse("x >= 3", time="dense"))
+    with pytest.raises(rtamt.UsageError) as caught:
+        Shard(rtamt.parse("x >= 3", time="dense"), lateness=2)
+    assert str(caught.value) == (
+        "lateness needs discrete time, and this is dense time: send the samples of a key in the order of their times"
+    )
+    with pytest.raises(rtamt.UsageError, match=r"^the formula quantifies over 'cars'"):
+        Shard(rtamt.parse('group cars = "car_*"; forall v in cars: v.x > 5'))
+    text = 'input float v = "speed"; v <= 30', 'enum Mode { OFF, ON }; input Mode m = "speed"; m == ON'
+    with pytest.raises(rtamt.UsageError) as caught:
+        Shard(rtamt.Suite([rtamt.parse(each, time="dense") for each in text]))
+    assert str(caught.value) == (
+        "'speed' has different declarations in the requirements of the suite: declare it alike"
+    )

@@ -100,7 +100,13 @@ class ReorderBuffer:
 
     def advance(self, watermark: float) -> tuple[list[Any], Ready]:
         """Set the watermark of all keys; return what has waited long enough, and its keys. Then as :meth:`offer`."""
-        rejected = self._core.advance(watermark)
+        return self._without_samples(self._core.advance(watermark))
+
+    def release(self, keys: NDArray[Any]) -> tuple[list[Any], Ready]:
+        """Let all leave that waits of some keys, as if their watermarks had reached it. Then as :meth:`offer`."""
+        return self._without_samples(self._core.release(rows_of(keys)))
+
+    def _without_samples(self, rejected: Any) -> tuple[list[Any], Ready]:
         if rejected is not None:
             (key,) = self._core.keys_at(np.array([rejected[0]]))
             raise TraceError(f"{place_of(key, None)}: {self._long_gap(rejected)}")
