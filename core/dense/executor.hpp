@@ -72,8 +72,12 @@ class BasicExecutor {
     // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
-    // A whole trace at once, the last values held for `extra` ticks more; what a failure leaves
-    // behind is unspecified.
+    // A whole trace at once, the last values held for `extra` ticks more, whatever came before.
+    // Then only another whole trace may follow; after a failure, nothing.
+    [[nodiscard]] std::optional<Failure> evaluate(Inputs inputs, std::int64_t extra,
+                                                  Outputs outputs);
+
+    // A whole trace with an executor of its own.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program, Inputs inputs,
                                                          std::int64_t extra, Outputs outputs);
 

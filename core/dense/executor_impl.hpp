@@ -309,13 +309,19 @@ bool BasicExecutor<D>::valid() const noexcept {
 }
 
 template <ValueDomain D>
+std::optional<Failure> BasicExecutor<D>::evaluate(Inputs inputs, std::int64_t extra,
+                                                  Outputs outputs) {
+    reset();
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        queues()[i].attach(inputs[i]);
+    if (open() && !complete(extra, true, outputs)) return failure_;
+    return std::nullopt;
+}
+
+template <ValueDomain D>
 std::optional<Failure> BasicExecutor<D>::evaluate(Program program, Inputs inputs,
                                                   std::int64_t extra, Outputs outputs) {
-    BasicExecutor executor(std::move(program));
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-        executor.queues()[i].attach(inputs[i]);
-    if (executor.open() && !executor.complete(extra, true, outputs)) return executor.failure_;
-    return std::nullopt;
+    return BasicExecutor(std::move(program)).evaluate(inputs, extra, outputs);
 }
 
 template <ValueDomain D>

@@ -217,25 +217,11 @@ nb::list dense_evaluate_bounds(const nb::bytes& bytes,
     return found;
 }
 
-nb::tuple dense_scan(std::string_view kind, const EventColumn& a,
-                     const std::optional<EventColumn>& b) {
+nb::tuple dense_scan_of(std::string_view kind, const EventColumn& a,
+                        const std::optional<EventColumn>& b) {
     std::vector<EventColumn> columns{a};
     if (b) columns.push_back(*b);
-    const auto events = events_of(columns, columns.size());
-    if (kind == "until" && !b) {
-        throw std::invalid_argument("The scan 'until' takes two signals.");
-    }
-    EventList result;
-    if (kind == "run_max") {
-        result = dense::scan<Max>(events[0]);
-    } else if (kind == "run_min") {
-        result = dense::scan<Min>(events[0]);
-    } else if (kind == "until") {
-        result = dense::scan_until<Real>(events[0], events[1]);
-    } else {
-        throw std::invalid_argument("There is no scan '" + std::string(kind) +
-                                    "': it is run_max, run_min or until.");
-    }
+    EventList result = dense_scan(kind, events_of(columns, columns.size()));
     return hand_over(result);
 }
 
@@ -256,6 +242,17 @@ void scan(std::string_view kind, std::span<const std::span<const double>> operan
         throw std::invalid_argument("There is no scan '" + std::string(kind) +
                                     "': it is run_max, run_min or until.");
     }
+}
+
+EventList dense_scan(std::string_view kind, std::span<const dense::Events> operands) {
+    if (kind == "run_max") return dense::scan<Max>(operands[0]);
+    if (kind == "run_min") return dense::scan<Min>(operands[0]);
+    if (kind != "until") {
+        throw std::invalid_argument("There is no scan '" + std::string(kind) +
+                                    "': it is run_max, run_min or until.");
+    }
+    if (operands.size() != 2) throw std::invalid_argument("The scan 'until' takes two signals.");
+    return dense::scan_until<Real>(operands[0], operands[1]);
 }
 
 void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
@@ -318,7 +315,7 @@ void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
         nb::arg("program"), nb::arg("columns"), nb::arg("extra") = 0,
         "Run a program without calls over bounds of whole signals, times and an array of shape "
         "(n, 2) of each; return times, lower and upper bounds of each output.");
-    m.def("dense_scan", &dense_scan, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
+    m.def("dense_scan", &dense_scan_of, nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(),
           "Unbounded future over whole step functions: run_max, run_min, or until.");
 }
 

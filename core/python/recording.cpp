@@ -108,6 +108,22 @@ bool Given::copy(double* out) const noexcept {
     return true;
 }
 
+bool Given::copy_floats(double* out) const noexcept {
+    if (buffer_) {
+        if (buffer_.format() != 'd') return false;
+        (void)copy_buffer(buffer_, out);
+        return true;
+    }
+    const nb::ft_object_guard guard(object_);
+    if (std::cmp_not_equal(sequence_size(object_.ptr()), *count_)) return false;
+    for (std::size_t i = 0; i < *count_; ++i) {
+        PyObject* item = sequence_item(object_.ptr(), static_cast<Py_ssize_t>(i));
+        if (PyFloat_CheckExact(item) == 0) return false;
+        out[i] = float_value(item);
+    }
+    return true;
+}
+
 const double* Given::in_place() const noexcept {
     const Py_buffer& view = buffer_.view();
     const bool plain = buffer_ && buffer_.format() == 'd' &&
@@ -116,27 +132,28 @@ const double* Given::in_place() const noexcept {
     return plain ? buffer_.values<double>() : nullptr;
 }
 
+nb::object item_of(const nb::handle& dict, const nb::handle& name) noexcept {
+    const nb::ft_object_guard guard(dict);
+    nb::object found = nb::borrow(PyDict_GetItemWithError(dict.ptr(), name.ptr()));
+    if (!found.is_valid()) PyErr_Clear();
+    return found;
+}
+
 std::optional<GivenColumns> GivenColumns::of(const NumPy& numpy, const nb::handle& data,
                                              std::span<const nb::str> names,
                                              const nb::handle& time) {
     if (!PyDict_CheckExact(data.ptr())) return std::nullopt;
-    const auto find = [&](const nb::handle& name) {
-        const nb::ft_object_guard guard(data);
-        nb::object found = nb::borrow(PyDict_GetItemWithError(data.ptr(), name.ptr()));
-        if (!found.is_valid()) PyErr_Clear();
-        return found;
-    };
     GivenColumns given;
     given.columns.reserve(names.size());
     for (const nb::str& name : names) {
-        nb::object found = find(name);
+        nb::object found = item_of(data, name);
         if (!found.is_valid()) return std::nullopt;
         const auto count = given.columns.emplace_back(numpy, std::move(found)).count();
         if (!count || *count != *given.columns.front().count()) return std::nullopt;
         given.count = *count;
     }
     if (given.count == 0) return std::nullopt;
-    if (nb::object found = find(time); found.is_valid()) {
+    if (nb::object found = item_of(data, time); found.is_valid()) {
         given.times.emplace(numpy, std::move(found));
         if (given.times->count() != given.count) return std::nullopt;
     }

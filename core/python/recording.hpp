@@ -28,6 +28,9 @@ class Given {
     // Whether all are numbers that are read here, and none is NaN.
     [[nodiscard]] bool copy(double* out) const noexcept;
 
+    // The same of floats alone, NaN included; false for numbers of any other type.
+    [[nodiscard]] bool copy_floats(double* out) const noexcept;
+
     // The numbers where they are, NaN included; null unless they are doubles one after another.
     [[nodiscard]] const double* in_place() const noexcept;
 
@@ -36,6 +39,9 @@ class Given {
     Buffer buffer_;
     std::optional<std::size_t> count_;
 };
+
+// What a dict has under a name; invalid if it has none.
+[[nodiscard]] nb::object item_of(const nb::handle& dict, const nb::handle& name) noexcept;
 
 // The columns of these names, and the timestamps if there are any: all of one length, at least 1.
 struct GivenColumns {

@@ -122,7 +122,10 @@ class Specification(OnlineSpecification):
         if uncertainty is None and ranges is None:
             recording = query.read(data, self.input_names, self.types)
         if recording is None:
-            recording, plain = self._recorded(query, data, uncertainty, ranges), False
+            recording = self._recorded(query, data, uncertainty, ranges)
+            # With time bases of their own, data are converted even if they are plain: that is found out only once.
+            plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
+            plain = plain and self._has_one_start and not recording.bounds
         if self.units:
             recording = self._with_units(recording)
         self._check(query, recording)
@@ -263,6 +266,11 @@ class Specification(OnlineSpecification):
         return self.sampling is None and not self.binding.columns and not self.binding.units
 
     @cached_property
+    def _has_one_start(self) -> bool:
+        """Whether all numbers are samples as they are, and the variables alone decide when the trace starts."""
+        return not self.types and self.resolved is None and len(self.requirements) == 1
+
+    @cached_property
     def _own_query(self) -> Query:
         return self._query_of(self.domain, None, None)
 
@@ -279,7 +287,7 @@ class Specification(OnlineSpecification):
 
     def _holds(self, trace: DomainTrace) -> bool | None:
         """Return whether the formula holds at the first instant; None where that takes more than one evaluation."""
-        if trace.domain.held_at_end:
+        if not self._has_one_start and trace.domain.own_time_bases:
             return None
         try:
             (truth,) = self._signals_of(self._truth, trace)

@@ -585,6 +585,28 @@ class DirectEvaluator:
         columns, the timestamps and the values. None for data that has to be converted, is wrong, or makes no value.
         """
 
+class DenseDirectEvaluator:
+    """Reads, checks and evaluates a recording in dense time in one call.
+
+    ``rate``: ticks in a second. ``extra``: for how many ticks after the end stages with scans run. ``stages``: of each
+    its program, the places of its signals, and its scans: kinds and operands. Variables come before scans.
+    """
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        time: str,
+        rate: float,
+        extra: int,
+        stages: list[tuple[bytes, list[int], list[tuple[str, list[int]]]]],
+    ) -> None: ...
+    def run(self, data: Any) -> tuple[bytearray, list[int], bytearray] | None:
+        """Evaluate a dict of signals.
+
+        Return ticks and values of each variable, the numbers of their samples, and seconds and values of the result.
+        None for data that has to be converted, is wrong, or makes no value.
+        """
+
 class TickPoints:
     """The base of signals whose class has ``_events``, ticks and then values as bytes, and ``_scale``, their times."""
 

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.plan import DEFINED
+from rtamt.compiler.plan import DEFINED, Stage
 from rtamt.compiler.shared import Shape
+from rtamt.engine.direct import Direct
 from rtamt.engine.native import core, culprit, not_made
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
 from rtamt.lazy_numpy import np
+from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.horizon import reach
-from rtamt.signals.dense import Dense
+from rtamt.signals.arrays import TIME
+from rtamt.signals.dense import Dense, DenseTrace
 from rtamt.signals.regular import merged
+from rtamt.signals.signal import Signal
+from rtamt.signals.ticks import TimeScale
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,10 +30,8 @@ if TYPE_CHECKING:
     from rtamt.engine.offline_bounds import StepBounds
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
-    from rtamt.signals.dense import DenseTrace
     from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.outcomes import BoundedSignal
-    from rtamt.signals.ticks import TimeScale
 
 
 class Evaluator:
@@ -53,6 +56,52 @@ class Evaluator:
                 else:
                     columns[scan.name] = core().dense_scan(scan.kind, *operands)
         return run(plan.program, columns, recording.scale, plan, self._asked)
+
+    def direct(self, domain: Dense, recording: DenseTrace) -> Direct | None:
+        """Return what evaluates the only formula over data alone, whose times are seconds; None if nothing does."""
+        plan, names = self._plan, tuple(recording.columns)
+        scale = TimeScale(domain.resolution, "seconds")
+        places = {name: place for place, name in enumerate(names)}
+        stages = []
+        for stage in (*plan.stages, Stage(plan.program, ())):
+            if stage.program.calls or any(scan.kind == DEFINED for scan in stage.scans):
+                return None
+            inputs = [places[name] for name in stage.program.inputs]
+            scans = [(scan.kind, list(scan.outputs)) for scan in stage.scans]
+            stages.append((stage.program.code(), inputs, scans))
+            for scan in stage.scans:
+                places[scan.name] = len(places)
+        if scale.ticks_in_1 is None:
+            return None
+        evaluator = core().DenseDirectEvaluator(names, TIME, scale.ticks_in_1, self._settled, stages)
+        return Direct(evaluator.run, lambda *_given: None, Reading(names, scale))
+
+
+class Reading(NamedTuple):
+    """How ``DenseDirectEvaluator`` of the core has read recordings: their variables, and their times in seconds.
+
+    What it returns is ``found``: memory of the samples, their numbers, and memory of the result.
+    """
+
+    names: tuple[str, ...]
+    scale: TimeScale
+
+    def trace(self, found: Any) -> DenseTrace:
+        """Return the recording."""
+        memory, counts, _ = found
+        columns, first = {}, 0
+        for name, count in zip(self.names, counts, strict=True):
+            ticks = np.frombuffer(memory, np.int64, count, first)
+            columns[name] = ticks, np.frombuffer(memory, np.float64, count, first + 8 * count)
+            first += 16 * count
+        return DenseTrace(columns, self.scale)
+
+    def signal(self, found: Any) -> Signal:
+        """Return the values: a point for every change, and one at the end."""
+        memory = found[2]
+        half = len(memory) // 2
+        times = np.frombuffer(memory, np.float64, half // 8)
+        return Signal(times, np.frombuffer(memory, np.float64, half // 8, half))
 
 
 class StoredEvaluator(Evaluator):
