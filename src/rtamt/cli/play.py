@@ -15,6 +15,7 @@ from rtamt.cli.command import CommandError, add_time_option, is_trace, pack_name
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
+from rtamt.readers.formats import format_of
 from rtamt.signals.domains import time_domain
 from rtamt.specification_loader import pack
 
@@ -163,6 +164,8 @@ def _given(args: argparse.Namespace) -> tuple[Given, str | None, str]:
     spec, text, name, folder, fragment = args.spec, "", "", None, ""
     if args.trace is not None and not os.path.exists(args.trace):
         raise CommandError(f"there is no recording '{args.trace}'")
+    if args.trace is not None:
+        format_of(args.trace)  # raises for a name that tells no format
     if spec is not None and spec.startswith(("http://", "#")):
         fragment = f"#{spec.partition('#')[2]}"
         if fragment == "#":
@@ -172,8 +175,12 @@ def _given(args: argparse.Namespace) -> tuple[Given, str | None, str]:
         try:
             with open(spec, encoding="utf-8-sig") as file:
                 text = file.read()
-        except (OSError, UnicodeDecodeError) as error:
-            raise CommandError(f"cannot read '{spec}': {error}") from None
+        except OSError as error:
+            raise CommandError(f"cannot read '{spec}': {error.strerror or error}") from None
+        except UnicodeDecodeError as error:
+            raise CommandError(
+                f"'{spec}' is not UTF-8 text (byte {error.start}); is it a specification?"
+            ) from None
     elif spec is not None and spec.endswith(".stl"):
         raise CommandError(f"there is no file '{spec}'")
     elif spec is not None:

@@ -1,12 +1,14 @@
 // The page of a result in a frame; zoom and cursor in both directions, as messages.
 
+const unpacked = (bytes) => new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
+
 const render = ({ model, el }) => {
   const frame = document.createElement("iframe");
   frame.title = "requirements and charts";
   frame.setAttribute("sandbox", "allow-scripts allow-downloads");
   frame.style.cssText = "width: 100%; border: 0";
   const fit = () => { frame.style.height = `${model.get("height")}px`; };
-  const load = () => { frame.srcdoc = model.get("page"); };
+  const load = async () => { frame.srcdoc = await unpacked(model.get("_page")); };
   const send = () => {
     const zoom = model.get("zoom");
     frame.contentWindow?.postMessage({ rtamt: { zoom: zoom.length === 2 ? zoom : null, cursor: model.get("cursor") } }, "*");
@@ -25,7 +27,7 @@ const render = ({ model, el }) => {
   };
   window.addEventListener("message", receive);
   model.on("change:height", fit);
-  model.on("change:page", load);
+  model.on("change:_page", load);
   model.on("change:zoom change:cursor", changed);
   fit();
   load();
@@ -33,7 +35,7 @@ const render = ({ model, el }) => {
   return () => {
     window.removeEventListener("message", receive);
     model.off("change:height", fit);
-    model.off("change:page", load);
+    model.off("change:_page", load);
     model.off("change:zoom change:cursor", changed);
   };
 };

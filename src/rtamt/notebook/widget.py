@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +20,8 @@ class ResultWidget(anywidget.AnyWidget):
     """
 
     _esm = files(__package__).joinpath("widget.js").read_text(encoding="utf-8")
-    #: A complete page, which the notebook shows in a frame.
-    page = traitlets.Unicode().tag(sync=True)
+    #: A complete page, which the notebook shows in a frame; compressed, because the output of the cell has it as HTML.
+    _page = traitlets.Bytes().tag(sync=True)
     #: The height of the frame, in pixels.
     height = traitlets.Int().tag(sync=True)
     #: Begin and end of the time that is seen; empty before the charts are drawn. Setting it zooms all charts.
@@ -29,8 +30,13 @@ class ResultWidget(anywidget.AnyWidget):
     cursor = traitlets.Float(None, allow_none=True).tag(sync=True)
 
     def __init__(self, static: StaticView, **traits: Any) -> None:
-        super().__init__(page=static.page, height=static.height, **traits)
+        super().__init__(_page=zlib.compress(static.page.encode()), height=static.height, **traits)
         self._static = static
+
+    @property
+    def page(self) -> str:
+        """The complete page."""
+        return self._static.page
 
     @traitlets.validate("zoom")
     def _in_order(self, proposal: Any) -> list[float]:

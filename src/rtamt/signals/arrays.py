@@ -307,6 +307,8 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
         return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
     if hasattr(data, "column_names"):
         return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
+    if getattr(getattr(data, "dtype", None), "names", None):
+        return TraceError("expected data, got a structured NumPy array; write rtamt.read(array)")
     return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
 
 

@@ -52,6 +52,17 @@ def test_errors_are_one_sentence(run, arguments, message):
     assert run("play", "--no-browser", *arguments) == (2, "", message)
 
 
+def test_a_file_of_another_kind_is_one_sentence(run, tmp_path):
+    (tmp_path / "unit.fmu").write_bytes(b"PK\xe6")
+    unit = str(tmp_path / "unit.fmu")
+    assert run("play", "--no-browser", unit).err == (
+        f"rtamt: '{unit}' is not UTF-8 text (byte 2); is it a specification?\n"
+    )
+    assert run("play", "--no-browser", "x > 0", unit).err.startswith(
+        f"rtamt: cannot tell how to read '{unit}': its name ends in none of .csv, "
+    )
+
+
 def test_a_port_in_use_is_one_sentence(run):
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))

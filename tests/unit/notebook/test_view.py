@@ -4,6 +4,7 @@ import base64
 import json
 import sys
 import time
+import zlib
 from itertools import chain, repeat
 
 import pytest
@@ -21,6 +22,7 @@ SPEC = "require low: always(x <= 3)\nrequire high: always(eventually[0:2](x >= 1
 NOTEBOOK = """<!DOCTYPE html><meta charset="utf-8"><body style="margin:0"><script type="module">
 import widget from "data:text/javascript;base64,%s";
 const listeners = new Map(), values = %s;
+values._page = new DataView(Uint8Array.from(atob(values._page), (letter) => letter.charCodeAt(0)).buffer);
 window.saved = 0;
 window.model = {
   get: (name) => values[name],
@@ -52,7 +54,8 @@ def browser(folder):
 
 def opened(browser, folder, widget):
     """Show a widget as a notebook does."""
-    state = {name: getattr(widget, name) for name in ("page", "height", "zoom", "cursor")}
+    state = {name: getattr(widget, name) for name in ("height", "zoom", "cursor")}
+    state["_page"] = base64.b64encode(widget._page).decode()
     code = base64.b64encode(
         ResultWidget._esm.read_bytes()
         if hasattr(ResultWidget._esm, "read_bytes")
@@ -139,6 +142,14 @@ def test_the_widget_has_html_for_readers_without_a_kernel(result):
     data, _ = view(result)._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data
     assert "<iframe" in data["text/html"]
+
+
+def test_the_state_of_the_widget_has_the_page_once_and_compressed(result):
+    widget = view(result)
+    state = widget.get_state()
+    assert zlib.decompress(state["_page"]).decode() == widget.page
+    assert len(state["_page"]) < len(widget.page) / 2
+    assert sum(len(str(value)) for name, value in state.items() if name not in ("_page", "_esm")) < 2000
 
 
 def test_without_anywidget_the_view_is_html(result, monkeypatch):

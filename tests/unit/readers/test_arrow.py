@@ -116,6 +116,19 @@ def test_a_table_of_arrow_that_was_not_read_raised_key_error(time):
     assert spec.evaluate(rtamt.read(table)).robustness == 1
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_structured_array_that_was_not_read_is_an_error_that_says_so(time):
+    spec = rtamt.parse("historically(x > 0)", time=time)
+    array = np.array([(0.0, 1.0), (1.0, 2.0)], dtype=[("time", float), ("x", float)])
+    for entry in (spec.evaluate, spec.monitor().update_many, lambda data: rtamt.check_stream(spec, [data])):
+        with pytest.raises(
+            rtamt.TraceError,
+            match=r"^expected data, got a structured NumPy array; write rtamt\.read\(array\)$",
+        ):
+            entry(array)
+    assert spec.evaluate(rtamt.read(array)).robustness == 1
+
+
 def test_reading_parquet_in_chunks_kept_the_whole_file_in_memory(tmp_path):
     path = tmp_path / "long.parquet"
     random = np.random.default_rng(1)
