@@ -13,6 +13,7 @@ from rtamt.language.formula import Formula, Parameter, postorder
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.desugar import desugar
+from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class Shape:
 
 
 def _expanded(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
-    return tuple([desugar(formula) for formula in formulas])
+    return tuple([desugar(formula) for formula in merged(formulas)])
 
 
 _kept = lru_cache(_KEPT)(_expanded)

@@ -11,6 +11,7 @@ from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.merge import merged
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding
 from rtamt.signals.episodes import EpisodeTracker
@@ -41,7 +42,12 @@ class Watched:
 def grounded(
     domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
 ) -> tuple[Formula, list[Watched]]:
-    """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain."""
+    """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain.
+
+    Equal parts of a formula are one node then, so that what follows visits them once.
+    """
+    (formula,) = merged((formula,))
+    watch = [replace(each, formula=merged((each.formula,))[0]) for each in watch]
     for watched in (Watched("", formula, text), *watch):
         domain.check(watched.formula, watched.text)
     formula, *others = domain.ground(formula, *(watched.formula for watched in watch))

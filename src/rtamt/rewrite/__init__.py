@@ -10,6 +10,7 @@ ground              half-open bounds to closed ones, once the length of a period
 horizon             how far a formula looks ahead (the paper's Definition 3)
 quantifiers         quantifiers to formulas over the members of groups
 quantifier_streams  quantifiers to formulas over one member, for streams in which members come and go
+merge               equal parts become one node
 partial             operations that may have no value, and numbers for which each has one
 pastify             bounded future to past (the paper's Definition 4)
 presence            ``valid(x)`` where samples may be missing

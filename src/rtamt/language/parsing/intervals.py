@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from math import isinf
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     Bound = tuple[Fraction | None, str, str | None, tuple[int, int]]
 
 _UNTIMED, _LASTING, _REQUIRED = Bounds.NONE, Bounds.DURATION, Bounds.REQUIRED
+_WINDOWS = (Bounds.OPTIONAL, _REQUIRED)
 _NAMED = frozenset(("name", "quoted"))
 _SEPARATORS = frozenset(":,")
 #: What follows a bound.
@@ -40,6 +42,9 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
     """
     texts, first = parser.texts, parser.index
     opening = texts[first]
+    plain = _plain_interval(parser, op)
+    if plain is not None:
+        return plain
     if opening != "[" and not (opening == "(" and _begins_open(parser, op)):
         if op.bounds is _REQUIRED:
             raise _unbounded(parser, at, at, at)
@@ -94,6 +99,31 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
     constants = constants_of(parser, names) if names else ()
     span = _span(parser, first, last)
     return Interval(begin, end, begin_unit, end_unit, span, constants, begin_open, end_open)
+
+
+def _plain_interval(parser: FormulaParser, op: Operator) -> Interval | None:
+    """Read an interval of two numbers without units, which most are; None, and nothing is read, for any other."""
+    first = parser.index
+    written = parser.texts[first : first + 5]
+    if len(written) < 5 or written[0] != "[" or written[4] != "]" or op.bounds not in _WINDOWS:
+        return None
+    bounds = _plain_bounds(written[1], written[2], written[3], parser.unit)
+    if bounds is None:
+        return None
+    parser.index = first + 5
+    return Interval(*bounds, "", "", _span(parser, first, first + 4))
+
+
+@lru_cache(1024)
+def _plain_bounds(lower: str, separator: str, upper: str, unit: str) -> tuple[Fraction, Fraction] | None:
+    """Return the bounds of such an interval, None if there are none or they are reversed."""
+    if separator not in _SEPARATORS or unit != "s" or not (is_numeral(lower) and is_numeral(upper)):
+        return None
+    try:
+        begin, end = exact(lower), exact(upper)
+    except ValueError:
+        return None
+    return None if end < begin else (begin, end)
 
 
 def _span(parser: FormulaParser, first: int, last: int) -> Span:

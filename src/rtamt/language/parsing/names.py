@@ -41,6 +41,8 @@ class NameParser:
         self.used: set[str] = set()
         self._depth = 0
         self._opening, self._infix = language.openings.get, language.infixes.get
+        #: What each token is, by its text, where an operand begins: most tokens occur several times.
+        self._leaves: dict[str, int] = {}
         self._sign = sign(language)
         self._slashes = scope.slashes if "/" in self.words else 0  # as many as any declared name has
         #: Where the template is used whose formula is being read; None outside templates.

@@ -60,7 +60,9 @@ if TYPE_CHECKING:
     from rtamt.language.value_types import Enumeration, ValueType
 
 
-_UNTIMED = Bounds.NONE
+#: What a token can be where an operand begins.
+_OTHER, _NUMBER, _NAME = range(3)
+_UNTIMED, _LEFT = Bounds.NONE, Fixity.LEFT
 #: In which nothing is declared.
 _FREE = Scope()
 #: What follows an operator, a function, a table or the use of a template.
@@ -107,7 +109,10 @@ class FormulaParser(LookaheadParser):
             timed = op.bounds is not _UNTIMED or texts[at + 1] == "["
             interval = parse_interval(self, op, at) if timed else None
             right_start = starts[self.index]
-            right = self.compared(op, left) if self.scope.enumerations else self._right(op)
+            if self.scope.enumerations:
+                right = self.compared(op, left)
+            else:  # as _right() does
+                right = self.expression(op.power + (op.fixity is _LEFT), op)
             end = ends[self.index - 1]
             place = right_start, end
             if last is not None and is_predicate(op) and is_predicate(last[0]):
@@ -126,14 +131,19 @@ class FormulaParser(LookaheadParser):
 
     def _right(self, op: Operator) -> Formula:
         """Parse the right operand of an infix operator."""
-        return self.expression(op.power + 1 if op.fixity is Fixity.LEFT else op.power, op)
+        return self.expression(op.power + (op.fixity is _LEFT), op)
 
     def operand(self, power: int, under: Operator | None) -> Formula:
         """``operand = number | name | atom | group | call | prefix | choice``."""
         at = self.index
         text = self.texts[at]
-        if is_numeral(text):
+        leaf = self._leaves.get(text)
+        if leaf is None:
+            leaf = self._leaves[text] = self._leaf(text)
+        if leaf == _NUMBER:
             return self.number()
+        if leaf == _NAME:
+            return (self._applied(at) if self.texts[at + 1] in _OPENING else None) or self.name()
         if text in QUANTIFIERS and begins_quantifier(self):
             return parse_quantifier(self)
         after = self.texts[at + 1] if text else ""
@@ -155,6 +165,13 @@ class FormulaParser(LookaheadParser):
         if self._begins_topic(at):
             return self.name()
         raise self.error(*diagnostics.no_operand(self.tokens, at))
+
+    def _leaf(self, text: str) -> int:
+        """Return whether a token is a number, or a name that is no word of the language, where an operand begins."""
+        if is_numeral(text):
+            return _NUMBER
+        word = self._opening(text) is not None or text in QUANTIFIERS
+        return _NAME if is_name(text) and not word else _OTHER
 
     def _applied(self, at: int) -> Formula | None:
         """Parse what a bracket or parenthesis follows: a table, or the use of a template."""
