@@ -62,6 +62,8 @@ def draw() -> None:
     analysis()
     failed_test()
     mining()
+    how_to()
+    learning()
     notebook()
     gallery()
     reports()
@@ -114,6 +116,14 @@ def how_to() -> None:
             Page(page.name, page.read_text(encoding="utf-8")).run()
             shrink(Path(plot))
             shutil.move(plot, IMAGES / f"{name}.png")
+
+
+def learning() -> None:
+    """Draw the learning curves of docs/how-to/learning.md, from the table that training wrote."""
+    folder = IMAGES.parents[1] / "examples" / "learning"
+    image = IMAGES / "learning.png"
+    subprocess.run([sys.executable, folder / "plot.py", folder / "curves.csv", image], check=True)
+    shrink(image)
 
 
 def notebook() -> None:
@@ -240,7 +250,7 @@ def play() -> None:
     ):
         assert server.stdout is not None
         tab.send(
-            "Emulation.setDeviceMetricsOverride", width=1200, height=1115, deviceScaleFactor=1, mobile=False
+            "Emulation.setDeviceMetricsOverride", width=1200, height=1150, deviceScaleFactor=1, mobile=False
         )
         tab.open(server.stdout.readline().strip())
         for script, condition in (("0", ready), (scrub, "document.querySelectorAll('.whisker').length > 0")):
