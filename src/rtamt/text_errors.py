@@ -14,7 +14,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.lazy_dataclasses import replace
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.domains import DEFAULT
-from rtamt.specification_loader import domain_of, parse
+from rtamt.specification_loader import domain_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -26,19 +26,17 @@ if TYPE_CHECKING:
 
 
 def errors_of(
-    text: str, *, folder: str | os.PathLike[str] | None = None, **settings: Unpack[Settings]
+    text: str, first: StlError, *, folder: str | os.PathLike[str] | None = None, **settings: Unpack[Settings]
 ) -> list[StlError]:
-    """Return the errors of a text, first the one that :func:`rtamt.parse` raises with the same settings.
+    """Return the errors of a text. ``first``: the one that :func:`rtamt.parse` raised with the same settings.
 
-    >>> print(*(error.message for error in errors_of("low = x < ; always(y > )")), sep="; ")
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("low = x < ; always(y > )")
+    ... except rtamt.StlError as error:
+    ...     print(*(each.message for each in errors_of("low = x < ; always(y > )", error)), sep="; ")
     expected an operand after '<', got ';'; expected an operand after '>', got ')'
     """
-    try:
-        parse(text, folder=folder, **settings)
-    except StlError as error:
-        first = error
-    else:
-        return []
     if not isinstance(first, SpecificationError):
         return [first]
     language, unit, constants = (

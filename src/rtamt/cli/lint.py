@@ -164,7 +164,7 @@ def _all_errors(error: StlError, file: str, args: argparse.Namespace) -> list[St
 
     folder = os.path.dirname(file) or os.curdir
     found: list[StlError] = [error]
-    for each in errors_of(cause.text, folder=folder, **settings_of(args, args.time, runs=False)):
+    for each in errors_of(cause.text, cause, folder=folder, **settings_of(args, args.time, runs=False)):
         if str(each) != str(cause):
             found.append(CommandError(f"{file}: {each}"))
             found[-1].__cause__ = each

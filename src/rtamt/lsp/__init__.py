@@ -1,6 +1,6 @@
 """The language server of ``rtamt lsp``: what editors show and change while a specification is written.
 
-``pip install 'rtamt[lsp]'``: pygls, which only two modules need. The modules:
+``pip install 'rtamt[lsp]'``: pygls, which only three modules need. The modules:
 
 ==========  =====================================================================
 module      purpose
@@ -21,6 +21,7 @@ colors      semantic tokens
 lenses      the verdicts above requirements
 evaluation  the process that reads recordings
 recording   that process as the server sees it: a question, a time limit
+messages    answers to messages that are wrong (pygls)
 session     what the server keeps between requests (pygls)
 server      the requests of the protocol (pygls)
 ==========  =====================================================================

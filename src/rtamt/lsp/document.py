@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from rtamt.errors import StlError
+from rtamt.errors import BoundError, SpecificationError, StlError
 from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.lexer import comments
 from rtamt.language.parsing.specfile import parse_document
-from rtamt.lint.rules import UNUSED
+from rtamt.language.units.durations import positive_period
+from rtamt.lint.report import findings
+from rtamt.lint.rules import SHORTER, UNUSED
 from rtamt.lsp.outline import outline
 from rtamt.lsp.places import Lines
 from rtamt.specification_loader import parse
@@ -51,6 +53,7 @@ class Analysis:
         self.library = False
         #: What is wrong with the text; nothing else is known of a wrong one but its names.
         self.errors: list[StlError] = []
+        self._short_bounds: tuple[LintWarning, ...] = ()
         self.spec: Specification | None = None
         if len(text) > MOST_CHARACTERS:
             self.text = text[:0]
@@ -62,13 +65,29 @@ class Analysis:
             return
         try:
             self.spec = self._parsed(text)
-        except StlError:
-            self._read_library()
+        except StlError as error:
+            place = error.span if isinstance(error, SpecificationError) else None
+            if place is not None and place.start == place.end:  # the end of the text
+                self._read_library()
             if self.spec is None:
-                self.errors = errors_of(text, folder=folder, period=self.period)
+                self._read_errors(error)
 
     def _parsed(self, text: str) -> Specification:
         return parse(text, folder=self.folder, period=self.period)
+
+    def _read_errors(self, first: StlError) -> None:
+        """Find the errors of the text. Of its bounds, those with a code are findings, as in ``rtamt lint``."""
+        self.errors = errors_of(self.text, first, folder=self.folder, period=self.period)
+        if not any(isinstance(each, BoundError) for each in self.errors):
+            return
+        try:
+            document = self.read(self.text)
+        except StlError:
+            return
+        period = None if self.period is None else positive_period(self.period)
+        self._short_bounds = tuple(each for each in findings(document, STL, period) if each.code == SHORTER)
+        short = {each.span for each in self._short_bounds}
+        self.errors = [each for each in self.errors if getattr(each, "span", None) not in short]
 
     def _read_library(self) -> None:
         """Read the text as one that others import, if that is possible."""
@@ -104,7 +123,7 @@ class Analysis:
     def findings(self) -> tuple[LintWarning, ...]:
         """The warnings of ``rtamt lint``."""
         if self.spec is None:
-            return ()
+            return self._short_bounds
         return tuple(each for each in self.spec.warnings if not (self.library and each.code == UNUSED))
 
     def read(self, text: str) -> Document:

@@ -53,12 +53,11 @@ def problems(analysis: Analysis) -> list[Problem]:
     >>> problems(Analysis("always(x >= )"))[0][:3]
     (Span(start=12, end=13), 'error', '')
     """
-    if analysis.errors:
-        return [
-            Problem(_inside(analysis, place_of(each)), "error", "", getattr(each, "message", str(each)))
-            for each in analysis.errors
-        ]
-    return [
+    errors = [
+        Problem(_inside(analysis, place_of(each)), "error", "", getattr(each, "message", str(each)))
+        for each in analysis.errors
+    ]
+    return errors + [
         Problem(_inside(analysis, each.span), each.severity, each.code, each.message)
         for each in analysis.findings
     ]
@@ -92,7 +91,11 @@ def repairs(analysis: Analysis, span: Span) -> list[Repair]:
             continue
         if each.fix is not None and _is_safe(analysis, each):
             found.append(Repair(f"Fix {each.code}: {RULES[each.code].about}", each.fix.edits, each.code))
-        if each.code in RULES and (edit := _silencing(analysis, each)) is not None:
+        if (
+            each.code in RULES
+            and each.severity != "error"
+            and (edit := _silencing(analysis, each)) is not None
+        ):
             found.append(Repair(f"Ignore {each.code} on this line", (edit,), each.code))
     return found
 
@@ -132,7 +135,8 @@ def _suggestions(analysis: Analysis, error: StlError, span: Span) -> list[Repair
     written = analysis.text[place.start : place.end]
     if not re.fullmatch(r'[\w.$/]+|"[^"]*"', written):
         return []
-    new = suggested[1] if NAME.fullmatch(suggested[1]) or "/" in suggested[1] else quoted(suggested[1])
+    plain = written[0] != '"' and (NAME.fullmatch(suggested[1]) or "/" in suggested[1])
+    new = suggested[1] if plain else quoted(suggested[1])
     return [Repair(f"Replace {written} by {new}", (Edit(place, new),), "")]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from typing import Any
 
 from lsprotocol import types as lsp
@@ -191,8 +192,10 @@ def _add_reading(server: Server) -> None:
         ]
 
     @server.command("rtamt.check")
-    async def check(uri: str) -> dict[str, Any]:
-        return await server.check(uri)
+    async def check(*arguments: Any) -> dict[str, Any]:
+        if len(arguments) != 1 or not isinstance(arguments[0], str):
+            raise JsonRpcInvalidParams("rtamt.check takes the address of a text")
+        return await server.check(arguments[0])
 
 
 def _add_colors(server: Server) -> None:
@@ -272,4 +275,6 @@ def _add_changing(server: Server) -> None:
 
 def serve() -> None:
     """Serve on the standard streams until the client says that it ends."""
-    make_server().start_io()
+    # A stream of its own, which pygls closes at the end.
+    with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:
+        make_server().start_io(stdout=answers)

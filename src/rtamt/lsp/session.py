@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 
@@ -14,12 +15,15 @@ import rtamt
 from rtamt.language.formula import Span
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lsp.document import Analysis
+from rtamt.lsp.messages import Protocol, report
 from rtamt.lsp.places import Lines, Place
 from rtamt.lsp.problems import problems
 from rtamt.lsp.recording import ask, state_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from pygls.server import ServerErrors
 
     from rtamt.lint.found import Edit
 
@@ -44,7 +48,7 @@ class Settings:
         if not isinstance(given, dict):
             return
         for name in ("recording", "period", "time", "documentation"):
-            if isinstance(given.get(name), str):
+            if isinstance(given.get(name), str) and "\0" not in given[name]:
                 setattr(self, name, given[name])
 
 
@@ -67,11 +71,24 @@ class Server(LanguageServer):
 
     def __init__(self) -> None:
         # Whole texts: positions of changes would depend on what ends a line, on which clients and pygls differ.
-        super().__init__("rtamt", rtamt.__version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full)
+        super().__init__(
+            "rtamt",
+            rtamt.__version__,
+            text_document_sync_kind=lsp.TextDocumentSyncKind.Full,
+            protocol_cls=Protocol,
+        )
         self.state = State()
 
+    def report_server_error(self, error: Exception, source: ServerErrors) -> None:
+        """Answer messages that are wrong; show what else goes wrong without a request."""
+        assert isinstance(self.protocol, Protocol)
+        if report(self.protocol, error, source):
+            super().report_server_error(error, source)
+
     def analysis(self, uri: str) -> Analysis:
-        """Return the analysis of the present version of a text."""
+        """Return the analysis of the present version of a text that is open."""
+        if uri not in self.workspace.text_documents:
+            raise JsonRpcInvalidParams(f"the text '{uri}' is not open")
         document = self.workspace.get_text_document(uri)
         key = document.version, document.source, self.state.settings.period
         kept = self.state.analyses.get(uri)
@@ -130,8 +147,11 @@ class Server(LanguageServer):
                 "time": settings.time,
             }
         )
-        self.state.checked[uri] = key, found
-        self.refresh()
+        if uri in self.workspace.text_documents:  # it may be closed by now, or have been checked again
+            kept = self.state.checked.get(uri)
+            if kept is None or kept[0] != self.checking(uri):
+                self.state.checked[uri] = key, found
+            self.refresh()
         return found
 
     def refresh(self) -> None:

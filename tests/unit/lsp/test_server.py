@@ -1,5 +1,7 @@
 """The language server as an editor sees it: pygls' own client, over the standard streams of a process."""
 
+import asyncio
+
 import pytest
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
@@ -216,6 +218,74 @@ def test_lenses_show_verdicts_on_the_recording(editor, path):
     editor.change(path, TEXT)
     assert editor.ask("code_lens", path)[0].command.title == titles[0]
     assert editor.refreshed > 0
+
+
+def test_a_verdict_is_that_of_the_text_and_of_the_recording_that_were_checked(editor, folder):
+    path, text = folder / "busy.stl", "require R: always(speed < 50)\n"
+
+    def check():
+        params = lsp.ExecuteCommandParams("rtamt.check", [path.as_uri()])
+        return asyncio.ensure_future(editor.client.workspace_execute_command_async(params), loop=editor.loop)
+
+    def lens():
+        return editor.ask("code_lens", path)[0].command.title
+
+    editor.open(path, text)
+    first = check()
+    lens()  # once there is an answer, the check has begun
+    editor.change(path, "require R: always(speed < 20)\n")
+    assert lens() == "check against drive.csv"
+    second = check()
+    assert editor.run(first)["rows"][0]["verdict"] == "satisfied"
+    assert editor.run(second)["rows"][0]["verdict"] == "violated"
+    assert lens() == "✗ violated, robustness -20 (drive.csv)"
+    (folder / "drive.csv").write_text(LOG.replace("40", "10"))
+    assert lens() == "check against drive.csv"
+    assert editor.run(check())["rows"][0]["verdict"] == "satisfied"
+    (folder / "drive.csv").unlink()
+    assert editor.run(check())["error"].startswith("there is no file")
+    (folder / "drive.csv").write_text("time,brake\n0,1\n")
+    assert editor.run(check())["rows"][0]["verdict"] == "error"
+    (folder / "drive.csv").write_text(LOG)
+
+
+def test_a_text_without_a_file_has_verdicts_too(editor):
+    uri = "untitled:Untitled-1"
+    item = lsp.TextDocumentItem(uri, "stl", 1, "require R: always(speed < 50)\n")
+    editor.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
+    params = lsp.ExecuteCommandParams("rtamt.check", [uri])
+    found = editor.run(editor.client.workspace_execute_command_async(params))
+    assert found == {"rows": [{"name": "R", "verdict": "satisfied", "robustness": "10.0"}]}
+
+
+@pytest.mark.parametrize(
+    ("text", "corrected"),
+    [
+        ('import "pattern.stl"\nalways(p)\n', 'import "patterns.stl"\nalways(p)\n'),
+        ("flaot x\nx > 3\n", "float x\nx > 3\n"),
+        ("float x\na = alway (x > 3)\n", "float x\na = always (x > 3)\n"),
+        ('float "engine speed"\nenginespeed > 3\n', 'float "engine speed"\n"engine speed" > 3\n'),
+        ("x > 3 adn x < 5\n", "x > 3 and x < 5\n"),
+    ],
+)
+def test_a_name_that_was_probably_meant_is_a_quick_fix(editor, folder, text, corrected):
+    path = folder / "meant.stl"
+    (found,) = editor.open(path, text)
+    (action,) = editor.ask("code_action", path, range=found.range, context=lsp.CodeActionContext([found]))
+    assert list(action.diagnostics) == [found]
+    assert edited(text, action.edit.changes[path.as_uri()]) == corrected
+    assert [
+        each for each in editor.change(path, corrected) if each.severity == lsp.DiagnosticSeverity.Error
+    ] == []
+
+
+def test_a_bound_below_the_period_has_its_code(editor, folder):
+    (found,) = editor.open(folder / "short.stl", "sample 100ms  require R: always[0:50ms](x >= 3)\n")
+    assert (found.code, found.severity, span_of(found.range)[:2]) == (
+        "RT107",
+        lsp.DiagnosticSeverity.Error,
+        (0, 31),
+    )
 
 
 def test_formatting_changes_white_space_only(editor, folder):

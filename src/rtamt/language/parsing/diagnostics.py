@@ -86,7 +86,7 @@ def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "th
         near = did_you_mean(before.text, words)
         hint = choices(before.text, functions, "functions")
         if near and near not in hint:  # always, until, ...
-            hint = f"{near} ({hint.removeprefix('; ')})"
+            hint = f"{near} ({choices('', functions, 'functions').removeprefix('; ')})"
         return f"'{before.text}' is not a function{hint}", before.span
     if token.kind in ("name", "number", "quoted") or token.text == "(" or language.opening(token.text):
         if token.kind in ("name", "number", "quoted") and is_function(language, before.text):

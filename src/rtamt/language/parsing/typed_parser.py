@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
 from rtamt.language.operators import Sort
-from rtamt.language.parsing.diagnostics import is_function
+from rtamt.language.parsing.diagnostics import is_function, no_operator
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.names import NameParser
 from rtamt.language.parsing.type_rules import (
@@ -179,6 +179,9 @@ class TypedParser(NameParser):
         """Return the error for a name that means nothing."""
         if self._against is not None:
             return self.error(self._against.lacks(name), span, NameInFormulaError)
+        if self.token.text == "(" and self.tokens[self.index - 1].text == name:
+            no_function, _ = no_operator(self.language, self.tokens, self.index)
+            return self.error(no_function, span, NameInFormulaError)
         scope = self.scope
         members = [member for each in scope.enumerations.values() for member in each.names]
         known = ", ".join(sorted(scope.names)[:8]) or "none"

@@ -1,0 +1,56 @@
+"""Messages that are not those of the protocol: each has an answer, and the server goes on. It needs pygls."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pygls.exceptions import (
+    FeatureNotificationError,
+    FeatureRequestError,
+    JsonRpcException,
+    JsonRpcInvalidParams,
+    JsonRpcInvalidRequest,
+    JsonRpcParseError,
+)
+from pygls.protocol import LanguageServerProtocol
+
+
+class AnsweredError(Exception):
+    """A request has its answer: its parameters were wrong."""
+
+
+class Protocol(LanguageServerProtocol):
+    """The protocol; requests with wrong parameters are answered, which a client would wait for."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """Return a message as an object."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException:
+            if not isinstance(data.get("id"), int | str) or not isinstance(data.get("method"), str):
+                raise JsonRpcInvalidRequest("the message is no request of the protocol") from None
+            wrong = f"the parameters of '{data['method']}' are not those of the protocol"
+            self._send_response(data["id"], error=JsonRpcInvalidParams(wrong).to_response_error())
+            raise AnsweredError from None
+
+    def handle_message(self, message: Any) -> None:
+        """Answer a request, or do what a notification asks for."""
+        if not hasattr(message, "jsonrpc"):
+            raise JsonRpcInvalidRequest("a message is one object of JSON-RPC 2.0")
+        super().handle_message(message)
+
+    def refuse(self, error: Exception) -> None:
+        """Answer a message that could not be read: the answer has no ID, as the ID is not known."""
+        if not isinstance(error, JsonRpcException):
+            error = JsonRpcParseError(f"the message is not JSON: {error}")
+        answer = {"code": error.code, "message": error.message}
+        self._send_data({"jsonrpc": self.VERSION, "id": None, "error": answer})
+
+
+def report(protocol: Protocol, error: Exception, source: Any) -> bool:
+    """Answer what went wrong with a message as such; return whether it is something else."""
+    if source in (FeatureNotificationError, FeatureRequestError):
+        return True
+    if not isinstance(error, AnsweredError):
+        protocol.refuse(error)
+    return False
