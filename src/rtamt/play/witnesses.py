@@ -43,7 +43,17 @@ def found(request: Request, wanted: Any, sources: Sources) -> dict[str, Any]:
         "period": float(witness.period),
         "duration": times[-1],
         "signals": {
-            name: {"hold": True, "points": [list(each) for each in zip(times, column.tolist(), strict=True)]}
+            name: {"hold": True, "points": _changes(times, column.tolist())}
             for name, column in witness.columns.items()
         },
     }
+
+
+def _changes(times: list[float], values: list[float]) -> list[list[float]]:
+    """Return the points of a held signal: the first, and each with another value than the one before.
+
+    >>> _changes([0.0, 1.0, 2.0, 3.0], [5.0, 5.0, 2.0, 2.0])
+    [[0.0, 5.0], [2.0, 2.0]]
+    """
+    points = zip(times, values, [None, *values], strict=False)
+    return [[time, value] for time, value, before in points if value != before]

@@ -121,7 +121,7 @@ export class Chart {
       if (this.axis) grid.append(svg("text", { x, y: bottom + 16, class: "time" }, number(time, digits)));
     }
     if (names) {
-      for (const value of ticks(...values, (bottom - top) / 26)) {
+      for (const value of ticks(...values, (bottom - top) / 20)) {
         const y = this.y(value);
         grid.append(svg("line", { x1: left, x2: right, y1: y, y2: y }), svg("text", { x: left - 8, y: y + 4, class: "value" }, number(value)));
       }
