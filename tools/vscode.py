@@ -54,7 +54,6 @@ require REQ-2 "releases": always not not (gap > 100 -> brake < 0.1)
 """
 SETTINGS = {
     "rtamt.command": [sys.executable, "-m", "rtamt", "lsp"],
-    "rtamt.recording": "drive.csv",
     "workbench.startupEditor": "none",
     "workbench.colorTheme": "Default Light Modern",
     "workbench.layoutControl.enabled": False,
@@ -66,6 +65,8 @@ SETTINGS = {
     "editor.occurrencesHighlight": "off",
     "editor.cursorBlinking": "solid",
     "git.enabled": False,
+    "files.exclude": {"**/.vscode": True},
+    "files.simpleDialog.enable": True,
     "files.autoSave": "off",
     "workbench.reduceMotion": "on",
 }
@@ -102,11 +103,17 @@ def main() -> None:
 def use(code: Code) -> None:
     """Use the editor as a person would."""
     verdict = "✓ satisfied, robustness 0.4 (drive.csv)"
+    code.click_on(".codelens-decoration a", "choose a recording")
+    code.until_shown(".quick-input-title", "The recording on which requirements are checked")
+    code.click_on(".quick-input-list .monaco-list-row", "drive.csv")
     code.until_shown(".codelens-decoration", verdict)
     code.press("m", CONTROL | SHIFT)
     code.until_shown(".markers-panel", "RT503")
     code.point_at("near and", 2)
     code.until_shown(".monaco-hover", "gap is less than close (30 m)")
+    code.until(
+        "document.getAnimations().every(each => each.playState === 'finished')"
+    )  # it is no longer pale
     code.draw("editor.png")
 
     code.click("not not", 1)  # a quick fix

@@ -42,8 +42,10 @@ async function stop() {
 }
 
 async function chooseRecording() {
+  const edited = vscode.window.activeTextEditor?.document.uri;
   const chosen = await vscode.window.showOpenDialog({
     canSelectMany: false,
+    defaultUri: edited?.scheme === "file" ? vscode.Uri.joinPath(edited, "..") : undefined,
     openLabel: "Check on this recording",
     title: "The recording on which requirements are checked",
   });

@@ -128,15 +128,18 @@ def _apart(file: str, args: Namespace) -> tuple[int, str, str]:
 
 def _lint(file: str, args: argparse.Namespace) -> int:
     """Check a file and print what is wrong with it; return 2 where there are errors, 1 where there are warnings."""
+    wrong: list[StlError] = []
     try:
         found = _findings(file, args)
     except StlError as error:
-        for wrong in _all_errors(error, file, args):
-            if args.json:
-                say(_as_json(file, "error", None, *_place(wrong)))
-            else:
-                complain(wrong)
-        return ERROR
+        found = _short_bounds(file, args) if isinstance(error.__cause__, BoundError) else []
+        short = {each.span for each in found}
+        wrong = [each for each in _all_errors(error, file, args) if _place(each)[2] not in short]
+    for one in wrong:
+        if args.json:
+            say(_as_json(file, "error", None, *_place(one)))
+        else:
+            complain(one)
     found = [each for each in found if each.code not in args.ignore]
     if args.quiet:
         shown = ("error", "warning") if args.strict else ("error",)
@@ -150,7 +153,7 @@ def _lint(file: str, args: argparse.Namespace) -> int:
             )
     else:
         warn(found, file)
-    if any(each.severity == "error" for each in found):
+    if wrong or any(each.severity == "error" for each in found):
         return ERROR
     return VIOLATED if any(each.severity == "warning" for each in found) else OK
 
@@ -208,9 +211,7 @@ def _findings(file: str, args: argparse.Namespace) -> list[LintWarning]:
     library = False
     try:
         spec = read_specification(Namespace(**{**vars(args), "spec": file}), args.time, runs=False)
-    except CommandError as error:
-        if isinstance(error.__cause__, BoundError) and (short := _short_bounds(file, args)):
-            return short
+    except CommandError:
         found = read_library(args, args.time, file)
         if found is None:
             raise
@@ -228,7 +229,10 @@ def _findings(file: str, args: argparse.Namespace) -> list[LintWarning]:
 def _short_bounds(file: str, args: argparse.Namespace) -> list[LintWarning]:
     """Return the findings about bounds that no specification with this sampling period may have."""
     period = None if args.period is None else positive_period(args.period)
-    document = _parsed(_text_of(file), file, args)
+    try:
+        document = _parsed(_text_of(file), file, args)
+    except SpecificationError:  # the bound is wrong whatever the period is
+        return []
     found = findings(document, read_language(args.language), period)
     return [each for each in found if each.code == SHORTER]
 

@@ -61,6 +61,24 @@ def test_every_error_of_a_file_is_told(run, write):
     assert [row["column"] for row in map(json.loads, answer.out.splitlines())] == [5, 27]
 
 
+def test_bounds_that_are_too_short_and_others_are_told_together(run, write):
+    write("a.stl", "a = once[0:0.05] x > 3\nb = once[0:0.15] x > 3\nrequire R: always[0:0.35](a and b)\n")
+    answer = run("lint", "a.stl", "--period", "100ms", "--json")
+    rows = [json.loads(line) for line in answer.out.splitlines()]
+    assert answer.code == 2
+    assert [(row["code"], row["severity"], row["line"]) for row in rows] == [
+        (None, "error", 2),
+        (None, "error", 3),
+        ("RT107", "error", 1),
+    ]
+
+
+def test_a_reversed_bound_is_told_with_its_file(run, write):
+    write("a.stl", "once[2:1] x > 3\n")
+    answer = run("lint", "a.stl")
+    assert (answer.code, answer.err.splitlines()[0][:14]) == (2, "rtamt: a.stl: ")
+
+
 def test_bounds_are_held_to_the_period(run, write):
     write("a.stl", "once[0:150ms](x >= 3)\n")
     assert run("lint", "a.stl").code == 0
