@@ -318,14 +318,6 @@ struct Make {
     [[nodiscard]] Pointer running() const {
         return std::make_unique<Running<Algebra>>(lag);
     }
-    template <ValueDomain N>
-    [[nodiscard]] Pointer slide_sum() const {
-        return slide<SumOf<N>>();
-    }
-    template <ValueDomain N>
-    [[nodiscard]] Pointer run_sum() const {
-        return running<SumOf<N>>();
-    }
     template <ValueDomain D>
     [[nodiscard]] Pointer since() const {
         return std::make_unique<Since>(lag);

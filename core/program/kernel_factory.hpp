@@ -1,8 +1,9 @@
 // Which operation an opcode is, for the kernels of both time domains.
 //
 // A `Make` has a template for every kind of kernel: unary and binary for an operation
-// (values/operations.hpp), shift, since, until, rank and the sums for a domain, slide and running
-// for an algebra; each returns a `Make::Pointer`, which owns the kernel.
+// (values/operations.hpp), shift, since, until and rank for a domain, slide and running for an
+// algebra; each returns a `Make::Pointer`, which owns the kernel. Sums are made by slide and
+// running unless it has slide_sum and run_sum, too.
 #pragma once
 
 #include "../values/algebra.hpp"
@@ -55,8 +56,21 @@ template <ValueDomain N, class Make>
             }
         },
         [&]() -> typename Make::Pointer {
-            if (opcode == Opcode::slide_sum) return make.template slide_sum<N>();
-            if (opcode == Opcode::run_sum) return make.template run_sum<N>();
+            constexpr bool own_sums = requires { make.template slide_sum<N>(); };
+            if (opcode == Opcode::slide_sum) {
+                if constexpr (own_sums) {
+                    return make.template slide_sum<N>();
+                } else {
+                    return make.template slide<SumOf<N>>();
+                }
+            }
+            if (opcode == Opcode::run_sum) {
+                if constexpr (own_sums) {
+                    return make.template run_sum<N>();
+                } else {
+                    return make.template running<SumOf<N>>();
+                }
+            }
             return make_either<N>(opcode, make);
         });
 }

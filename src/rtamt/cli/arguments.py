@@ -52,6 +52,14 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
     return [_rows(*each, taken) for each in zip(specs, given, called, strict=True)], traces
 
 
+def specification_and_traces(args: Namespace, command: str) -> tuple[Specification, list[str]]:
+    """Return the one specification that a command takes, and the traces."""
+    given, traces = requirements_and_traces(args, command)
+    if len(given) > 1:
+        raise CommandError(f"'rtamt {command}' takes one specification; leave out '{given[1].given}'")
+    return given[0].spec, traces
+
+
 def prepared_specs(args: Namespace, given: Sequence[str]) -> list[Specification]:
     """Read specifications, with the recorded names and the sampling of the command line."""
     return [

@@ -10,8 +10,6 @@ from rtamt.cli.command import (
     OUTPUT,
     CommandError,
     add_ignore_option,
-    add_specification_options,
-    add_time_option,
     json_text,
     options,
     stamp_text,
@@ -21,7 +19,7 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
-from rtamt.cli.reading_options import add_reading_options, reading_of
+from rtamt.cli.reading_options import add_input_options, reading_of
 from rtamt.cli.report_formats import REPORTS, write_report
 from rtamt.cli.report_formats.messages import episodes_members, robustness_members
 from rtamt.cli.runner import outcomes
@@ -130,12 +128,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument(
-        "traces", metavar="TRACE", nargs="*", help="a recording; more SPECs (.stl) may precede it"
-    )
-    add_time_option(parser)
-    add_reading_options(parser)
+    add_input_options(parser, "a recording; more SPECs (.stl) may precede it")
     group = options(parser, OUTPUT)
     group.add_argument(
         "-o",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
     CommandError,
+    add_budget_options,
     add_specification_options,
     is_trace,
     json_text,
@@ -15,7 +16,6 @@ from rtamt.cli.command import (
     read_specifications,
     write_output,
 )
-from rtamt.cli.mine import add_budget_options
 from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.recordings import save_figure

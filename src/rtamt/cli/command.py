@@ -152,6 +152,18 @@ def add_worst_case_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_budget_options(group: argparse._ActionsContainer) -> None:
+    """Add what limits the work."""
+    group.add_argument(
+        "--evaluations",
+        metavar="N",
+        type=int,
+        default=1_000_000,
+        help="stop after so many evaluations of a recording (default: 1000000)",
+    )
+    group.add_argument("--timeout", metavar="SECONDS", type=float, help="stop after so many seconds")
+
+
 def add_stamp_options(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the options for the column and unit of timestamps; ``what``: a column, or a key."""
     group = options(parser, READING)

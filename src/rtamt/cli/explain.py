@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import results_of_one
-from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
+from rtamt.cli.command import CommandError, json_text
 from rtamt.cli.parser import OK, VIOLATED
-from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
+from rtamt.cli.reading_options import add_input_options, add_instant_option, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 from rtamt.explain.explanation import SHORT
@@ -44,11 +44,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="one recording")
-    add_time_option(parser)
+    add_input_options(parser, "one recording")
     add_instant_option(parser)
-    add_reading_options(parser)
     parser.add_argument("--all", action="store_true", help="print every interval of the cause")
     parser.add_argument("--json", action="store_true", help="print JSON")
 

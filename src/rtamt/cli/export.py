@@ -8,14 +8,12 @@ from rtamt.cli.arguments import results_of_one
 from rtamt.cli.command import (
     OUTPUT,
     CommandError,
-    add_specification_options,
-    add_time_option,
     json_text,
     options,
     write_output,
 )
 from rtamt.cli.parser import OK, WRITTEN
-from rtamt.cli.reading_options import add_reading_options
+from rtamt.cli.reading_options import add_input_options
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 from rtamt.telemetry.content import VERDICTS, content_of
@@ -56,10 +54,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="one recording, as for 'rtamt check'")
-    add_time_option(parser)
-    add_reading_options(parser)
+    add_input_options(parser, "one recording, as for 'rtamt check'")
     group = options(parser, OUTPUT)
     group.add_argument("-o", "--output", metavar=WRITTEN, help="write an MCAP file")
     group.add_argument(

@@ -6,16 +6,15 @@ import sys
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from rtamt.cli.arguments import requirements_and_traces
+from rtamt.cli.arguments import specification_and_traces
 from rtamt.cli.command import (
     CommandError,
-    add_specification_options,
-    add_time_option,
+    add_budget_options,
     json_text,
     options,
 )
 from rtamt.cli.parser import OK, VIOLATED
-from rtamt.cli.reading_options import add_reading_options
+from rtamt.cli.reading_options import add_input_options
 from rtamt.cli.recordings import recordings_of, save_plot
 from rtamt.cli.terminal import Progress, say, table, width_of
 
@@ -54,10 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="recordings, as for 'rtamt check'")
-    add_time_option(parser)
-    add_reading_options(parser)
+    add_input_options(parser, "recordings, as for 'rtamt check'")
     group = options(parser, "what is mined")
     group.add_argument(
         "--param",
@@ -100,26 +96,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="plot the values (png, svg, pdf)")
 
 
-def add_budget_options(group: argparse._ActionsContainer) -> None:
-    """Add what limits the work."""
-    group.add_argument(
-        "--evaluations",
-        metavar="N",
-        type=int,
-        default=1_000_000,
-        help="stop after so many evaluations of a recording (default: 1000000)",
-    )
-    group.add_argument("--timeout", metavar="SECONDS", type=float, help="stop after so many seconds")
-
-
 def run(args: argparse.Namespace) -> int:
     """Read the recordings, mine the parameters, print them."""
     from rtamt.mining import mine
 
-    given, traces = requirements_and_traces(args, "mine")
-    if len(given) > 1:
-        raise CommandError(f"'rtamt mine' takes one specification; leave out '{given[1].given}'")
-    spec = given[0].spec
+    spec, traces = specification_and_traces(args, "mine")
     with Progress() as progress:
         found = mine(
             spec,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from rtamt.cli.arguments import requirements_and_traces
-from rtamt.cli.command import CommandError, add_specification_options, add_time_option, json_text
+from rtamt.cli.arguments import specification_and_traces
+from rtamt.cli.command import json_text
 from rtamt.cli.parser import OK, VIOLATED
-from rtamt.cli.reading_options import add_reading_options
+from rtamt.cli.reading_options import add_input_options
 from rtamt.cli.recordings import recordings_of, save_plot
 from rtamt.cli.terminal import Progress, say, table, width_of
 
@@ -43,10 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="recordings, as for 'rtamt check'")
-    add_time_option(parser)
-    add_reading_options(parser)
+    add_input_options(parser, "recordings, as for 'rtamt check'")
     parser.add_argument("--all", action="store_true", help="list every mutant, not only those that survive")
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument(
@@ -58,10 +55,7 @@ def run(args: argparse.Namespace) -> int:
     """Read the recordings, evaluate the mutants, print what survives."""
     from rtamt.mutation import mutate
 
-    given, traces = requirements_and_traces(args, "mutate")
-    if len(given) > 1:
-        raise CommandError(f"'rtamt mutate' takes one specification; leave out '{given[1].given}'")
-    spec = given[0].spec
+    spec, traces = specification_and_traces(args, "mutate")
     with Progress() as progress:
         recordings = recordings_of(args, spec, traces, progress)
         progress.show("evaluating")

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import result_of_one
-from rtamt.cli.command import CommandError, add_specification_options, add_time_option
+from rtamt.cli.command import CommandError
 from rtamt.cli.parser import OK
-from rtamt.cli.reading_options import add_instant_option, add_reading_options, instant
+from rtamt.cli.reading_options import add_input_options, add_instant_option, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
 from rtamt.files import replacing
@@ -44,11 +44,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument("traces", metavar="TRACE", nargs="*", help="one recording, as for 'rtamt check'")
-    add_time_option(parser)
+    add_input_options(parser, "one recording, as for 'rtamt check'")
     add_instant_option(parser)
-    add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the plot: .png, .svg, .pdf, ...")
     parser.add_argument(
         "--rows", type=int, default=6, metavar="N", help="the maximum number of formulas (default: 6)"

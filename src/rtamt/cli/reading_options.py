@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import READING, CommandError, add_stamp_options, options
+from rtamt.cli.command import (
+    READING,
+    CommandError,
+    add_specification_options,
+    add_stamp_options,
+    add_time_option,
+    options,
+)
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, replace
@@ -49,6 +56,14 @@ class Reading:
 
 
 # ---- the options ---------------------------------------------------------------------------------
+
+
+def add_input_options(parser: argparse.ArgumentParser, traces: str) -> None:
+    """Add SPEC, TRACE (``traces``: its help), the time domain, and how recordings are read."""
+    add_specification_options(parser)
+    parser.add_argument("traces", metavar="TRACE", nargs="*", help=traces)
+    add_time_option(parser)
+    add_reading_options(parser)
 
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:

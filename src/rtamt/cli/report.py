@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
-from rtamt.cli.command import add_specification_options, add_time_option
 from rtamt.cli.outcome import counted, exit_code
 from rtamt.cli.parser import complain
-from rtamt.cli.reading_options import add_instant_option, add_reading_options, reading_of
+from rtamt.cli.reading_options import add_input_options, add_instant_option, reading_of
 from rtamt.cli.report_formats.html import HtmlReport
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, say
@@ -44,13 +43,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG
-    add_specification_options(parser)
-    parser.add_argument(
-        "traces", metavar="TRACE", nargs="*", help="a recording; more SPECs (.stl) may precede it"
-    )
-    add_time_option(parser)
+    add_input_options(parser, "a recording; more SPECs (.stl) may precede it")
     add_instant_option(parser)
-    add_reading_options(parser)
     parser.add_argument("-o", "--output", metavar="FILE", required=True, help="the page to write")
 
 

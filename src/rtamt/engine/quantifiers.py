@@ -19,7 +19,7 @@ from rtamt.signals.data_errors import unknown_variable
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.engine.online import OnlineMonitor, Watched
@@ -58,6 +58,30 @@ class Plan:
         return all(names[one] != names[other] for one, other in self.apart)
 
 
+class QuantifierExecutor:
+    """A quantifier: its compiled formula, and what runs for each of the members at present.
+
+    ``bound``: the members that the variables of the quantifiers around it stand for.
+    """
+
+    def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
+        self.plan = plan
+        self.bound = bound
+        #: What runs for a member: ``executor``, and ``inside``, those of the quantifiers inside.
+        self.running: dict[str, Any] = {}
+
+    def binding(self, member: str) -> dict[str, str]:
+        """Return the members that the variables stand for inside the quantifier."""
+        return {**self.bound, self.plan.variable: member}
+
+    def executors(self) -> Iterator[Any]:
+        """Yield the monitors of all members, also inside."""
+        for running in self.running.values():
+            yield running.executor
+            for inner in running.inside:
+                yield from inner.executors()
+
+
 class QuantifierMonitor:
     """A monitor of a formula with quantifiers: the monitor of the outer formula, and an executor for each member."""
 
@@ -72,10 +96,10 @@ class QuantifierMonitor:
         fields: Fields,
         *,
         names: Sequence[str],
-        declared: Collection[str],
         watch: Sequence[Watched],
-        factory: Callable[..., QuantifierMonitor] | None,
-        types: Any,
+        declared: Collection[str] = (),
+        factory: Callable[..., QuantifierMonitor] | None = None,
+        types: Any = None,
     ) -> None:
         self._outer = outer
         self._plans = list(plans)

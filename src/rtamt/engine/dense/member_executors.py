@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.monitor import DenseMonitor, push_ticks
 from rtamt.engine.dense.steps import Steps, constant
+from rtamt.engine.quantifiers import QuantifierExecutor as Quantifier
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.regular import merged
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from rtamt.engine.dense.steps import Member
     from rtamt.engine.quantifiers import Plan
@@ -44,16 +45,13 @@ class Executor(DenseMonitor):
         return type(found)(f"{self.who}: {found}")
 
 
-class QuantifierExecutor:
-    """A quantifier: its compiled formula, and the executors of the members at present.
+class QuantifierExecutor(Quantifier):
+    """A quantifier: its compiled formula, and the executors of the members at present."""
 
-    ``bound``: the members that the variables of the quantifiers around it stand for.
-    """
+    running: dict[str, _Running]
 
     def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
-        self.plan = plan
-        self.bound = bound
-        self.running: dict[str, _Running] = {}
+        super().__init__(plan, bound)
         #: What the members gave together last.
         self._last = plan.none
 
@@ -69,7 +67,7 @@ class QuantifierExecutor:
             if member not in self.running and plan.differs(self.bound, member):
                 birth = _first_present(own, begin)
                 if birth is not None:
-                    self.running[member] = _Running(plan, {**self.bound, plan.variable: member}, birth)
+                    self.running[member] = _Running(plan, self.binding(member), birth)
         known = part.end - plan.lag
         given = [each.step(part, values, here.get(member)) for member, each in self.running.items()]
         for member in [member for member, each in self.running.items() if each.is_over(known)]:
@@ -101,15 +99,8 @@ class QuantifierExecutor:
         self._last, members = state
         self.running = {}
         for member, each in members.items():
-            self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, 0)
+            self.running[member] = _Running(self.plan, self.binding(member), 0)
             self.running[member].restore(each)
-
-    def executors(self) -> Iterator[Executor]:
-        """Yield the executors of all members, also inside."""
-        for running in self.running.values():
-            yield running.executor
-            for inner in running.inside:
-                yield from inner.executors()
 
 
 class _Running:

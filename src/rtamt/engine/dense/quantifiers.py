@@ -21,7 +21,7 @@ from rtamt.signals.ticks import TimeScale
 from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.engine.online import Watched
     from rtamt.language.formula import Formula
@@ -55,15 +55,13 @@ class DenseMemberMonitor(QuantifierMonitor):
         quantified: Sequence[Quantified],
         fields: Fields,
         *,
-        names: Sequence[str],
         text: str | None = None,
         backend: str = "cpp",
-        declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[..., DenseMemberMonitor] | None = None,
-        types: Any = None,
         unit: str | None = None,
+        **settings: Any,
     ) -> None:
+        # ``settings``: ``names``, ``declared``, ``factory`` and ``types`` of :class:`QuantifierMonitor`.
         def template(of: Quantified) -> DenseMonitor:
             return Executor(of.formula, domain, text=text, backend=backend)
 
@@ -73,11 +71,8 @@ class DenseMemberMonitor(QuantifierMonitor):
             DenseMonitor(formula, domain, text=text, backend=backend, watch=watch),
             [Plan(each, domain.resolution, template, fields) for each in quantified],
             fields,
-            names=names,
-            declared=declared,
             watch=watch,
-            factory=factory,
-            types=types,
+            **settings,
         )
 
     def _begin(self) -> None:

@@ -10,10 +10,11 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import Monitor
+from rtamt.engine.quantifiers import QuantifierExecutor as Quantifier
 from rtamt.language.undefined_value import at_sample, undefined
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from rtamt.engine.quantifiers import Plan
 
@@ -36,16 +37,10 @@ class Executor(Monitor):
         return type(found)(f"{who}: {found}")
 
 
-class QuantifierExecutor:
-    """A quantifier: its compiled formula, and the executors of the members at present.
+class QuantifierExecutor(Quantifier):
+    """A quantifier: its compiled formula, and the executors of the members at present."""
 
-    ``bound``: the members that the variables of the quantifiers around it stand for.
-    """
-
-    def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
-        self.plan = plan
-        self.bound = bound
-        self.running: dict[str, _Running] = {}
+    running: dict[str, _Running]
 
     def step(
         self, present: Mapping[str, Mapping[str, Sample]], values: Sample, at: tuple[int, float]
@@ -59,7 +54,7 @@ class QuantifierExecutor:
         here = present[plan.group]
         for member in here:
             if member not in self.running and plan.differs(self.bound, member):
-                self.running[member] = _Running(plan, {**self.bound, plan.variable: member}, at)
+                self.running[member] = _Running(plan, self.binding(member), at)
         total = plan.none
         gone = []
         for member, running in self.running.items():
@@ -83,15 +78,8 @@ class QuantifierExecutor:
         """Go back to a state."""
         self.running = {}
         for member, each in state.items():
-            self.running[member] = _Running(self.plan, {**self.bound, self.plan.variable: member}, (0, 0.0))
+            self.running[member] = _Running(self.plan, self.binding(member), (0, 0.0))
             self.running[member].restore(each)
-
-    def executors(self) -> Iterator[Executor]:
-        """Yield the executors of all members, also inside."""
-        for running in self.running.values():
-            yield running.executor
-            for inner in running.inside:
-                yield from inner.executors()
 
 
 class _Running:

@@ -21,7 +21,7 @@ from rtamt.signals.signal import Signal
 from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.engine.discrete.member_executors import Sample
@@ -126,14 +126,12 @@ class MemberMonitor(SampledMembers):
         quantified: Sequence[Quantified],
         fields: Fields,
         *,
-        names: Sequence[str],
         text: str | None = None,
         backend: str = "cpp",
-        declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[..., MemberMonitor] | None = None,
-        types: Any = None,
+        **settings: Any,
     ) -> None:
+        # ``settings``: ``names``, ``declared``, ``factory`` and ``types`` of :class:`QuantifierMonitor`.
         domain = domain.online
         assert domain.period is not None
 
@@ -146,11 +144,8 @@ class MemberMonitor(SampledMembers):
             Monitor(formula, domain, text=text, backend=backend, watch=watch),
             plans,
             fields,
-            names=names,
-            declared=declared,
             watch=watch,
-            factory=factory,
-            types=types,
+            **settings,
         )
 
     def _begin(self) -> None:

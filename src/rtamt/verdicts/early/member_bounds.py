@@ -11,13 +11,13 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.quantifiers import SampledMembers
-from rtamt.engine.quantifiers import Plan
+from rtamt.engine.quantifiers import Plan, QuantifierExecutor
 from rtamt.rewrite.presence import channel_of
 from rtamt.usage_guard import exclusive
 from rtamt.verdicts.early.discrete_interval import DiscreteIntervalMonitor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.engine import Watched
@@ -62,7 +62,7 @@ class _Executor:
 
     def __init__(self, plan: Plan, bound: Mapping[str, str], birth: int) -> None:
         self.plan, self.birth = plan, birth
-        self.monitor: _Monitor = copy(plan.template)
+        self.executor: _Monitor = copy(plan.template)
         self.inside = [_Quantifier(inner, bound) for inner in plan.inside]
         self.absent = 0
         #: What the member gives at samples at which that may still change.
@@ -82,12 +82,12 @@ class _Executor:
             for place, bounds in inner.step(present, mine, times).items():
                 before.setdefault(place, {})[inner.plan.column] = bounds
         own = {**mine, **before.pop(newest, {})}
-        self.monitor.update(times[newest], **{name: own[name] for name in self.monitor.input_names})
-        changed = self.monitor.shrunk()
+        self.executor.update(times[newest], **{name: own[name] for name in self.executor.input_names})
+        changed = self.executor.shrunk()
         for place, columns in before.items():
             if place >= self.birth:
-                self.monitor.update(times[place], **columns)
-                changed |= self.monitor.shrunk()
+                self.executor.update(times[place], **columns)
+                changed |= self.executor.shrunk()
         return self._note(changed)
 
     def finish(self, times: Mapping[int, Any]) -> set[int]:
@@ -96,9 +96,9 @@ class _Executor:
         for inner in self.inside:
             for place, bounds in inner.finish(times).items():
                 if place >= self.birth:
-                    self.monitor.update(times[place], **{inner.plan.column: bounds})
-                    changed |= self.monitor.shrunk()
-        known, rest = self.monitor.known(), self.monitor.rest()
+                    self.executor.update(times[place], **{inner.plan.column: bounds})
+                    changed |= self.executor.shrunk()
+        known, rest = self.executor.known(), self.executor.rest()
         changed |= {place: bounds for place, bounds in rest.items() if known.get(place, bounds) != bounds}
         return self._note(changed)
 
@@ -111,28 +111,29 @@ class _Executor:
         """Return what is known of what the member gives at a sample."""
         known = self.open.get(place)
         if known is None:
-            low, high = self.monitor._backend.bounds(0, place - self.birth)
+            low, high = self.executor._backend.bounds(0, place - self.birth)
             known = low, high
         return known
 
     def state(self) -> Any:
         inside = [each.state() for each in self.inside]
-        return self.monitor._state(), self.birth, self.absent, dict(self.open), inside
+        return self.executor._state(), self.birth, self.absent, dict(self.open), inside
 
     def restore(self, state: Any) -> None:
         own, self.birth, self.absent, known, inside = state
         self.open = dict(known)
-        self.monitor._resume(own)
+        self.executor._resume(own)
         for inner, each in zip(self.inside, inside, strict=True):
             inner.restore(each)
 
 
-class _Quantifier:
+class _Quantifier(QuantifierExecutor):
     """The bounds of what the members of a quantifier give together."""
 
+    running: dict[str, _Executor]
+
     def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
-        self.plan, self.bound = plan, bound
-        self.running: dict[str, _Executor] = {}
+        super().__init__(plan, bound)
         self.lag = _total_lag(plan)
 
     def step(self, present: Any, values: Mapping[str, Any], times: Mapping[int, Any]) -> dict[int, Bounds]:
@@ -144,7 +145,7 @@ class _Quantifier:
         here = present[plan.group]
         for member in here:
             if member not in self.running and plan.differs(self.bound, member):
-                self.running[member] = _Executor(plan, {**self.bound, plan.variable: member}, newest)
+                self.running[member] = _Executor(plan, self.binding(member), newest)
         changed = {newest}
         for member, running in list(self.running.items()):
             sample = here.get(member)
@@ -180,15 +181,8 @@ class _Quantifier:
     def restore(self, state: Any) -> None:
         self.running = {}
         for member, each in state.items():
-            self.running[member] = _Executor(self.plan, {**self.bound, self.plan.variable: member}, 0)
+            self.running[member] = _Executor(self.plan, self.binding(member), 0)
             self.running[member].restore(each)
-
-    def executors(self) -> Iterator[_Monitor]:
-        """Yield the monitors of all members, also inside."""
-        for running in self.running.values():
-            yield running.monitor
-            for inner in running.inside:
-                yield from inner.executors()
 
 
 def _total_lag(of: Plan | Quantified) -> Any:
@@ -216,15 +210,13 @@ class MemberIntervalMonitor(SampledMembers):
         quantified: Sequence[Quantified],
         fields: Fields,
         *,
-        names: Sequence[str],
         text: str | None = None,
         backend: str = "cpp",
-        declared: Collection[str] = (),
         watch: Sequence[Watched] = (),
-        factory: Callable[..., MemberIntervalMonitor] | None = None,
-        types: Any = None,
         at: str | None = None,
+        **settings: Any,
     ) -> None:
+        # ``settings``: ``names``, ``declared``, ``factory`` and ``types`` of :class:`QuantifierMonitor`.
         def bounds(of: Formula, inside: Sequence[Quantified], **settings: Any) -> _Monitor:
             late = max(map(_total_lag, inside), default=0) or None
             if late is not None:  # the end cuts windows, which may contradict what was known
@@ -243,11 +235,8 @@ class MemberIntervalMonitor(SampledMembers):
             bounds(formula, quantified, watch=watch, at=at),
             plans,
             fields,
-            names=names,
-            declared=declared,
             watch=watch,
-            factory=factory,
-            types=types,
+            **settings,
         )
         self.at: str = self._outer.at
 
