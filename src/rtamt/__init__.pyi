@@ -100,7 +100,6 @@ from rtamt.language.operators import STL as STL
 from rtamt.readers.read import read as read
 from rtamt.readers.read import scan as scan
 from rtamt.results import Result as Result
-from rtamt.results import first_violation as first_violation
 from rtamt.signals.dense import Dense as Dense
 from rtamt.signals.discrete import Discrete as Discrete
 from rtamt.signals.episodes import Episode as Episode
@@ -121,6 +120,7 @@ from rtamt.specification_loader import robustness as robustness
 from rtamt.verdicts.chunks import StreamResult as StreamResult
 from rtamt.verdicts.early.prediction import calibrate as calibrate
 from rtamt.verdicts.streaming import check_stream as check_stream
+from rtamt.violations import first_violation as first_violation
 
 __version__: str
 __all__: list[str]

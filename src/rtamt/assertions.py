@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.language.printing.printer import excerpt
-from rtamt.results import first_violation
 from rtamt.signals.arrays import is_number
 from rtamt.signals.listing import show_time
 from rtamt.specification import Specification
 from rtamt.specification_loader import load, parse
+from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
     from rtamt.results import Result

@@ -8,17 +8,16 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
-from rtamt.language.formula import Apply, variables
-from rtamt.language.operators import STL
+from rtamt.language.formula import variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
-from rtamt.signals.episodes import WindowTracker
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts
 from rtamt.verdicts.offline import Findings, findings_of
+from rtamt.violations import episodes_in_steps, first_violation, signals_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 
     from rtamt.engine.direct import Reading
     from rtamt.explain.explanation import Explanation
-    from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.episodes import Episode
@@ -399,52 +397,6 @@ def requirements_of(
             for (name, one), each in zip(spec.requirements.items(), findings, strict=True)
         }
     )
-
-
-def signals_of(result: Result, formula: Formula | None = None) -> tuple[Signal, Signal]:
-    """Return the robustness and the truth of a formula over the recording of a result, by default of its own.
-
-    The robustness is that under the semantics of the result; the truth is +inf where the formula holds, else -inf.
-    """
-    spec = result.specification
-    robustness, truth = spec._signals_of(spec._outputs(result.semantics, formula), result.trace)
-    return robustness, truth
-
-
-def episodes_in_steps(result: Result, *, certain: bool = False) -> list[Episode]:
-    """Return the episodes of violation of one requirement; their times are positions of the trace.
-
-    ``certain``: of partly known samples the episodes that any values have, with upper bounds of their worst robustness.
-    """
-    spec, trace = result.specification, result.trace
-    (formula,) = trace.domain.ground(spec.formula)
-    begin, end = 0, None
-    if isinstance(formula, Apply) and formula.op is STL["always"]:
-        if formula.interval is not None:
-            begin = int(formula.interval.begin / trace.step)
-            end = None if formula.interval.end is None else int(formula.interval.end / trace.step)
-        formula = formula.args[0]
-    applied = spec._apply_semantics(formula, result.semantics)
-    (signal,) = spec._signals_of((applied,), trace.in_steps())
-    values = signal.upper if certain and isinstance(signal, BoundedSignal) else signal.values
-    positions = trace.positions(signal)
-    tracker = WindowTracker(begin, end, continuous=trace.domain.continuous)
-    tracker.take(positions, values)
-    tracker.finish(int(positions[-1]))
-    return tracker.episodes()
-
-
-def first_violation(result: Result) -> Any:
-    """Return the time at which a requirement is first violated, in the times of the trace; None if it holds.
-
-    For ``always φ`` it is the earliest instant of its window at which φ does not hold, for a conjunction the
-    earliest of its parts, and for any other formula the first instant of the trace (Boolean semantics).
-
-    >>> import rtamt
-    >>> rtamt.first_violation(rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 1, 0]}))
-    1.0
-    """
-    return result._first_violation
 
 
 def _shown(bounds: Interval, form: str = "") -> str:

@@ -25,7 +25,7 @@ from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
-from rtamt.results import first_violation
+from rtamt.violations import first_violation
 from tests.support import c_api
 from tests.support.strategies import chunkings, dense_traces, formulas, traces
 

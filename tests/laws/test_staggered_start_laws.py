@@ -22,7 +22,7 @@ from rtamt.batch import evaluate_requirements
 from rtamt.cli import main
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.parsing.grammar import is_number
-from rtamt.results import first_violation
+from rtamt.violations import first_violation
 from tests.support import strategies
 
 VARIABLES = ("x", "y", "z")

@@ -9,9 +9,9 @@ from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
 from rtamt.lazy_dataclasses import replace
 from rtamt.readers.formats import is_bag
-from rtamt.results import signals_of
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind, topic_of
+from rtamt.violations import signals_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -32,9 +32,9 @@ from rtamt.lazy_dataclasses import replace
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
-from rtamt.results import first_violation
 from rtamt.signals import members
 from rtamt.signals.episodes import Episodes
+from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -15,10 +15,10 @@ from rtamt.fleet.verdict_table import SELECTABLE, Row, VerdictTable, number_of
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.results import first_violation
 from rtamt.signals.trace import Trace
 from rtamt.specification import Specification
 from rtamt.specification_recorded import Optional
+from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

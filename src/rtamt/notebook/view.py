@@ -10,8 +10,8 @@ from rtamt.lazy_dataclasses import replace
 from rtamt.notebook.static import StaticView
 from rtamt.plot.band import short_band
 from rtamt.plot.scene import scene
-from rtamt.results import first_violation
 from rtamt.signals.listing import show_time
+from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
     from rtamt.notebook.widget import ResultWidget

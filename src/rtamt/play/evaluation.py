@@ -17,10 +17,10 @@ from rtamt.play.drawn_signals import points, sampled
 from rtamt.play.recent import Recent
 from rtamt.plot.panels import groups
 from rtamt.plot.x_axis import XAxis
-from rtamt.results import first_violation, signals_of
 from rtamt.rewrite.truth import is_predicate
 from rtamt.signals.outcomes import BoundedSignal
 from rtamt.specification_loader import parse
+from rtamt.violations import first_violation, signals_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

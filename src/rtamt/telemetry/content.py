@@ -11,10 +11,10 @@ from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.lazy_patterns import lazy_pattern
 from rtamt.plot.band import band
-from rtamt.results import episodes_in_steps, first_violation
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals.epoch import is_epoch
 from rtamt.signals.outcomes import BoundedSignal
+from rtamt.violations import episodes_in_steps, first_violation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -22,9 +22,9 @@ from rtamt.cli import main
 from rtamt.engine.discrete.evaluate import Run
 from rtamt.engine.native import core
 from rtamt.readers import arrow, csv, rows
-from rtamt.results import first_violation
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.episodes import Episodes
+from rtamt.violations import first_violation
 from tests.support import strategies
 
 
