@@ -85,8 +85,7 @@ def _applied(spec: Specification) -> Formula:
 
 def loose_variable(facts: RequirementInfo) -> str | None:
     """Return a variable that may make intervals wider than necessary."""
-    period = None if facts.spec.domain.continuous else facts.step
-    return loose(_grounded(facts.spec, _applied(facts.spec)), period)
+    return loose(_grounded(facts.spec, _applied(facts.spec)), facts.spec.domain.online.period)
 
 
 def cut_operator(facts: RequirementInfo) -> str | None:

@@ -261,7 +261,7 @@ class OnlineSpecification(QuantifiedText):
             domain.period or Fraction(1),
             lambda formula: apply_semantics(formula, chosen, roles),
             self.text,
-            continuous=domain.continuous,
+            held_at_end=domain.held_at_end,
             late=not early,
         )
         found = [Watched(self.text, self.formula, self.text)]

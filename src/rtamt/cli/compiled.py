@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
-from rtamt.compiler.passes import LOADED, PASSES
+from rtamt.compiler.passes import passes_of
 from rtamt.compiler.program import MAGIC, Program
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
@@ -60,8 +60,7 @@ def listing(program: Program) -> Iterator[str]:
 
 def after_passes(program: Program) -> Iterator[str]:
     """Return the passes that a program goes through, and what they make of its instructions, line by line."""
-    left_out = {*program.without, *(LOADED if program.domain.continuous else ())}
-    yield f"passes     {', '.join(name for name in PASSES if name not in left_out) or 'none'}"
+    yield f"passes     {', '.join(passes_of(program)) or 'none'}"
     yield "program"
     lines = program.disassemble().splitlines()
     width = max(len(line) for line in lines)

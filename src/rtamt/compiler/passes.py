@@ -45,6 +45,12 @@ def passed(program: Program, without: Collection[str] = ()) -> Program:
     return replace(program, without=left_out) if left_out else program
 
 
+def passes_of(program: Program) -> tuple[str, ...]:
+    """Return the passes that a program goes through, in order; in continuous time the core makes none."""
+    left_out = {*program.without, *(LOADED if program.domain.continuous else ())}
+    return tuple(name for name in PASSES if name not in left_out)
+
+
 def bits_of(without: Collection[str]) -> int:
     """Return the bits of the header for passes that the core leaves out."""
     return sum(1 << bit for bit, name in enumerate(LOADED) if name in without)

@@ -284,8 +284,8 @@ class _Work:
     def _timing(self) -> Timing:
         traces = [self._region.trace(name) for name in self._recordings]
         longest = max(trace.last * trace.step for trace in traces)
-        steps = [trace.step for trace in traces]
-        return Timing(None if traces[0].domain.continuous else _multiple(steps), longest, max(steps))
+        periods = [trace.domain.period for trace in traces if trace.domain.period is not None]
+        return Timing(_multiple(periods) if periods else None, longest, max(trace.step for trace in traces))
 
 
 def _multiple(periods: list[Fraction]) -> Fraction:

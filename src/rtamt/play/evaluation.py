@@ -203,6 +203,7 @@ def _interval(result: Result) -> list[Any]:
 def _shown(name: str, result: Result) -> dict[str, Any]:
     """Return what is said of one requirement."""
     x_axis, spec = XAxis.of(result.trace), result.specification
+    period = result.trace.domain.period
     answer: dict[str, Any] = {
         "focus": name,
         "formula": to_text(spec.formula, limit=2000),
@@ -216,7 +217,7 @@ def _shown(name: str, result: Result) -> dict[str, Any]:
             "origin": str(x_axis.origin),
         },
         "samples": result.trace.samples,
-        "step": None if result.trace.domain.continuous else float(result.trace.step),
+        "step": None if period is None else float(period),
         "thresholds": _thresholds(spec),
     }
     if isinstance(result.signal, BoundedSignal):
@@ -249,7 +250,7 @@ def _fails(part: Result, view: View | None) -> list[list[float]]:
     _, truth = signals_of(part, inner(part.specification).formula)
     x_axis = XAxis.of(part.trace)
     begins = x_axis.positions(truth.times)
-    last = x_axis.end if part.trace.domain.continuous else x_axis.end + float(part.trace.step)
+    last = x_axis.end + float(part.trace.domain.period or 0)
     edges = np.diff((truth.values < 0).astype(np.int8), prepend=0, append=0)
     starts, ends = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0)
     until = np.append(begins, last)

@@ -149,12 +149,12 @@ def _rows(
     """Yield the samples in the order of time: the position, seconds since the start, and values by name."""
     columns = {name: x_axis.recorded(name) for name in names}
     start = x_axis.start
-    if not result.trace.domain.continuous:
-        step = float(result.trace.step)
+    period = result.trace.domain.period
+    if period is not None:
         positions = next(iter(columns.values()))[0].tolist() if columns else []
         table = [values.tolist() for _, values in columns.values()]
         for i, (position, *row) in enumerate(zip(positions, *table, strict=True)):
-            yield position, i * step, dict(zip(names, row, strict=True))
+            yield position, i * float(period), dict(zip(names, row, strict=True))
         return
     rows: dict[float, dict[str, float]] = {}
     for name, (positions, values) in columns.items():
@@ -170,11 +170,11 @@ def _runs(watched: Specification, result: Result, x_axis: XAxis) -> list[Run]:
     monitor: Any = watched.monitor(verdict="eager", time=domain)
     found: list[Run] = []
     start, dense = x_axis.start, result.trace.domain.continuous
-    step = 0.0 if dense else float(result.trace.step)
+    period = float(domain.period or 0)
 
     def take(verdicts: list[Any], now: float | None) -> None:
         for each in verdicts:
-            begin, end = (each.begin, each.end) if dense else (each.time, each.time + step)
+            begin, end = (each.begin, each.end) if dense else (each.time, each.time + period)
             end = x_axis.end if end is None else start + float(end)
             found.append((start + float(begin), end, each.satisfied, now))
 

@@ -39,6 +39,16 @@ class BoundUnit:
         """The singular of ``steps``."""
         return self.steps[:-1]
 
+    @property
+    def contents(self) -> str:
+        """What a window consists of."""
+        return self.steps if self.continuous else "samples"
+
+    def size(self, window: Interval, step: Fraction) -> int:
+        """Return how many ticks or samples a closed window has; it has a sample at both ends."""
+        assert window.end is not None
+        return int((window.end - window.begin) / step) + (not self.continuous)
+
 
 #: The largest number of steps of a window of which a share is taken: doubles count them.
 MOST_RANKED = 2**53
@@ -102,8 +112,7 @@ def _check_share(interval: Interval, step: Fraction, text: str | None, unit: Bou
     """Raise :class:`BoundError` at a share that is not a number of steps of its window."""
     share = interval.share
     assert share is not None
-    assert interval.end is not None
-    nominal = int((interval.end - interval.begin) / step) + (not unit.continuous)
+    nominal = unit.size(interval, step)
     window = f"the window {interval_text(interval)}"
     if unit.continuous and share.kind is ShareKind.SAMPLES:
         reason = "a number of samples is a share in discrete time only; write a duration, such as 3s, or 80%"
@@ -120,7 +129,7 @@ def _check_share(interval: Interval, step: Fraction, text: str | None, unit: Bou
         )
     elif rank_of(interval, step, continuous=unit.continuous).k > nominal:
         reason = (
-            f"{window} has {nominal} {'samples' if not unit.continuous else unit.steps}, fewer than the share "
+            f"{window} has {nominal} {unit.contents}, fewer than the share "
             f"{share.text()} of it; make the window longer or the share smaller"
         )
     else:

@@ -61,12 +61,12 @@ class Splitting:
         applied: Callable[[Formula], Formula],
         text: str | None = None,
         *,
-        continuous: bool = False,
+        held_at_end: bool = False,
         late: bool = True,
     ) -> None:
         self.period = period
-        #: Whether signals go on after the last sample, so that columns have values there.
-        self.continuous = continuous
+        #: Whether signals hold their last values after the end, so that columns have values there.
+        self.held_at_end = held_at_end
         #: Whether columns have each value when it is known, one lag late; else its bounds from the beginning.
         self.late = late
         self.applied = applied
@@ -85,7 +85,7 @@ class Splitting:
         self._conditions = {each for each in quantifiers(*formulas) if id(each) in places}
         found = tuple(map(self._scope.resolved, formulas))
         quantified = self._scope.found
-        goes_on = self.late and not self.continuous  # after the end of the stream, columns are read
+        goes_on = self.late and not self.held_at_end  # after the end of the stream, columns are read
         if goes_on and any(each.lag for each in quantified):
             running = PRESENT(Var(RUNNING, None, BOOLEAN))
             scope = _StreamScope(Members({}), {}, running, self, quantified)
