@@ -100,8 +100,9 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._connect(self._session.open())
 
     def _connect(self, backend: Any) -> None:
-        plain = self._times.plain and self._episodes is None
-        self._backend = backend if plain else SlowPath(backend)
+        #: Whether times are seconds, so that the back end takes samples without us.
+        self._plain = self._times.plain and self._episodes is None
+        self._backend = backend if self._plain else SlowPath(backend)
         self._update = backend.update
         self._step = backend.step
         self._refused = self._session.refused
@@ -154,7 +155,7 @@ class Monitor(MonitorBase, OnlineMonitor):
     def _update_carefully(self, *given: Any, **values: Any) -> float | None:
         """Take a sample that the core rejected, or report what is wrong with it."""
         time = time_of(given)
-        if self._times.plain and self._episodes is None:
+        if self._plain:
             return self._take(time, values)
         return self._take_alone(time, values)
 
@@ -190,7 +191,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     def _step_carefully(self, *values: Any) -> float | None:
         """Take a sample by position that the core did not take, or find out what is wrong with it."""
-        if self._times.plain and self._episodes is None:
+        if self._plain:
             return self._take_row(values)
         return self._take_row_alone(values)
 
@@ -247,7 +248,7 @@ class Monitor(MonitorBase, OnlineMonitor):
 
     def _take_columns(self, data: Any) -> Signal | None:
         """Take a chunk that needs no conversion; None for any other, which is not taken."""
-        if not self._times.plain or self._episodes is not None:
+        if not self._plain:
             return None
         try:
             taken = self._backend.take_columns(data, arrays.TIME)
