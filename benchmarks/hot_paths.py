@@ -152,6 +152,43 @@ def evaluate(samples: int, *, timed: bool = False) -> Callable[[], Callable[[int
     return prepare
 
 
+def dense_evaluate() -> Callable[[int], None]:
+    """``spec.evaluate`` of 100 samples in dense time, times and values as arrays."""
+    spec = rtamt.parse(TWO, time="dense")
+    times = np.arange(100) * 1.0
+    data = {name: (times, values) for name, values in noise(100).items()}
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            spec.evaluate(data)
+
+    return run
+
+
+def verdict() -> Callable[[int], None]:
+    """``spec.evaluate(data).satisfied`` of 100 samples."""
+    spec, data = rtamt.parse(TWO), noise(100)
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            _ = spec.evaluate(data).satisfied
+
+    return run
+
+
+def fleet_update() -> Callable[[int], None]:
+    """``fleet.update_many`` of a sample of each of 16 keys."""
+    fleet = rtamt.Fleet(rtamt.parse(TWO), 16)
+    keys, data = np.arange(16), noise(16)
+    time = iter(range(10**9))
+
+    def run(n: int) -> None:
+        for _ in range(n):
+            fleet.update_many(keys, np.full(16, float(next(time))), data)
+
+    return run
+
+
 def evaluate_batch() -> Callable[[int], None]:
     """``rtamt.evaluate_batch`` of 100 traces of 100 samples, a trace."""
     spec, traces = rtamt.parse(TWO), [noise(100)] * 100
@@ -254,6 +291,9 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "evaluate, 100 samples": (20, evaluate(100)),
     "evaluate, 100 samples with timestamps": (20, evaluate(100, timed=True)),
     "evaluate, 10000 samples": (4, evaluate(10_000)),
+    "evaluate, 100 samples in dense time": (20, dense_evaluate),
+    "evaluate(data).satisfied, 100 samples": (20, verdict),
+    "Fleet.update_many, 16 keys": (20, fleet_update),
     "evaluate_batch, a trace of 100 samples": (100, evaluate_batch),
     "evaluate_batch, an array, a trace of 100 samples": (1000, evaluate_arrays),
     "parse and monitor": (4, parse_and_monitor(TWO)),
