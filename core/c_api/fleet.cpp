@@ -1,11 +1,6 @@
 // The C API of fleets.
-#include "../fleet/fleet.hpp"
+#include "fleet_boundary.hpp"
 
-#include "../program/metadata.hpp"
-#include "boundary.hpp"
-
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -15,10 +10,8 @@ using rtamt::Metadata;
 using rtamt::Program;
 using rtamt::fleet::Batch;
 using rtamt::fleet::Fleet;
-using rtamt::fleet::KeyKind;
 using rtamt::fleet::KeySpan;
 using rtamt::fleet::Output;
-using rtamt::fleet::Rejected;
 
 struct rtamt_fleet {
     Metadata metadata;
@@ -31,98 +24,6 @@ struct rtamt_fleet {
 };
 
 namespace {
-
-// A batch was rejected at this sample.
-struct RejectedBatch : std::invalid_argument {
-    RejectedBatch(const std::string& sentence, const Rejected& why)
-        : std::invalid_argument(sentence), rejected(why) {}
-    Rejected rejected;
-};
-
-[[nodiscard]] std::string shown(double number) {
-    char text[32];
-    (void)std::snprintf(text, sizeof text, "%.15g", number);
-    return text;
-}
-
-[[nodiscard]] std::string name_of(const KeySpan& keys, std::size_t index) {
-    if (keys.kind == KeyKind::integer) return std::to_string(keys.integers[index]);
-    return "'" + std::string(keys.texts[index]) + "'";
-}
-
-[[nodiscard]] std::string sentence_of(const rtamt_fleet& handle, const Batch& batch,
-                                      const Rejected& why) {
-    const std::string where = "Key " + name_of(batch.keys, why.index) + " at index " +
-                              std::to_string(why.index) + " of the batch ";
-    const std::string time = shown(batch.times[why.index]) + " s";
-    switch (why.reason) {
-    case Rejected::Reason::full:
-        return where + "is new, and the fleet has its " +
-               std::to_string(handle.fleet.settings().capacity) +
-               " keys already: drop keys, or make a larger fleet.";
-    case Rejected::Reason::value:
-        return where + "has NaN as '" + handle.metadata.inputs[why.instruction] + "' at " + time +
-               ": leave the sample out.";
-    case Rejected::Reason::gap:
-        return where + "has a sample at " + time + ", which is not one period of " +
-               shown(handle.fleet.settings().period) + " s after the one at " + shown(*why.last) +
-               " s.";
-    case Rejected::Reason::undefined: {
-        const auto found = handle.metadata.meanings.find(why.instruction);
-        const std::string what = found != handle.metadata.meanings.end()
-                                     ? "'" + found->second + "'"
-                                     : "instruction " + std::to_string(why.instruction);
-        return where + "has no value of " + what + " at sample " + std::to_string(why.samples) +
-               ": it is 0/0, inf - inf, 0 * inf, or a function outside its domain.";
-    }
-    case Rejected::Reason::time:
-        break;
-    }
-    if (!why.last || !std::isfinite(batch.times[why.index])) {
-        return where + "has the time " + time + ": give a finite number of seconds.";
-    }
-    return where + "has a sample at " + time + ", which is not after the one at " +
-           shown(*why.last) + " s.";
-}
-
-template <class Work>
-[[nodiscard]] rtamt_status error_boundary(rtamt_fleet* handle, Work&& work) noexcept {
-    if (handle == nullptr) return RTAMT_REFUSED;
-    bool undefined = false;
-    const auto remember = [&](const char* sentence) noexcept {
-        try {
-            handle->message = sentence;
-            handle->shown = handle->message.c_str();
-        } catch (const std::bad_alloc&) {
-            handle->shown = out_of_memory;
-        }
-    };
-    const rtamt_status status = guarded(
-        [&] {
-            try {
-                std::forward<Work>(work)(*handle);
-            } catch (const RejectedBatch& rejected) {
-                undefined = rejected.rejected.reason == Rejected::Reason::undefined;
-                throw;
-            }
-        },
-        remember);
-    return undefined && status == RTAMT_REFUSED ? RTAMT_UNDEFINED : status;
-}
-
-[[nodiscard]] KeySpan span_of(const int64_t* keys, std::size_t count) {
-    return {KeyKind::integer, items(keys, count, "The keys"), {}};
-}
-
-// The texts are in `held`.
-[[nodiscard]] KeySpan span_of(const char* const* keys, std::size_t count,
-                              std::vector<std::string_view>& held) {
-    for (const char* key : items(keys, count, "The keys")) {
-        if (key == nullptr) throw std::invalid_argument("A key is null: pass a text.");
-        held.emplace_back(key);
-    }
-    return {KeyKind::text, {}, held};
-}
 
 void update(rtamt_fleet& handle, const KeySpan& keys, const double* times,
             const double* const* columns, rtamt_fleet_value* results, std::size_t outputs,
@@ -152,7 +53,9 @@ void update(rtamt_fleet& handle, const KeySpan& keys, const double* times,
     }
     if (const auto why = handle.fleet.update(batch, places)) {
         put(rejected, why->index);
-        throw RejectedBatch(sentence_of(handle, batch, *why), *why);
+        throw RejectedBatch(sentence_of(handle.metadata, handle.fleet.settings(), batch, *why,
+                                        at_index(why->index)),
+                            *why);
     }
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t k = 0; k < outputs; ++k) {
@@ -184,13 +87,7 @@ template <class Make>
         [&] {
             Program parsed = Program::parse(bytes(program, size));
             Metadata metadata = Metadata::parse(parsed);
-            if (!metadata.early.empty()) {
-                throw std::invalid_argument("A fleet runs no programs of bounds.");
-            }
-            if (!(tolerance >= 0.0)) {
-                throw std::invalid_argument("The tolerance must be 0 or more.");
-            }
-            const Fleet::Settings settings{metadata.seconds(), tolerance, false, capacity};
+            const Fleet::Settings settings = settings_of(metadata, capacity, tolerance);
             Fleet made = make(std::move(parsed), metadata.inputs, settings);
             *fleet = new rtamt_fleet{std::move(metadata), std::move(made), {}, "", {}, {}, {}};
         },

@@ -247,6 +247,89 @@ RTAMT_API rtamt_status rtamt_fleet_restore(const void* program, size_t size, con
                                            size_t state_size, size_t capacity, double tolerance,
                                            rtamt_fleet** fleet, char* message, size_t room);
 
+/* ---- many keys, samples in any order ----------------------------------------------------------
+ */
+
+/* A fleet whose samples come in any order. Each waits until its key has a sample that is newer by
+ * the lateness, or until the watermark has reached it; then it leaves, and is monitored. A call
+ * that fails leaves every key as it was. */
+typedef struct rtamt_stream rtamt_stream;
+
+/* What a gap between two samples of a key does that is not the period: the call is refused, the
+ * trace of the key starts again, or the last values are held where whole periods are missing. */
+typedef enum rtamt_gaps { RTAMT_GAPS_REJECT, RTAMT_GAPS_RESTART, RTAMT_GAPS_HOLD } rtamt_gaps;
+
+/* A sample that has left, or that waits: its key, a number or else a text, and its time. The text
+ * is valid until the next call. */
+typedef struct rtamt_stream_sample {
+    int64_t key;
+    const char* text; /* null where keys are numbers */
+    double time;
+} rtamt_stream_sample;
+
+/* As rtamt_fleet_create; `lateness` in seconds: how late a sample may come. */
+RTAMT_API rtamt_status rtamt_stream_create(const void* program, size_t size, size_t capacity,
+                                           double tolerance, double lateness, rtamt_gaps gaps,
+                                           rtamt_stream** stream, char* message, size_t room);
+
+/* Frees a stream; NULL is none. */
+RTAMT_API void rtamt_stream_destroy(rtamt_stream* stream);
+
+/* The reason why the last call failed, valid until the next call. */
+RTAMT_API const char* rtamt_stream_message(const rtamt_stream* stream);
+
+/* Takes a batch, as rtamt_fleet_update. `late`, which may be null, receives for each sample 1 if it
+ * came too late, or a second time, and was left out, else 0. `released`, which may be null, becomes
+ * how many samples have left. After RTAMT_UNDEFINED with `rejected` = `count`, a sample that waited
+ * has no value: see rtamt_stream_culprit. */
+RTAMT_API rtamt_status rtamt_stream_update(rtamt_stream* stream, const int64_t* keys,
+                                           const double* times, const double* const* columns,
+                                           size_t count, int32_t* late, size_t* released,
+                                           size_t* rejected);
+
+/* The same with texts as keys. */
+RTAMT_API rtamt_status rtamt_stream_update_text(rtamt_stream* stream, const char* const* keys,
+                                                const double* times, const double* const* columns,
+                                                size_t count, int32_t* late, size_t* released,
+                                                size_t* rejected);
+
+/* Sets the watermark: no sample before `time` will come, of any key. What waits up to it leaves. */
+RTAMT_API rtamt_status rtamt_stream_watermark(rtamt_stream* stream, double time, size_t* released);
+
+/* A sample that left in the last update or watermark that succeeded: `index` below `released`,
+ * those of a key in the order of their times, and what it made known of the first `outputs`
+ * outputs. Samples that fill a gap are among them. */
+RTAMT_API rtamt_status rtamt_stream_released(rtamt_stream* stream, size_t index,
+                                             rtamt_stream_sample* sample,
+                                             rtamt_fleet_value* results, size_t outputs);
+
+/* The sample that waited and because of which the last update or watermark failed. It fails again
+ * until the sample is discarded. */
+RTAMT_API rtamt_status rtamt_stream_culprit(rtamt_stream* stream, rtamt_stream_sample* sample);
+
+/* Forgets the sample of a key and a time that waits; it is refused if there is none. */
+RTAMT_API rtamt_status rtamt_stream_discard(rtamt_stream* stream, int64_t key, double time);
+RTAMT_API rtamt_status rtamt_stream_discard_text(rtamt_stream* stream, const char* key,
+                                                 double time);
+
+/* As those of fleets. With a key, what waits of it is forgotten. */
+RTAMT_API rtamt_status rtamt_stream_drop(rtamt_stream* stream, const int64_t* keys, size_t count);
+RTAMT_API rtamt_status rtamt_stream_drop_text(rtamt_stream* stream, const char* const* keys,
+                                              size_t count);
+RTAMT_API rtamt_status rtamt_stream_expire(rtamt_stream* stream, double before, size_t* dropped);
+
+/* How many keys there are, how many samples wait, and how many were late; 0 for a null stream. */
+RTAMT_API size_t rtamt_stream_size(const rtamt_stream* stream);
+RTAMT_API size_t rtamt_stream_waiting(const rtamt_stream* stream);
+RTAMT_API uint64_t rtamt_stream_late(const rtamt_stream* stream);
+
+/* As those of fleets. Lateness and gaps are part of the state, and what waits is. */
+RTAMT_API rtamt_status rtamt_stream_save(rtamt_stream* stream, void* state, size_t room,
+                                         size_t* size);
+RTAMT_API rtamt_status rtamt_stream_restore(const void* program, size_t size, const void* state,
+                                            size_t state_size, size_t capacity, double tolerance,
+                                            rtamt_stream** stream, char* message, size_t room);
+
 #ifdef __cplusplus
 }
 #endif

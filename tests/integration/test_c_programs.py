@@ -1,4 +1,4 @@
-"""The program of docs/how-to/c.md, linked with the installed C library by CMake and by pkg-config."""
+"""The programs of docs/how-to/c.md and fleet.md, linked with the installed C library by CMake and by pkg-config."""
 
 from __future__ import annotations
 
@@ -54,6 +54,52 @@ def test_programs_in_c_and_cpp_find_the_library_by_cmake(place: Path) -> None:
         program = place / "build" / name
         assert linked(program)
         assert run(program, place / compiled) == (place / expected).read_text("utf-8")
+
+
+#: Calls the functions of docs/how-to/fleet.md: two cars in order, and one whose samples come late.
+FLEETS = r"""
+int main(int argc, char** argv) {
+    static unsigned char program[65536];
+    FILE* file = argc > 1 ? fopen(argv[1], "rb") : NULL;
+    const size_t size = file == NULL ? 0 : fread(program, 1, sizeof program, file);
+    if (file != NULL) fclose(file);
+    rtamt_fleet* fleet = NULL;
+    rtamt_stream* stream = NULL;
+    char message[200];
+    if (rtamt_fleet_create(program, size, 10, 0.1, &fleet, message, sizeof message) != RTAMT_OK ||
+        rtamt_stream_create(program, size, 10, 0.1, 1.0, RTAMT_GAPS_RESTART, &stream, message, sizeof message) !=
+            RTAMT_OK) {
+        puts(message);
+        return 1;
+    }
+    rtamt_fleet_value values[2];
+    if (two_cars(fleet, values) != RTAMT_OK) return 1;
+    printf("%g %g\n", values[0].value, values[1].value);
+    const int64_t keys[] = {7, 7, 7, 7};
+    const double times[] = {1.0, 0.0, 3.0, 1.0}, speeds[] = {-1.0, 9.0, 16.0, 4.0};
+    int32_t late[4];
+    for (size_t i = 0; i < 4; i += 2)
+        printf("%d late\n", take(stream, keys + i, times + i, speeds + i, 2, late));
+    rtamt_stream_destroy(stream);
+    rtamt_fleet_destroy(fleet);
+    return 0;
+}
+"""
+
+
+def test_the_functions_for_fleets_of_the_documentation(place: Path) -> None:
+    page = (ROOT / "docs/how-to/fleet.md").read_text(encoding="utf-8")
+    code = [block.text for block in blocks(page) if block.language == "c"]
+    assert len(code) == 2
+    (place / "fleets.c").write_text("".join(code) + FLEETS, encoding="utf-8")
+    run("rtamt", "compile", "sqrt(speed) <= 5", "--period", "1s", "-o", place / "roots.rtamt")
+    prefix = place / "prefix"
+    (library,) = prefix.glob("lib*")
+    warnings = ["-std=c99", "-Wall", "-Wextra", "-Werror"]
+    flags = [f"-I{prefix / 'include'}", f"-L{library}", "-lrtamt"]
+    run("cc", *warnings, place / "fleets.c", "-o", place / "fleets", *flags)
+    said = run(place / "fleets", place / "roots.rtamt", LD_LIBRARY_PATH=str(library))
+    assert said == "0.527864 -0.291503\n7: robustness 2 at 0 s\n0 late\n1 late\n"
 
 
 def test_a_c_program_finds_the_library_by_pkg_config(place: Path) -> None:
