@@ -318,6 +318,23 @@ def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
     seen: set[int] = set()
     found: list[Formula] = []
+    stack = list(formulas)
+    while stack:  # the last operands first, each before its own operands
+        node = stack.pop()
+        if id(node) in seen:
+            return _distinct_of_graph(formulas)
+        seen.add(id(node))
+        found.append(node)
+        if isinstance(node, Apply):
+            stack += node.args
+    found.reverse()
+    return tuple(found)
+
+
+def _distinct_of_graph(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    """Return what :func:`_distinct` does for formulas that share nodes."""
+    seen: set[int] = set()
+    found: list[Formula] = []
     stack: list[Formula | None] = list(formulas[::-1])
     opened: list[Formula] = []  # their operands come before the next None
     while stack:

@@ -151,7 +151,7 @@ def tokenize(text: str, language: Language) -> Tokens:
     places = list(accumulate(map(len, pieces)))
     texts, starts, ends = pieces[1::2], places[::2], places[1::2]
     if "/" in text and any(map(_is_comment, texts)):
-        kept = [at for at, piece in enumerate(texts) if not _is_comment(piece)]
+        kept = [at for at, piece in enumerate(texts) if piece[0] != "/" or not _is_comment(piece)]
         texts, ends = [texts[at] for at in kept], [ends[at] for at in kept]
         starts = [*(starts[at] for at in kept), len(text)]
     if texts and _is_unclosed(texts[-1]):

@@ -21,6 +21,7 @@ from rtamt.language.value_types import Enumeration
 
 if TYPE_CHECKING:
     from rtamt.language.parsing.scope import Scope
+    from rtamt.language.records import Operator
 
 #: Words with which a statement may begin, and that else are names.
 _BEGINNING = frozenset(("require", "def"))
@@ -40,9 +41,12 @@ class NameParser:
         #: The names of the definitions that have been used so far.
         self.used: set[str] = set()
         self._depth = 0
-        self._opening, self._infix = language.openings.get, language.infixes.get
+        # Of dictionaries, which look up faster than read-only views of them.
+        self._opening, self._infix = dict(language.openings).get, dict(language.infixes).get
         #: What each token is, by its text, where an operand begins: most tokens occur several times.
-        self._leaves: dict[str, int] = {}
+        self._kinds: dict[str, int] = {}
+        #: Whether operands of an operator are checked, whatever the scope.
+        self._checked: dict[Operator, bool] = {}
         self._sign = sign(language)
         self._slashes = scope.slashes if "/" in self.words else 0  # as many as any declared name has
         #: Where the template is used whose formula is being read; None outside templates.

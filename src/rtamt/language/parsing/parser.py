@@ -27,7 +27,7 @@ from math import inf, isinf
 from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, span_of
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import (
@@ -60,8 +60,10 @@ if TYPE_CHECKING:
     from rtamt.language.value_types import Enumeration, ValueType
 
 
-#: What a token can be where an operand begins.
-_OTHER, _NUMBER, _NAME = range(3)
+#: What a token can be where an operand begins; a name that is also a word of the language is another token.
+_OTHER, _NUMBER, _GROUP, _NAME = range(4)
+#: What follows a name that is more than a variable: a table, the use of a template, or a name with slashes.
+_AFTER_OTHERS = frozenset("([/")
 _UNTIMED, _LEFT = Bounds.NONE, Fixity.LEFT
 #: In which nothing is declared.
 _FREE = Scope()
@@ -123,6 +125,8 @@ class FormulaParser(LookaheadParser):
                     raise self.error(diagnostics.no_chain(self.text, whole, Span(*between), link), whole)
                 comparison = self.apply(op, (middle, right), (between, place))
                 left = Apply(both, (left, comparison), None, Span(start, end))
+            elif self._plain(op):
+                left = Apply(op, (left, right), interval, span_of((start, end)))
             else:
                 left = self.apply(op, (left, right), ((start, left_end), place), interval)
             last = (op, right, place)
@@ -137,13 +141,19 @@ class FormulaParser(LookaheadParser):
         """``operand = number | name | atom | group | call | prefix | choice``."""
         at = self.index
         text = self.texts[at]
-        leaf = self._leaves.get(text)
-        if leaf is None:
-            leaf = self._leaves[text] = self._leaf(text)
-        if leaf == _NUMBER:
+        kind = self._kinds.get(text)
+        if kind is None:
+            kind = self._kinds[text] = self._kind(text)
+        if kind == _NUMBER:
             return self.number()
-        if leaf == _NAME:
-            return (self._applied(at) if self.texts[at + 1] in _OPENING else None) or self.name()
+        if kind == _GROUP:
+            return self.group()
+        if kind == _NAME:
+            after = self.texts[at + 1]
+            if self.scope.free and after not in _AFTER_OTHERS:
+                self.index = at + 1
+                return Var(text, span_of((self.starts[at], self.ends[at])))
+            return (self._applied(at) if after in _OPENING else None) or self.name()
         if text in QUANTIFIERS and begins_quantifier(self):
             return parse_quantifier(self)
         after = self.texts[at + 1] if text else ""
@@ -158,20 +168,20 @@ class FormulaParser(LookaheadParser):
                 return Apply(op, (), None, Span(self.starts[at], self.ends[at]))
             if op.fixity is Fixity.CONDITIONAL and self._begins_choice(at):
                 return self.choice(op, power, under)
-        if text == "(":
-            return self.group()
         if is_name(text) or is_quoted(text):
             return (self._applied(at) if after in _OPENING else None) or self.name()
         if self._begins_topic(at):
             return self.name()
         raise self.error(*diagnostics.no_operand(self.tokens, at))
 
-    def _leaf(self, text: str) -> int:
-        """Return whether a token is a number, or a name that is no word of the language, where an operand begins."""
+    def _kind(self, text: str) -> int:
+        """Return what a token is where an operand begins."""
         if is_numeral(text):
             return _NUMBER
-        word = self._opening(text) is not None or text in QUANTIFIERS
-        return _NAME if is_name(text) and not word else _OTHER
+        if text == "(":
+            return _GROUP
+        word = self._opening(text) is not None or self._infix(text) is not None
+        return _NAME if is_name(text) and not (word or text in QUANTIFIERS or text == INFINITY) else _OTHER
 
     def _applied(self, at: int) -> Formula | None:
         """Parse what a bracket or parenthesis follows: a table, or the use of a template."""
@@ -294,6 +304,8 @@ class FormulaParser(LookaheadParser):
         end = ends[self.index - 1]
         if op.power < power and not (under is not None and passes_on(under)):
             self._one_reading(op, self.tokens[at], under)
+        if self._plain(op):
+            return Apply(op, (operand,), interval, span_of((starts[at], end)))
         return self.apply(op, (operand,), ((start, end),), interval, (starts[at], end))
 
     def _one_reading(self, op: Operator, token: Token, under: Operator | None) -> None:

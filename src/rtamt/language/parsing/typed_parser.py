@@ -67,6 +67,13 @@ class TypedParser(NameParser):
             self._check_conditions(op, args, places)
         return Apply(op, args, interval, whole)
 
+    def _plain(self, op: Operator) -> bool:
+        """Return whether :meth:`apply` has nothing to check of an operator, whatever its operands."""
+        known = self._checked.get(op)
+        if known is None:
+            known = self._checked[op] = op.presence or _CONDITION in op.operands
+        return not known and not self.scope.typed
+
     def _check_conditions(self, op: Operator, args: Sequence[Formula], places: Sequence[Place]) -> None:
         """Reject numbers where an operator takes a condition."""
         for sort, operand, place in zip(op.operands, args, places, strict=False):
