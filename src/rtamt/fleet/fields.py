@@ -96,8 +96,9 @@ DATA = Field(_put_data, lambda source: source.take(source.count()))
 
 
 def _get_text(source: Source) -> str:
+    data: bytes = DATA.get(source)
     try:
-        return DATA.get(source).decode()  # type: ignore[no-any-return]
+        return data.decode()
     except UnicodeDecodeError:
         raise damaged("a text is no UTF-8") from None
 
@@ -136,7 +137,7 @@ def fixed(value: Any) -> Field:
         if given != value:
             raise _unfit(given)
 
-    return Field(put, lambda source: value)  # noqa: ARG005
+    return Field(put, lambda source: value)  # noqa: ARG005 - no bytes
 
 
 def optional(field: Field) -> Field:

@@ -193,7 +193,7 @@ class Fleet(Generic[Update]):
         if not is_mapping(columns):
             raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
         found = self._binding.applied(dict(columns), partial=self._partial)
-        return self._samples.take(given, times, found)  # type: ignore[return-value]
+        return self._samples.take(given, times, found)  # type: ignore[return-value] # of this mode
 
     @exclusive
     def watermark(self, time: Any) -> Update:
@@ -212,7 +212,7 @@ class Fleet(Generic[Update]):
         >>> fleet.watermark(1).released
         Released(keys=array([7, 7]), times=array([0., 1.]), values=array([1., 2.]), requirements=array([0, 0]))
         """
-        return self._samples.watermark(time, keys_of)  # type: ignore[return-value]
+        return self._samples.watermark(time, keys_of)  # type: ignore[return-value] # of this mode
 
     @exclusive
     def advance(self, now: Any) -> Update:
@@ -220,7 +220,7 @@ class Fleet(Generic[Update]):
 
         For streams with keys that fall silent, whose own samples release nothing.
         """
-        return self._samples.advance(now, keys_of)  # type: ignore[return-value]
+        return self._samples.advance(now, keys_of)  # type: ignore[return-value] # of this mode
 
     @property
     def late(self) -> int:
@@ -309,7 +309,7 @@ class Fleet(Generic[Update]):
         >>> fleet.release([7]).released.values, fleet.waiting
         (array([1., 2.]), 1)
         """
-        return self._samples.release_keys(keys_of(keys), keys_of)  # type: ignore[return-value]
+        return self._samples.release_keys(keys_of(keys), keys_of)  # type: ignore[return-value] # of this mode
 
     @exclusive
     def discard(self, key: Any, time: float) -> bool:

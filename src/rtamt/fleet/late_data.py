@@ -79,8 +79,8 @@ class InOrder:
 
     def release_keys(
         self,
-        keys: NDArray[Any],  # noqa: ARG002
-        arrays: Callable[[Sequence[Any]], NDArray[Any]],  # noqa: ARG002
+        keys: NDArray[Any],  # noqa: ARG002 - nothing waits
+        arrays: Callable[[Sequence[Any]], NDArray[Any]],  # noqa: ARG002 - as above
     ) -> FleetUpdate:
         """Release all that waits of some keys."""
         raise _nothing_waits()

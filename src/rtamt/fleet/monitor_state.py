@@ -208,7 +208,7 @@ def _noted(monitor: Any) -> Field:
 REMEMBERED: Mapping[str, Callable[[Any], Field]] = MappingProxyType(
     {
         "_finished": lambda _: fixed(False),
-        "_news": lambda _: Field(lambda out, value: None, lambda source: (0, [])),  # noqa: ARG005
+        "_news": lambda _: Field(lambda out, value: None, lambda source: (0, [])),  # noqa: ARG005 - no bytes
         "_times": _times,
         "_scale": _scale,
         "_clock": _clock,

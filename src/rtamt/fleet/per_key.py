@@ -189,7 +189,7 @@ class MonitorPerKey:
         """Set the current time of all keys; return what each key reports then."""
         return self._kept(self.marked("advance", now, arrays))
 
-    def release_keys(self, keys: NDArray[Any], arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:  # noqa: ARG002
+    def release_keys(self, keys: NDArray[Any], arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:  # noqa: ARG002 - nothing waits
         """Raise :class:`UsageError`: no sample waits."""
         raise UsageError(
             "no sample of this fleet waits, since each key has a monitor, which takes each sample at once"

@@ -1,4 +1,4 @@
-"""What do recordings say about a requirement? Parameters of a template, and rules that tell good recordings from bad.
+"""Infer from recordings: the parameters of a template, and rules that separate good recordings from bad ones.
 
 >>> import rtamt
 >>> from rtamt.mining import mine

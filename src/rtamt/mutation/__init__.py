@@ -1,4 +1,4 @@
-"""Is a requirement tight? Change it a little, and see whether the recordings notice.
+"""Mutate requirements: changes that no recording detects show where a requirement, or the recordings, can be tightened.
 
 >>> import rtamt
 >>> from rtamt.mutation import mutate

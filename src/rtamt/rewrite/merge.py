@@ -55,7 +55,7 @@ def _of_leaf(leaf: Formula) -> Hashable:
     """Return the same for leaves of the same meaning: zeros have signs, and parameters names."""
     kind = leaf.__class__
     if kind is Var:
-        return leaf.name, id(leaf.type)  # type: ignore[attr-defined]
+        return leaf.name, id(leaf.type)  # type: ignore[attr-defined] # a Var
     if isinstance(leaf, Const):
         return kind, leaf.value, copysign(1.0, leaf.value), leaf.name, id(leaf.type)
     return id(leaf)

@@ -65,32 +65,32 @@ class Blueprints:
     """Panels as tuples, with the signatures of rerun.blueprint."""
 
     @staticmethod
-    def TimeSeriesView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802
+    def TimeSeriesView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802 - the name of Rerun
         assert origin == "/"
         return "plot", name, contents
 
     @staticmethod
-    def TextLogView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802
+    def TextLogView(*, origin="/", contents="$origin/**", name=None):  # noqa: N802 - the name of Rerun
         assert origin == "/"
         return "list", name, contents
 
     @staticmethod
-    def Vertical(*contents, row_shares=None, name=None):  # noqa: N802
+    def Vertical(*contents, row_shares=None, name=None):  # noqa: N802 - the name of Rerun
         assert row_shares is None
         return name, *contents
 
     @staticmethod
-    def Horizontal(*contents, column_shares=None, name=None):  # noqa: N802
+    def Horizontal(*contents, column_shares=None, name=None):  # noqa: N802 - the name of Rerun
         assert (len(column_shares), name) == (len(contents), None)
         return contents
 
     @staticmethod
-    def Tabs(*contents, active_tab=None, name=None):  # noqa: N802
+    def Tabs(*contents, active_tab=None, name=None):  # noqa: N802 - the name of Rerun
         assert active_tab is name is None
         return contents
 
     @staticmethod
-    def Blueprint(*parts, auto_layout=None, auto_views=None, collapse_panels=False):  # noqa: N802
+    def Blueprint(*parts, auto_layout=None, auto_views=None, collapse_panels=False):  # noqa: N802 - the name of Rerun
         assert (auto_layout, auto_views, collapse_panels) == (None, None, False)
         return parts
 
