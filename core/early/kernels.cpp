@@ -131,10 +131,10 @@ void BoundsEngine::slide(std::uint32_t index, int reg, bool up) {
     for (const Piece& piece : new_data(own.a, reg)) {
         if (up) {
             lift(state, reg, plus(piece.l, -own.high), plus(piece.r, -own.low), piece.now);
+        } else if (own.low <= -forever) { // where the run of the operand began may be forgotten
+            run_least(state, reg, own, operand, piece);
         } else if (truths_[own.a / 2]) {
             slide_truth(state, reg, own, operand, piece);
-        } else if (own.low <= -forever) {
-            run_least(state, reg, own, operand, piece);
         } else {
             slide_least(state, reg, own, operand, piece);
         }

@@ -101,7 +101,7 @@ class NameParser:
         if text[0] == '"':
             self.index += 1
             return self._meaning(unquoted(text), Span(self.starts[first], self.ends[first]), plain=False)
-        if text in _BEGINNING and self._begins_statement():
+        if text in _BEGINNING and self._cannot_be_operand():
             raise self.error(*diagnostics.no_operand(self.tokens, first))
         if text == "/" or self.texts[last + 1] == "/":
             last = self._last_of_path()
@@ -109,8 +109,8 @@ class NameParser:
         self.index = last + 1
         return self._meaning(text, span_of((self.starts[first], self.ends[last])))
 
-    def _begins_statement(self) -> bool:
-        """Return whether a requirement or a template begins here; a formula alone has none."""
+    def _cannot_be_operand(self) -> bool:
+        """Return whether a whole requirement or template begins here; a formula alone has none."""
         return False
 
     def _last_of_path(self) -> int:

@@ -135,8 +135,12 @@ class RequirementParser(FormulaParser):
         if self._plain_name(1) or self._at(1).kind == "number":
             return self._at(2).text != "="  # otherwise a declaration without a type
         # An infix operator such as S may be the name, unless an operand follows.
+        return self._has_head()
+
+    def _has_head(self) -> bool:
+        """Return whether the next tokens up to a colon are those of a requirement: name, text and severity."""
         name = ID.match(self.text, self._at(1).start)
-        if name is None or self._at(1).kind != "name":
+        if name is None or self._at(1).kind not in ("name", "number"):
             return False
         ahead = next(k for k in range(2, len(self.tokens)) if self._at(k).start >= name.end())
         ahead += self._at(ahead).kind == "quoted"
@@ -145,6 +149,10 @@ class RequirementParser(FormulaParser):
 
     def _begins_statement(self) -> bool:
         return self._requires() or begins_template(self)
+
+    def _cannot_be_operand(self) -> bool:
+        required = self._word("require") and "require" not in self._imports and self._has_head()
+        return required or begins_template(self)
 
     def _begins_a_line(self, at: int) -> bool:
         between = self.text[self.ends[at - 1] : self.starts[at]]

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
+from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy_dataclasses import dataclass, field, replace
@@ -131,7 +132,8 @@ def begins_template(parser: FormulaParser) -> bool:
     if parser.texts[parser.index] != "def":
         return False
     first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
-    named = second.kind == "name" and parser.language.infix(second.text) is None
+    word = second.text
+    named = second.kind == "name" and word not in (THEN, ELSE) and parser.language.infix(word) is None
     return first.kind == "name" and first.text == "def" and named and third.text == "("
 
 

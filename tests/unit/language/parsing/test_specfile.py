@@ -6,7 +6,7 @@ import pytest
 
 from rtamt.errors import NameInFormulaError, ParseError
 from rtamt.language.document import Assertion, Declaration, Import
-from rtamt.language.formula import Const, Var
+from rtamt.language.formula import Apply, Const, Var
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 
@@ -237,3 +237,9 @@ def test_a_unit_ends_before_the_next_declaration(rest):
     with pytest.raises(ParseError) as caught:
         parse_document("float x [m/s" + rest)
     assert caught.value.message == "expected a unit and ']' after 'x [', such as [m/s]"
+
+
+@pytest.mark.parametrize("text", ["if x > y then require else y", "if def then (x) else def"])
+def test_words_of_statements_are_variables_beside_then_and_else(text):
+    declared = "input bool def; input bool x; " if "def" in text else ""
+    assert isinstance(parse_document(f"{declared}low = {text}; low").formula, Apply)

@@ -48,3 +48,13 @@ def test_watched_formula_has_verdicts_of_its_own():
     monitor = rtamt.parse("always[0:5](x >= 3)").monitor(verdict="eager", watch=["x >= 3"])
     assert monitor.update(0, x=4) == []
     assert monitor["x >= 3"] == [Verdict(0.0, True, 0.0)]
+
+
+@pytest.mark.parametrize("text", ["once(x >= 1)", "historically(x < 1)", "historically(x < 1) or x > 3"])
+def test_verdicts_of_an_unbounded_past_ended_after_sixty_four_samples(text):
+    times = [float(t) for t in range(200)]
+    monitor = rtamt.parse(text).monitor(verdict="eager")
+    assert [[each.time for each in monitor.update(t, x=0.0)] for t in times] == [[t] for t in times]
+    dense = rtamt.parse(text, time="dense").monitor(verdict="eager")
+    runs = [run for t in times for run in dense.update(t, x=0.0)]
+    assert sum(run.end - run.begin for run in runs) == pytest.approx(199.0)
