@@ -80,9 +80,11 @@ std::optional<Stream::Failure> Stream::monitor(const KeySpan* keys) {
         if (count != 0) {
             std::vector<std::string_view> held;
             std::vector<const double*> columns;
+            columns.reserve(ready.columns.size());
             for (const auto& column : ready.columns)
                 columns.push_back(column.data());
             std::vector<Output> places;
+            places.reserve(outputs);
             for (std::size_t k = 0; k < outputs; ++k) {
                 places.push_back({made.values.data() + k * count, made.known.data() + k * count,
                                   made.when.data() + k * count, made.warming.data() + k * count});

@@ -270,7 +270,7 @@ TEST_CASE("wrong calls are refused and change nothing") {
 }
 
 TEST_CASE("damaged states are refused") {
-    Stream stream = create(2 * period());
+    const Stream stream = create(2 * period());
     std::vector<Row> rows;
     send(stream, {{"a", 0, 1}, {"b", 3, 1}, {"a", 2, 1}, {"a", 1, 1}, {"b", 5, 2}}, rows);
     const Bytes state = save(stream);
