@@ -113,8 +113,8 @@ vsix: ## build the extension for Visual Studio Code with npm: editors/vscode/rta
 vscode: $(VENV)/.core $(VENV)/.extras vsix ## use the extension in a real Visual Studio Code, which npm installs into build/vscode, and draw docs/images/editor*.png
 	$(RUN) tools/vscode.py
 
-viewers: $(VENV)/.core $(VENV)/.extras ## open exported files in Foxglove Studio, which npm installs into build/foxglove, and in Rerun, and draw their images; needs xvfb and mesa-vulkan-drivers
-	$(RUN) -m pip install --quiet "rtamt[rerun]"
+viewers: $(VENV)/.core $(VENV)/.extras ## open files and views in Foxglove Studio (from npm, in build/foxglove), Rerun and JupyterLab, and draw their images; needs xvfb and mesa-vulkan-drivers
+	$(RUN) -m pip install --quiet "rtamt[rerun]" jupyterlab
 	$(RUN) tools/viewers.py
 
 FUZZ_SECONDS ?= 60
