@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import event, given, settings
+from hypothesis import event, example, given, settings
 from hypothesis import strategies as st
 from pyarrow import parquet
 
@@ -112,8 +112,12 @@ def requirement(text: str, *, dense: bool) -> Requirement:
     return Requirement(spec, text, "R", tuple(rows))
 
 
+THIRDS = {"time": [0, 333333333, 666666667, 1_000_000_000], "x": [-2.0] * 4, "y": [-2.0] * 4}
+
+
 @settings(max_examples=3 * settings().max_examples)
 @given(logs(), st.sampled_from(TEXTS), st.booleans(), st.sampled_from(["log.parquet", "log.csv"]))
+@example((THIRDS, " [ns]"), TEXTS[0], False, "log.parquet")
 def test_the_outcome_in_chunks_is_that_of_the_whole_recording(
     log: Any, text: str, dense: bool, name: str
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -95,13 +96,31 @@ def _blur(gap: float, times: FloatArray) -> float:
 def has_period(times: FloatArray, period: Fraction) -> bool:
     """Return whether more than half of the gaps are a period: so is then the median of chunks of which all are so.
 
+    A gap for which :func:`infer_period` has a decimal with fewer digits is not this period.
+
     >>> has_period(np.array([0, 1, 2, 2.5]), Fraction(1)), has_period(np.array([0, 1, 1.5]), Fraction(1))
     (True, False)
     """
     if len(times) < 2:
         return True
-    gap = float(period)
-    return 2 * int((np.abs(np.diff(times) - gap) <= _blur(gap, times)).sum()) > len(times) - 1
+    gap, gaps = float(period), np.diff(times)
+    blur = _blur(gap, times)
+    same = np.abs(gaps - gap) <= blur
+    # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is none of them.
+    step = _last_place(gap) * 10
+    same &= np.abs(gaps - np.round(gaps / step) * step) > 1.001 * blur
+    return 2 * int(same.sum()) > len(gaps)
+
+
+def _last_place(gap: float) -> float:
+    """Return what one means in the last significant digit of a number.
+
+    >>> _last_place(0.25), _last_place(20.0)
+    (0.01, 10.0)
+    """
+    exponent = Decimal(repr(gap)).normalize().as_tuple().exponent
+    assert isinstance(exponent, int)
+    return float(10.0**exponent)
 
 
 def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:

@@ -43,7 +43,7 @@ class DiscreteStream(Stream):
             return
         if self._monitor is None:
             self._monitor = self._begin(timestamps)
-        elif self._inferred and timestamps is not None and self._period is not None:
+        if self._inferred and timestamps is not None and self._period is not None:
             self.steady = self.steady and has_period(timestamps.seconds, self._period)
         self._known(self._monitor, push_samples(self._monitor, timestamps, columns, n))
         self.samples += n
