@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.compiler.graph import ITEMS, LATTICE, Graph, Item, interval_in_steps, last_before, over
+from rtamt.compiler.graph import ITEMS, LATTICE, Graph, Item, interval_in_steps, over
 from rtamt.compiler.program import NO_OPERAND
 from rtamt.language.formula import Apply, Const, Formula, Var, children, postorder
 from rtamt.language.operators import Pointwise, Until, Window
@@ -161,7 +161,7 @@ def _placed_at_start(
     if begin == 0:
         return add("until", *reached[2:5])
     graph.items.append(Item(*reached))
-    before = over(graph, "least", hold, 0, last_before(graph, begin))
+    before = over(graph, "least", hold, 0, graph.time.last_before(begin))
     graph.items.append(Item(ITEMS.index("value"), False, before))
     graph.starts += [None, None]
     return add("both", len(graph.items) - 2, len(graph.items) - 1)

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.lower import seconds_per_step
 from rtamt.compiler.program import NO_OPERAND, OPCODES
+from rtamt.compiler.time_graph import SampledGraphs, graphs_of
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.language.shares import rank_of
 from rtamt.lazy_dataclasses import dataclass, field, fields, replace
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.discrete import Discrete
@@ -101,6 +101,11 @@ class Graph:
     apart: set[Formula] = field(default_factory=set)
     depths: dict[int, Fraction | None] = field(default_factory=dict)
 
+    @property
+    def time(self) -> type[SampledGraphs]:
+        """What the graph decides by its time domain."""
+        return graphs_of(self.domain)
+
     def ref(self, formula: Formula) -> int:
         """Return the reference of a part of a compiled formula, other than one that has items instead."""
         return _ref(self, formula)
@@ -172,8 +177,7 @@ def _node(graph: Graph, formula: Formula) -> int:
         return over(graph, "least" if kernel.fill > 0 else "greatest", args[0], step, step)
     if isinstance(kernel, Ahead):
         distance, _ = interval_in_steps(graph, formula)
-        kind = "greatest" if graph.domain.continuous else "held"
-        return over(graph, kind, args[0], distance, distance)
+        return over(graph, graph.time.ahead, args[0], distance, distance)
     if isinstance(kernel, Since):
         return _since(graph, formula, *args)
     if isinstance(kernel, Until):
@@ -263,7 +267,7 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
     begin, end = interval_in_steps(graph, formula)
     depth = graph.horizon(operand)
     value = operand
-    if (begin or end) and graph.domain.continuous:  # its operand is a pulse of a tick
+    if (begin or end) and graph.time.pulses:
         value = over(graph, "pulses", operand, -end, -begin)
     elif begin or end:
         steps = (Step(OPCODES.index("slide_sum" if end < FOREVER else "run_sum")),)
@@ -281,14 +285,10 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
 
 
 def _rank(graph: Graph, formula: Apply, operand: int) -> int:
-    """Return the k-th largest value of a window; in dense time it holds for whole ticks, hence in both windows.
-
-    There a window covers a part of each of the ticks at its ends: see ``core/dense/rank.hpp``.
-    """
+    """Return the k-th largest value of a window; the least of those of the windows that stand for it."""
     begin, end = interval_in_steps(graph, formula)
-    dense = graph.domain.continuous
-    k, outside = rank_of(formula.interval, graph.period, continuous=dense)
-    order = end - begin + (0 if dense else 1) - k + 1 if outside > 0 else k
+    k, outside = graph.time.rank(formula.interval, graph.period)
+    order = end - begin + graph.time.point - k + 1 if outside > 0 else k
     kind = KINDS.index("rank_least" if outside > 0 else "rank_greatest")
     steps = (Step(OPCODES.index("const"), x=float(order)),)
     low, high = (-end, -begin) if formula.op.tense is Tense.PAST else (begin, end)
@@ -299,19 +299,17 @@ def _rank(graph: Graph, formula: Apply, operand: int) -> int:
         node = Node(kind, operand, low=first, high=last, horizon=horizon, steps=steps)
         return _add(graph, node, (formula,))
 
-    return _pair(graph, "both", window(low, high - 1), window(low + 1, high)) if dense else window(low, high)
-
-
-def last_before(graph: Graph, begin: int) -> int:
-    """Return the last step of what stands for [0, a): in dense time the closed window (SEMANTICS: until)."""
-    return begin if graph.domain.continuous else begin - 1
+    first, *others = (window(*each) for each in graph.time.rank_windows(low, high))
+    for other in others:
+        first = _pair(graph, "both", first, other)
+    return first
 
 
 def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago."""
     begin, end = interval_in_steps(graph, formula)
     core = _since_core(graph, hold, goal)
-    if graph.domain.continuous and begin == 0:
+    if graph.time.goal_apart and begin == 0:
         core = _pair(graph, "either", core, goal)
     value = over(graph, "greatest", core, -begin, -begin)
     if end < FOREVER:
@@ -323,8 +321,7 @@ def _since(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
 
 def _since_core(graph: Graph, hold: int, goal: int) -> int:
     horizon = max(graph.horizon(hold), graph.horizon(goal))
-    kind = "since_dense" if graph.domain.continuous else "since"
-    return _add(graph, Node(KINDS.index(kind), hold, goal, horizon=horizon))
+    return _add(graph, Node(KINDS.index(graph.time.since), hold, goal, horizon=horizon))
 
 
 def _recursion(graph: Graph, hold: int, goal: int) -> int:
@@ -345,7 +342,7 @@ def _until(graph: Graph, formula: Apply, hold: int, goal: int) -> int:
     depths = graph.horizon(hold), graph.horizon(goal)
     horizon = FOREVER if FOREVER in (*depths, end) else max(depths) + max(0, end + origin)
     if begin:
-        before = over(graph, "least", hold, origin, origin + last_before(graph, begin))
+        before = over(graph, "least", hold, origin, origin + graph.time.last_before(begin))
         value = _pair(graph, "both", value, before, horizon if end == FOREVER else FOREVER)
     if end < FOREVER:
         reached = over(graph, "greatest", goal, first, end + origin)
