@@ -97,9 +97,10 @@ def run(engine: str, job: Job, recordings: list[Recording], jobs: int | None) ->
     begin, before = time.perf_counter(), _children()
     own = time.process_time()
     tables = list(checked(job, recordings, engine=engine, jobs=jobs))
-    cores = time.process_time() - own + _children() - before
+    own = time.process_time() - own
+    cores = own + _children() - before
     label = engine if jobs is None else f"{engine}, {jobs} process{'es' * (jobs > 1)}"
-    print(f"{label:18} {time.perf_counter() - begin:8.1f} s wall, {cores:7.1f} s of processor time seen")
+    print(f"{label:18} {time.perf_counter() - begin:8.1f} s wall, {cores:7.1f} s of processor time seen, {own:.1f} s here")
     return tables
 
 
