@@ -100,7 +100,8 @@ def run(engine: str, job: Job, recordings: list[Recording], jobs: int | None) ->
     own = time.process_time() - own
     cores = own + _children() - before
     label = engine if jobs is None else f"{engine}, {jobs} process{'es' * (jobs > 1)}"
-    print(f"{label:18} {time.perf_counter() - begin:8.1f} s wall, {cores:7.1f} s of processor time seen, {own:.1f} s here")
+    wall = time.perf_counter() - begin
+    print(f"{label:18} {wall:8.1f} s wall, {cores:7.1f} s of processor time seen, {own:.1f} s here")
     return tables
 
 
