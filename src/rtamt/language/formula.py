@@ -285,6 +285,8 @@ def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
 
 def located(formula: Formula, span: Span | None) -> Formula:
     """Return the formula with another position in the text."""
+    if type(formula) is Var:  # most leaves
+        return Var(formula.name, span, formula.type)
     node: Any = formula  # each of the three types of nodes is a dataclass
     found: Formula = replace(node, span=span)
     return found

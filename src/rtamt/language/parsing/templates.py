@@ -14,7 +14,6 @@ shared, not copied, and so are equal uses. The formula knows nothing of template
 
 from __future__ import annotations
 
-from copy import copy
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -293,7 +292,7 @@ def _instance(
             span,
         )
     use = parser.use
-    inner = copy(parser)
+    inner = parser.twin()
     inner.use = (
         Use(parser.text, span, (template.name,))
         if use is None
@@ -335,7 +334,7 @@ def all_placed(
             elif ready:
                 args = tuple([made[id(operand)] for operand in node.args])
                 interval = None if node.interval is None else replace(node.interval, span=span)
-                made[id(node)] = replace(node, args=args, interval=interval, span=span)
+                made[id(node)] = Apply(node.op, args, interval, span)
             else:
                 stack.append((node, True))
                 stack.extend([(operand, False) for operand in node.args])
