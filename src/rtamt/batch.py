@@ -104,7 +104,7 @@ class _Work:
             except Exception as error:  # noqa: BLE001 - kept for results(), which raises it
                 self._errors[number] = error
                 return
-            if alone and len(result.signal) >= LONG:
+            if alone and result._size >= LONG:
                 return
 
     def stop(self) -> None:

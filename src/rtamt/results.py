@@ -85,6 +85,14 @@ class Result:
         signal: Signal = fields["_signal"]
         return signal
 
+    @property
+    def _size(self) -> int:
+        """How many samples were evaluated, without making a signal of them."""
+        if "_found" in self.__dict__:
+            reading, found = self.__dict__["_found"]
+            return int(reading.samples(found))
+        return len(self.signal)
+
     def __repr__(self) -> str:
         of = self.specification.name or self.specification.formula
         start = self.signal.times[0]

@@ -22,6 +22,9 @@ class Reading(Protocol):
     def signal(self, found: Any) -> Signal:
         """Return the robustness."""
 
+    def samples(self, found: Any) -> int:
+        """Return the number of samples of all variables, or of each where they have the same."""
+
 
 class Direct(NamedTuple):
     """Evaluates one formula over recordings that need no conversion.

@@ -103,6 +103,10 @@ class Reading(NamedTuple):
         times = np.frombuffer(memory, np.float64, half // 8)
         return Signal(times, np.frombuffer(memory, np.float64, half // 8, half))
 
+    def samples(self, found: Any) -> int:
+        """Return the number of samples of all variables."""
+        return sum(found[1])
+
 
 class StoredEvaluator(Evaluator):
     """Evaluates a plan without formulas."""

@@ -117,6 +117,11 @@ class Reading(NamedTuple):
         times.flags.writeable = False
         return Signal(times, _row(found, -1))
 
+    def samples(self, found: Any) -> int:
+        """Return the number of samples of each variable."""
+        count: int = found[1]
+        return count
+
 
 def _row(found: Any, place: int) -> FloatArray:
     memory, count, _ = found
