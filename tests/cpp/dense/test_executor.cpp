@@ -50,6 +50,32 @@ TEST_CASE("random programs offline are their definition") {
     CHECK((failed > 100 && failed < 1400)); // both kinds were tried
 }
 
+TEST_CASE("one executor evaluates trace after trace as their definition, unless one fails") {
+    Random random(24);
+    int again = 0;
+    for (int round = 0; round < 400; ++round) {
+        const std::string note = round_note(round);
+        const Program program =
+            random_program(random, static_cast<int>(random.between(1, 10)), rtamt::Domain::dense);
+        Executor executor(program);
+        for (int number = 0; number < 4; ++number) {
+            const Trace trace =
+                dense_oracle::random_trace(random, 2, 20, random.between(-50, 50), 1);
+            const std::int64_t extra = random.chance(30) ? random.between(0, 30) : 0;
+            const auto expected = dense_oracle::answer(program, trace, extra);
+            std::vector<EventList> lists(program.outputs.size());
+            const std::vector<Events> inputs{trace[0].events(0, trace[0].size()),
+                                             trace[1].events(0, trace[1].size())};
+            const auto failure = executor.evaluate(inputs, extra, lists);
+            CHECK_MESSAGE(failure.has_value() == expected.undefined.has_value(), note);
+            if (failure) break;
+            again += number;
+            CHECK_MESSAGE(ways::signals_of(lists) == expected.outputs, note);
+        }
+    }
+    CHECK(again > 500);
+}
+
 // Online in random chunks, where a chunk that fails is taken back and left out: after each update
 // exactly what is known is reported of the events that were accepted, and each failure is the
 // definition's first.
