@@ -13,7 +13,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
-from rtamt.lint.fix import mended
+from rtamt.lint.fix import with_fixes
 from rtamt.lint.found import Text
 from rtamt.lint.ranges import Decided
 from rtamt.lint.report import findings
@@ -51,10 +51,10 @@ def robustness(document, columns):
 def test_fixes_keep_the_robustness_and_leave_nothing_to_fix(formula, columns):
     text = f"/* before */ {to_text(formula)} // behind"
     document = parse_document(text)
-    found = mended(document, parse_document, STL)
+    found = with_fixes(document, parse_document, STL)
     assert found.text.startswith("/* before */ ")
     assert found.text.endswith(" // behind")
-    assert mended(found.document, parse_document, STL).text == found.text
+    assert with_fixes(found.document, parse_document, STL).text == found.text
     assert not any(each.fix for each in findings(found.document))
     assume(rtamt.parse(text).input_names == rtamt.parse(found.text).input_names != ())
     try:

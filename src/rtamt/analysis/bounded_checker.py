@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.analysis.declared import common_limits, last_limits, require_covered, require_same_signals
 from rtamt.analysis.problem import Answer, Problem, related
-from rtamt.analysis.witness import Wish, Witness
+from rtamt.analysis.witness import Goal, Witness
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import STL, Bounds, Tense
@@ -40,9 +40,9 @@ class Part(NamedTuple):
     name: str
     spec: Specification
 
-    def wish(self, holds: bool = True) -> Wish:
-        """Return the wish that it holds, or that it does not."""
-        return Wish(self.spec, self.spec.formula, holds)
+    def goal(self, holds: bool = True) -> Goal:
+        """Return the goal of a trace on which it holds, or does not hold."""
+        return Goal(self.spec, self.spec.formula, holds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,23 +112,23 @@ class BoundedChecker:
             )
         return self._problems[key]
 
-    def find(self, wishes: Sequence[Wish]) -> Answer:
-        """Look for a trace of any length that fulfils all wishes; short and coarse ones first."""
+    def find(self, goals: Sequence[Goal]) -> Answer:
+        """Look for a trace of any length that reaches all goals; short and coarse ones first."""
         if self.samples <= _SHORT:
-            return self._first(wishes, self.problem(self.samples))
+            return self._first(goals, self.problem(self.samples))
         return self._first(
-            wishes,
+            goals,
             self.problem(_SHORT),
             self.problem(self.samples, whole=True, coarse=True),
             self.problem(self.samples),
         )
 
-    def find_whole(self, wishes: Sequence[Wish]) -> Answer:
-        """Look for a trace of the full length that fulfils all wishes; coarse ones first."""
+    def find_whole(self, goals: Sequence[Goal]) -> Answer:
+        """Look for a trace of the full length that reaches all goals; coarse ones first."""
         coarse = self.problem(self.samples, whole=True, coarse=True)
-        return self._first(wishes, coarse, self.problem(self.samples, whole=True))
+        return self._first(goals, coarse, self.problem(self.samples, whole=True))
 
-    def _first(self, wishes: Sequence[Wish], *problems: Problem) -> Answer:
+    def _first(self, goals: Sequence[Goal], *problems: Problem) -> Answer:
         """Return the first trace that the engine confirms, without one the answer to the last problem.
 
         Each problem may take half of the time that is left, the last one all of it.
@@ -136,7 +136,7 @@ class BoundedChecker:
         end, doubtful = monotonic() + self.limit, None
         for problem in problems:
             left = end - monotonic()
-            answer = problem.find(wishes, left if problem is problems[-1] else left / 2)
+            answer = problem.find(goals, left if problem is problems[-1] else left / 2)
             if answer.witness is not None:
                 if answer.witness.confirmed:
                     return answer
@@ -145,13 +145,13 @@ class BoundedChecker:
 
     def require_covered(self, formula: Formula, spec: Specification) -> None:
         """Raise :class:`NotCoveredError` if a part of a formula is not covered."""
-        self.problem(min(_SHORT, self.samples)).covers(Wish(spec, formula, True))
+        self.problem(min(_SHORT, self.samples)).covers(Goal(spec, formula, True))
 
     def without_value(self, *parts: Part) -> str | None:
         """Return the sentence that there is no trace on which the parts have values; None if there may be one."""
-        wishes = [part.wish() for part in parts]
+        goals = [part.goal() for part in parts]
         problems = [self.problem(min(_SHORT, self.samples)), self.problem(self.samples)]
-        if any(problem.has_values(wishes, self.limit) is not False for problem in problems):
+        if any(problem.has_values(goals, self.limit) is not False for problem in problems):
             return None
         verb = "it has" if len(parts) == 1 else "they have"
         return f"{verb} no value on any trace up to {self._length}: evaluations report an error"
@@ -162,21 +162,21 @@ class BoundedChecker:
         """Answer whether a trace of the full length satisfies all parts."""
         one, names = len(parts) == 1, tuple(part.name for part in parts)
         question = "satisfiable" if one else "consistent"
-        wishes = [part.wish() for part in parts]
-        answer = self.find_whole(wishes)
+        goals = [part.goal() for part in parts]
+        answer = self.find_whole(goals)
         satisfies = "satisfies it" if one else "satisfies all of them together"
         if answer.exists is False:
             if nothing := self.without_value(*parts):
                 return Conclusion(question, names, False, nothing, True)
             if not one:
                 problem = self.problem(self.samples, whole=True)
-                names = tuple(parts[k].name for k in _smallest(problem, wishes))
+                names = tuple(parts[k].name for k in _smallest(problem, goals))
             sentence = (
                 f"no trace of {self._length} satisfies it"
                 if len(names) == 1
                 else f"they contradict each other: no trace of {self._length} satisfies them together"
             )
-            shorter = self.find(wishes)
+            shorter = self.find(goals)
             if shorter.exists and shorter.witness is not None:
                 sentence += f"; a trace of {_samples(shorter.witness.samples)} does"
             return Conclusion(question, names, False, sentence, True, shorter.witness)
@@ -186,7 +186,7 @@ class BoundedChecker:
 
     def valid(self, part: Part) -> Conclusion:
         """Answer whether a requirement holds on every trace."""
-        answer = self.find([part.wish(False)])
+        answer = self.find([part.goal(False)])
         if answer.exists is False:
             if nothing := self.without_value(part):
                 return Conclusion("valid", (part.name,), False, nothing, True)
@@ -201,7 +201,7 @@ class BoundedChecker:
     def implies(self, first: Part, second: Part) -> Conclusion:
         """Answer whether every trace that satisfies the first satisfies the second."""
         names = (first.name, second.name)
-        answer = self.find([first.wish(), second.wish(False)])
+        answer = self.find([first.goal(), second.goal(False)])
         if answer.exists is False:
             if nothing := self.without_value(first, second):
                 return Conclusion("implies", names, None, nothing)
@@ -240,23 +240,23 @@ class BoundedChecker:
         dropped: set[str] = set()
         for part in parts:
             others = [other for other in parts if other is not part and other.name not in dropped]
-            violated = part.wish(False)
+            violated = part.goal(False)
             # Those that share no signals with it, directly or through others, do not imply it.
             near = next(
                 group
-                for group in related([violated, *(other.wish() for other in others)])
+                for group in related([violated, *(other.goal() for other in others)])
                 if violated in group
             )
-            others = [other for other in others if other.wish() in near]
-            wishes = [violated, *(other.wish() for other in others)]
-            answer = self.find(wishes)
+            others = [other for other in others if other.goal() in near]
+            goals = [violated, *(other.goal() for other in others)]
+            answer = self.find(goals)
             if answer.exists is False:
-                needed = [k for k in _smallest(self.problem(self.samples), wishes) if k > 0]
+                needed = [k for k in _smallest(self.problem(self.samples), goals) if k > 0]
                 if not needed:  # it always holds, which is another finding
                     continue
                 dropped.add(part.name)
                 listed = " and ".join(others[k - 1].name for k in needed)
-                none = self._none([wish.formula for wish in wishes])
+                none = self._none([goal.formula for goal in goals])
                 sentence = f"it is redundant, because {listed} {'imply' if len(needed) > 1 else 'implies'} it: {none}"
                 yield Conclusion("redundant", (part.name,), True, sentence, True)
             else:
@@ -271,9 +271,9 @@ class BoundedChecker:
     def vacuous(self, part: Part) -> Iterator[Conclusion]:
         """Answer for each implication of a requirement whether it is never triggered where the requirement holds."""
         for condition in implications(part.spec.formula):
-            happens = Wish(part.spec, STL["eventually"](condition), True)
+            happens = Goal(part.spec, STL["eventually"](condition), True)
             shown, names = f"'{excerpt(condition)}'", (part.name,)
-            answer = self.find([part.wish(), happens])
+            answer = self.find([part.goal(), happens])
             if answer.exists is False:
                 alone = self.find([happens])
                 none = f"no trace up to {self._length}"
@@ -324,12 +324,12 @@ class BoundedChecker:
         return None
 
 
-def _smallest(problem: Problem, wishes: Sequence[Wish]) -> list[int]:
-    """Return indices of wishes that cannot be fulfilled together, none of which can be left out."""
-    needed = problem.conflict(wishes) or list(range(len(wishes)))
+def _smallest(problem: Problem, goals: Sequence[Goal]) -> list[int]:
+    """Return indices of goals that cannot be reached together, none of which can be left out."""
+    needed = problem.conflict(goals) or list(range(len(goals)))
     for index in tuple(needed):
         rest = [k for k in needed if k != index]
-        fewer = problem.conflict([wishes[k] for k in rest]) if index in needed else None
+        fewer = problem.conflict([goals[k] for k in rest]) if index in needed else None
         if fewer is not None:
             needed = [rest[k] for k in fewer]
     return needed

@@ -1,4 +1,4 @@
-"""What is asked of traces of at most so many samples: wishes to fulfil together, and the trace that fulfils them."""
+"""What is asked of traces of at most so many samples: goals to reach together, and the trace that reaches them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.analysis.encoder import Encoder, Limits
 from rtamt.analysis.solver import Solver
-from rtamt.analysis.witness import Wish, Witness
+from rtamt.analysis.witness import Goal, Witness
 from rtamt.language.formula import Const, Formula, postorder, variables
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
@@ -63,27 +63,27 @@ class Problem:
         self._exact: dict[tuple[Formula, bool], Truth] = {}
         self._distant: dict[tuple[Formula, bool], Truth] = {}
 
-    def find(self, wishes: Sequence[Wish], limit: float) -> Answer:
-        """Look for a trace that fulfils all wishes, with a margin if there is one, for so many seconds."""
+    def find(self, goals: Sequence[Goal], limit: float) -> Answer:
+        """Look for a trace that reaches all goals, with a margin if there is one, for so many seconds."""
         end = monotonic() + limit
         if not self._whole:
-            return self._find(wishes, end)
-        # Wishes without common variables do not affect each other if the length is given.
+            return self._find(goals, end)
+        # Goals without common variables do not affect each other if the length is given.
         columns: dict[str, NDArray[np.float64]] = {}
-        for group in related(wishes):
+        for group in related(goals):
             answer = self._find(group, end)
             if answer.witness is None:
                 return answer
             columns |= answer.witness.columns
-        return Answer(True, Witness(columns, self.period, tuple(wishes), len(self._encoder.inside)))
+        return Answer(True, Witness(columns, self.period, tuple(goals), len(self._encoder.inside)))
 
-    def _find(self, wishes: Sequence[Wish], end: float) -> Answer:
+    def _find(self, goals: Sequence[Goal], end: float) -> Answer:
         begin = monotonic()
-        asking = self._solver.asking([self._truth(wish) for wish in wishes])
+        asking = self._solver.asking([self._truth(goal) for goal in goals])
         if not (found := asking(limit=end - monotonic())):
             return Answer(found)
         taken = monotonic() - begin
-        witness = self._witness(wishes)
+        witness = self._witness(goals)
         if len(self._encoder.inside) > _SHORT:
             least = _AT_LEAST if witness.confirmed else _UNCONFIRMED
             patience = _PATIENCE * taken + least
@@ -93,29 +93,29 @@ class Problem:
             last = self._encoder.inside[-1]
             if asking(last, end - monotonic()):
                 asking.add([last])
-                witness = self._witness(wishes)
-        clear = self._clear(wishes, asking, min(patience, end - monotonic()))
+                witness = self._witness(goals)
+        clear = self._clear(goals, asking, min(patience, end - monotonic()))
         return Answer(True, witness if clear is None or not clear.confirmed else clear)
 
-    def conflict(self, wishes: Sequence[Wish]) -> list[int] | None:
-        """Return the indices of some wishes that cannot be fulfilled together; None where none are known."""
-        return self._solver.conflict([self._truth(wish) for wish in wishes])
+    def conflict(self, goals: Sequence[Goal]) -> list[int] | None:
+        """Return the indices of some goals that cannot be reached together; None where none are known."""
+        return self._solver.conflict([self._truth(goal) for goal in goals])
 
-    def has_values(self, wishes: Sequence[Wish], limit: float) -> bool | None:
+    def has_values(self, goals: Sequence[Goal], limit: float) -> bool | None:
         """Return whether formulas have values together on some trace; None if there is no answer in so many seconds."""
-        for wish in wishes:
-            self._truth(wish)
-        defined = [self._encoder.defined(wish.formula) for wish in wishes]
+        for goal in goals:
+            self._truth(goal)
+        defined = [self._encoder.defined(goal.formula) for goal in goals]
         return all(each is True for each in defined) or self._solver.ask(defined, limit)
 
-    def covers(self, wish: Wish) -> None:
+    def covers(self, goal: Goal) -> None:
         """Raise :class:`NotCoveredError` if a part of the formula is not covered."""
-        self._truth(wish)
+        self._truth(goal)
 
-    def _clear(self, wishes: Sequence[Wish], asking: Asking, patience: float) -> Witness | None:
+    def _clear(self, goals: Sequence[Goal], asking: Asking, patience: float) -> Witness | None:
         """Return a trace with the greatest margin of a few, None if none is found in so many seconds."""
-        asking.add([self._distance(wish) for wish in wishes])
-        largest = _magnitude([wish.formula for wish in wishes])
+        asking.add([self._distance(goal) for goal in goals])
+        largest = _magnitude([goal.formula for goal in goals])
         end = monotonic() + patience
         found: Witness | None = None
         # Where there is a margin there is every smaller one.
@@ -125,37 +125,37 @@ class Problem:
             middle = low if low == 0 else (low + high) // 2 if found else high - 1
             margin = Fraction(10) ** (largest - middle)
             if asking(self._solver.at_most(margin, self._encoder.margin), left):
-                found, high = self._witness(wishes), middle
+                found, high = self._witness(goals), middle
             else:
                 low = middle + 1
         return found
 
-    def _truth(self, wish: Wish) -> Truth:
-        """Return whether a wish is fulfilled."""
-        key = (wish.formula, wish.holds)
+    def _truth(self, goal: Goal) -> Truth:
+        """Return whether a goal is fulfilled."""
+        key = (goal.formula, goal.holds)
         if key not in self._exact:
-            truth = self._encoder.holds(wish.formula, wish.spec.text)[0]
-            fulfilled = truth if wish.holds else self._solver.no(truth)
-            self._exact[key] = self._solver.every((fulfilled, self._encoder.defined(wish.formula)))
+            truth = self._encoder.holds(goal.formula, goal.spec.text)[0]
+            fulfilled = truth if goal.holds else self._solver.no(truth)
+            self._exact[key] = self._solver.every((fulfilled, self._encoder.defined(goal.formula)))
         return self._exact[key]
 
-    def _distance(self, wish: Wish) -> Truth:
-        """Return whether a wish is fulfilled with the margin."""
-        key = (wish.formula, wish.holds)
+    def _distance(self, goal: Goal) -> Truth:
+        """Return whether a goal is fulfilled with the margin."""
+        key = (goal.formula, goal.holds)
         if key not in self._distant:
-            verdict = self._encoder.robust(wish.formula, wish.spec.text)[0]
-            self._distant[key] = verdict.yes if wish.holds else verdict.no
+            verdict = self._encoder.robust(goal.formula, goal.spec.text)[0]
+            self._distant[key] = verdict.yes if goal.holds else verdict.no
         return self._distant[key]
 
-    def _witness(self, wishes: Sequence[Wish]) -> Witness:
+    def _witness(self, goals: Sequence[Goal]) -> Witness:
         """Return the trace of the last answer."""
         solver = self._solver
         n = sum(map(solver.is_true, self._encoder.inside))
         columns = {
             name: np.array(_numbers(solver, [value.real for value in self._encoder.columns[name][:n]]))
-            for name in variables(*(wish.formula for wish in wishes))
+            for name in variables(*(goal.formula for goal in goals))
         }
-        return Witness(columns, self.period, tuple(wishes), n)
+        return Witness(columns, self.period, tuple(goals), n)
 
 
 def _numbers(solver: Solver, terms: Sequence[Real]) -> list[float]:
@@ -167,11 +167,11 @@ def _numbers(solver: Solver, terms: Sequence[Real]) -> list[float]:
     return found
 
 
-def related(wishes: Sequence[Wish]) -> list[list[Wish]]:
-    """Return groups of wishes, of which each shares no variables with the others."""
-    groups: list[tuple[set[str], list[Wish]]] = []
-    for wish in wishes:
-        names, members = set(variables(wish.formula)), [wish]
+def related(goals: Sequence[Goal]) -> list[list[Goal]]:
+    """Return groups of goals, of which each shares no variables with the others."""
+    groups: list[tuple[set[str], list[Goal]]] = []
+    for goal in goals:
+        names, members = set(variables(goal.formula)), [goal]
         for group in [group for group in groups if group[0] & names]:
             names |= group[0]
             members = [*group[1], *members]

@@ -21,28 +21,28 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
-class Wish(NamedTuple):
+class Goal(NamedTuple):
     """A formula over the names of a specification, and whether a trace is to satisfy or to violate it."""
 
     spec: Specification
     formula: Formula
     holds: bool
 
-    def asked(self) -> Specification:
+    def specification(self) -> Specification:
         """Return the specification of the formula."""
         return self.spec if self.formula is self.spec.formula else self.spec.with_formula(self.formula)
 
 
 @dataclass(frozen=True, eq=False)
 class Witness:
-    """A trace that the solver found, with the wishes that it fulfils.
+    """A trace that the solver found, with the goals that it fulfils.
 
     ``columns``: from each variable to its samples, shape (n,). ``period``: of sampling, in seconds. ``samples``: n.
     """
 
     columns: Mapping[str, NDArray[np.float64]]
     period: Fraction
-    wishes: tuple[Wish, ...]
+    goals: tuple[Goal, ...]
     samples: int
 
     @property
@@ -53,15 +53,15 @@ class Witness:
 
     @cached_property
     def results(self) -> tuple[Result, ...]:
-        """What the engine finds on the trace, for each wish."""
-        return tuple(wish.asked().evaluate(self.data, period=self.period) for wish in self.wishes)
+        """What the engine finds on the trace, for each goal."""
+        return tuple(goal.specification().evaluate(self.data, period=self.period) for goal in self.goals)
 
     @cached_property
     def confirmed(self) -> bool:
         """Whether the engine agrees with the solver."""
         try:
-            found = zip(self.wishes, self.results, strict=True)
-            return all(result.satisfied is wish.holds for wish, result in found)
+            found = zip(self.goals, self.results, strict=True)
+            return all(result.satisfied is goal.holds for goal, result in found)
         except EvaluationError:
             return False
 
@@ -71,5 +71,5 @@ class Witness:
         return min(abs(result.robustness) for result in self.results)
 
     def plot(self, figure: Any = None) -> Any:
-        """Plot the signals, and the robustness of the last wish, as :meth:`rtamt.Result.plot`."""
+        """Plot the signals, and the robustness of the last goal, as :meth:`rtamt.Result.plot`."""
         return self.results[-1].plot(figure=figure)

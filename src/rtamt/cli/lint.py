@@ -29,7 +29,7 @@ from rtamt.errors import BoundError, SpecificationError, StlError, line_and_colu
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import positive_period
-from rtamt.lint.fix import mended
+from rtamt.lint.fix import with_fixes
 from rtamt.lint.report import findings
 from rtamt.lint.rules import ALL, SHORTER, UNUSED
 from rtamt.rewrite.check import check_online
@@ -61,7 +61,7 @@ _EPILOG = """\
 With --period, bounds must be whole numbers of periods. With --online, formulas with unbounded future are
 errors, because no monitor can run them.
 
---fix rewrites the files: each finding that has a fix is mended, comments and layout are kept, and every formula
+--fix rewrites the files: each finding that has a fix is fixed, comments and layout are kept, and every formula
 keeps its meaning.
 
 Warnings, with the codes for --ignore: {warnings}.
@@ -103,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
 def _codes(files: list[str], args: argparse.Namespace) -> Iterator[int]:
     """Check files, and print what is wrong with them in their order: many files in a process for each core."""
     count = min(os.cpu_count() or 1, len(files) // _WORTH_A_PROCESS)
-    if count <= 1 or args.fix:  # a file that is mended may be imported by others
+    if count <= 1 or args.fix:  # a file that is fixed may be imported by others
         yield from (_lint(file, args) for file in files)
         return
     from concurrent.futures import ProcessPoolExecutor
@@ -205,7 +205,7 @@ def _as_json(
 
 
 def _findings(file: str, args: argparse.Namespace) -> list[LintWarning]:
-    """Return the warnings about a file, after it was mended if that is asked for."""
+    """Return the warnings about a file, after fixing it if requested."""
     if not os.path.isfile(file):
         raise CommandError(f"there is no file '{file}'; 'rtamt info' looks at a formula in quotes")
     library = False
@@ -240,7 +240,7 @@ def _short_bounds(file: str, args: argparse.Namespace) -> list[LintWarning]:
 def _mend(file: str, spec: Specification, args: argparse.Namespace, *, library: bool) -> bool:
     """Rewrite a file without the findings that have a fix; return whether there were any."""
     text, ending = _text_of(file), "\ntrue" if library else ""
-    found = mended(
+    found = with_fixes(
         _parsed(text + ending, file, args),
         lambda new: _parsed(new, file, args),
         spec.language,

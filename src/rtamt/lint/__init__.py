@@ -12,6 +12,6 @@ structure    rules about repeated parts and suspicious nesting
 edits        where operators are written, and how they are removed
 comments     comments that silence findings
 report       all findings of a text
-fix          a text with its findings mended
+fix          a text with its findings fixed
 ===========  ====================================================================
 """

@@ -20,23 +20,23 @@ if TYPE_CHECKING:
     from rtamt.lint.found import Fix, LintWarning
 
 
-class Mended(NamedTuple):
-    """A text after its fixes, what it means, and the codes of what was mended, each as often as it was."""
+class FixedText(NamedTuple):
+    """A text after its fixes, what it means, and the codes of the findings that were fixed, one for each fix."""
 
     text: str
     document: Document
     codes: tuple[str, ...]
 
 
-def mended(
+def with_fixes(
     document: Document,
     parse: Callable[[str], Document],
     language: Language,
     *,
     period: Fraction | None = None,
     ignored: Collection[str] = (),
-) -> Mended:
-    """Return a text with every finding mended that can be, but for those with an ``ignored`` code.
+) -> FixedText:
+    """Fix every finding of a text that has a fix, except those with an ``ignored`` code.
 
     ``parse``: reads a text as ``document`` was read. The formulas of the new text are those of the old one with
     the parts replaced that the fixes replace; where they are not, or where a comment would be lost, the finding is left
@@ -44,7 +44,7 @@ def mended(
 
     >>> from rtamt.language.operators import STL
     >>> from rtamt.language.parsing.specfile import parse_document
-    >>> mended(parse_document("always(not not (x > 3)) // twice"), parse_document, STL).text
+    >>> with_fixes(parse_document("always(not not (x > 3)) // twice"), parse_document, STL).text
     'always((x > 3)) // twice'
     """
     codes: list[str] = []
@@ -60,7 +60,7 @@ def mended(
                 break
             left_alone.add(_key(found))
         else:
-            return Mended(document.text, document, tuple(codes))
+            return FixedText(document.text, document, tuple(codes))
 
 
 def _key(found: LintWarning) -> tuple[str, str]:

@@ -34,7 +34,7 @@ class Edit(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """How a finding is mended: the edits, the part of the formula that they change, and what it becomes.
+    """How to fix a finding: the edits, the part of the formula that they change, and what it becomes.
 
     The two formulas have the same robustness on every recording; :mod:`rtamt.lint.fix` compares what the new text
     means with this.
@@ -46,7 +46,7 @@ class Fix:
 
 
 class Found(NamedTuple):
-    """What a rule found: where, what, and how it is mended, if it can be."""
+    """What a rule found: where, what, and how to fix it, if it can be fixed."""
 
     span: Span | None
     message: str

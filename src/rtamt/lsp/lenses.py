@@ -46,7 +46,7 @@ def lenses(analysis: Analysis, recording: str | None, answer: Mapping[str, Any] 
         if recording is None:
             lens = Lens(requirement.span, "choose a recording", "rtamt.chooseRecording")
         elif requirement.name in rows:
-            title = f"{_told(rows[requirement.name])} ({recording})"
+            title = f"{_verdict_title(rows[requirement.name])} ({recording})"
             lens = Lens(requirement.span, title, "rtamt.check")
         elif answer is not None:
             reason = f"{_SIGNS['error']} {_short(str(answer.get('error', '')))} ({recording})"
@@ -57,7 +57,7 @@ def lenses(analysis: Analysis, recording: str | None, answer: Mapping[str, Any] 
     return found
 
 
-def _told(row: Mapping[str, Any]) -> str:
+def _verdict_title(row: Mapping[str, Any]) -> str:
     verdict = row["verdict"]
     more = (
         f", robustness {float(row['robustness']):.6g}"

@@ -11,7 +11,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.lazy_patterns import lazy_pattern
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.lint.fix import applied, mended
+from rtamt.lint.fix import applied, with_fixes
 from rtamt.lint.found import Edit
 from rtamt.lint.rules import ALL
 from rtamt.lsp.document import ENDING
@@ -39,7 +39,7 @@ class Problem(NamedTuple):
 
 
 class Repair(NamedTuple):
-    """How a problem is mended: the sentence for the user, the edits, the code of the finding."""
+    """How to fix a problem: the sentence for the user, the edits, the code of the finding."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -105,7 +105,7 @@ def all_repaired(analysis: Analysis) -> str | None:
     document = analysis.document
     if document is None or analysis.spec is None or not any(each.fix for each in analysis.findings):
         return None
-    result = mended(document, _reader(analysis), STL, period=analysis.spec.period)
+    result = with_fixes(document, _reader(analysis), STL, period=analysis.spec.period)
     return result.text.removesuffix(ENDING if analysis.library else "") if result.codes else None
 
 

@@ -126,7 +126,7 @@ def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
         answer["near"] = None if request.view is None else _drawn(result, part, request, request.view)
         answer["requirements"] = [_row(each, one) for each, one in result.requirements.items()]
     except StlError as error:
-        answer["error"] = told(error, sources)
+        answer["error"] = error_as_data(error, sources)
     return answer
 
 
@@ -136,11 +136,11 @@ def redrawn(request: Request, sources: Sources) -> dict[str, Any]:
         result = sources.results.of(request, lambda: result_of(request, parsed(request, sources), sources))
         near = _drawn(result, chosen(request, result)[1], request, request.view)
     except StlError as error:
-        return {"error": told(error, sources)}
+        return {"error": error_as_data(error, sources)}
     return {"error": None, "near": near}
 
 
-def told(error: StlError, sources: Sources) -> dict[str, Any]:
+def error_as_data(error: StlError, sources: Sources) -> dict[str, Any]:
     """Return an error as data: the sentence, and its place in the text."""
     message = error.message if isinstance(error, SpecificationError) else str(error)
     span = error.span if isinstance(error, SpecificationError) else None
@@ -334,4 +334,14 @@ def name_of(spec: Specification) -> str:
     return excerpt(spec.formula)
 
 
-__all__ = ["Sources", "chosen", "data_of", "evaluated", "name_of", "parsed", "redrawn", "result_of", "told"]
+__all__ = [
+    "Sources",
+    "chosen",
+    "data_of",
+    "error_as_data",
+    "evaluated",
+    "name_of",
+    "parsed",
+    "redrawn",
+    "result_of",
+]

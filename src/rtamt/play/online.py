@@ -9,7 +9,7 @@ from rtamt.errors import StlError, UsageError
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.play.downsampling import kept_in, number, numbers, parts
-from rtamt.play.evaluation import chosen, inner, name_of, parsed, result_of, told
+from rtamt.play.evaluation import chosen, error_as_data, inner, name_of, parsed, result_of
 from rtamt.plot.band import band
 from rtamt.plot.x_axis import XAxis
 
@@ -48,7 +48,7 @@ def replayed(request: Request, sources: Sources) -> dict[str, Any]:
         replay = sources.replays.keep(request, _replay(request, sources))
         return {"error": None, "formula": name_of(replay.watched), **_seen(replay, request, None)}
     except StlError as error:
-        return {"error": told(error, sources)}
+        return {"error": error_as_data(error, sources)}
 
 
 def rewatched(request: Request, sources: Sources) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def rewatched(request: Request, sources: Sources) -> dict[str, Any]:
         replay = sources.replays.of(request, lambda: _replay(request, sources))
         return {"error": None, "near": _seen(replay, request, request.view)}
     except StlError as error:
-        return {"error": told(error, sources)}
+        return {"error": error_as_data(error, sources)}
 
 
 def _replay(request: Request, sources: Sources) -> Replay:
@@ -96,7 +96,7 @@ def known_at(request: Request, sources: Sources) -> dict[str, Any]:
             "pending": _pending(replay, x_axis, now),
         }
     except StlError as error:
-        return {"error": told(error, sources)}
+        return {"error": error_as_data(error, sources)}
 
 
 def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | None:

@@ -25,7 +25,7 @@ class File:
     path: str
     name: str
 
-    def said(self, text: str) -> str:
+    def without_folder(self, text: str) -> str:
         """Return a sentence about the file without its folder."""
         return text.replace(self.path, self.name)
 
@@ -45,7 +45,7 @@ class Recordings:
             try:
                 found = read(file.path, types=types) if types else read(file.path)
             except StlError as error:
-                raise TraceError(file.said(str(error))) from None
+                raise TraceError(file.without_folder(str(error))) from None
             while len(self._read) >= _KEPT:
                 self._read.popitem(last=False)
             self._read[key] = found
@@ -62,5 +62,5 @@ class Recordings:
             "name": file.name,
             "samples": longest,
             "signals": [{"name": name, "unit": units.get(name, "")} for name in trace.names],
-            "notes": [file.said(note) for note in trace.notes],
+            "notes": [file.without_folder(note) for note in trace.notes],
         }

@@ -67,4 +67,4 @@ class RequestHandler:
         try:
             return {"error": None, **self._sources.recordings.summary(file)}
         except StlError as error:
-            return {"error": {"message": file.said(str(error)), "start": None, "end": None}}
+            return {"error": {"message": file.without_folder(str(error)), "start": None, "end": None}}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.analysis import satisfiable, valid
 from rtamt.errors import StlError, UsageError
-from rtamt.play.evaluation import parsed, told
+from rtamt.play.evaluation import error_as_data, parsed
 
 if TYPE_CHECKING:
     from rtamt.play.evaluation import Sources
@@ -26,7 +26,7 @@ def found(request: Request, wanted: Any, sources: Sources) -> dict[str, Any]:
     try:
         answer = WANTED[wanted](parsed(request, sources), samples=_SAMPLES, limit=_LIMIT)
     except StlError as error:
-        return {"error": told(error, sources)}
+        return {"error": error_as_data(error, sources)}
     witness = answer.witness
     if witness is None:
         return {"error": None, "sentence": answer.sentence, "signals": None}

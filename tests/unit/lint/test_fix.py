@@ -4,7 +4,7 @@ import pytest
 
 from rtamt.language.operators import STL
 from rtamt.language.parsing.specfile import parse_document
-from rtamt.lint.fix import mended
+from rtamt.lint.fix import with_fixes
 
 
 @pytest.mark.parametrize(
@@ -34,6 +34,6 @@ from rtamt.lint.fix import mended
     ],
 )
 def test_texts(text, expected):
-    found = mended(parse_document(text), parse_document, STL)
+    found = with_fixes(parse_document(text), parse_document, STL)
     assert found.text == expected
-    assert mended(found.document, parse_document, STL).codes == ()
+    assert with_fixes(found.document, parse_document, STL).codes == ()
