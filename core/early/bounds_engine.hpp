@@ -7,10 +7,8 @@
 //
 // Cost: proportional to the pieces, whatever the bounds. Memory: the runs of what is still wanted.
 //
-// To compute all open ticks anew after each sample would be faster for short windows: one window is
-// as fast either way at 50 ticks, two nested ones of 30 to 50 ticks each; at 10 ticks this
-// engine takes 3 times as long (benchmarks/zone_bench.cpp). One engine serves all the same: it also
-// takes what comes late.
+// To compute all open ticks anew after each sample is faster for short windows: zone_engine.hpp
+// does where samples come in order.
 #pragma once
 
 #include "graph.hpp"

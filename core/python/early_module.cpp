@@ -83,17 +83,17 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
         module, "EarlyMonitor", "Verdicts or bounds before the horizon, in discrete time.")
         .def(
             "__init__",
-            [exceptions](EarlyMonitor* self, const std::vector<EarlyNode>& nodes,
-                         std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& at_start,
-                         const std::vector<std::pair<double, double>>& ranges,
-                         const std::vector<nb::str>& names, const nb::object& ignored,
-                         const nb::dict& types, double period, double tolerance,
-                         std::optional<Tick> lateness, const nb::object& verdict, bool replays,
-                         const std::optional<EarlyCauses>& causes,
-                         const std::optional<std::pair<nb::object, nb::object>>& change) {
+            [exceptions](
+                EarlyMonitor* self, const std::vector<EarlyNode>& nodes,
+                std::vector<std::uint32_t> outputs, const std::vector<EarlyItem>& at_start,
+                const std::vector<std::pair<double, double>>& ranges,
+                const std::vector<nb::str>& names, const nb::object& ignored, const nb::dict& types,
+                double period, double tolerance, std::optional<Tick> lateness,
+                const nb::object& verdict, bool replays, const std::optional<EarlyCauses>& causes,
+                const std::optional<std::pair<nb::object, nb::object>>& change, Tick zone) {
                 EarlySettings settings{
                     period,  tolerance,    lateness.has_value(), lateness.value_or(0),
-                    replays, std::nullopt, std::nullopt};
+                    replays, std::nullopt, std::nullopt,         zone};
                 if (!verdict.is_none()) {
                     settings.verdict.emplace(verdict,
                                              std::array{"time", "satisfied", "decided_at"});
@@ -108,7 +108,7 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
             nb::arg("names"), nb::arg("ignored"), nb::arg("types"), nb::arg("period"),
             nb::arg("tolerance"), nb::arg("lateness").none(), nb::arg("verdict").none(),
             nb::arg("replays") = false, nb::arg("causes").none() = nb::none(),
-            nb::arg("change").none() = nb::none())
+            nb::arg("change").none() = nb::none(), nb::arg("zone") = early::ZoneEngine::crossover)
         .def("take", &EarlyMonitor::take, nb::arg("time"), nb::arg("lower"), nb::arg("upper"),
              nb::arg("after"), "Take bounds of every input at one time, in order.")
         .def("learn", &EarlyMonitor::learn, nb::arg("time"), nb::arg("values"), nb::arg("after"),
@@ -146,6 +146,8 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
         .def_prop_ro("earliest", &EarlyMonitor::earliest, "The first time that may be reported.")
         .def_prop_ro("closed", &EarlyMonitor::closed, "The last sample that is final, or -1.")
         .def_prop_ro("finished", &EarlyMonitor::finished, "Whether the trace has ended.")
+        .def_prop_ro("computes_zone", &EarlyMonitor::computes_zone,
+                     "Whether it computes the bounds of all open samples anew.")
         .def_prop_ro("state_bytes", &EarlyMonitor::state_bytes, "Bytes of state by now.");
 }
 

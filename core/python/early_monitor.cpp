@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <stdexcept>
 
 namespace rtamt::python {
@@ -28,18 +29,17 @@ at_start_of(std::vector<early::Item> items, const early::BoundsEngine& engine, b
 } // namespace
 
 EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
-                           std::vector<early::Item> at_start, std::vector<Bounds> ranges,
+                           const std::vector<early::Item>& items, std::vector<Bounds> ranges,
                            const std::vector<nb::str>& names, const nb::object& ignored,
                            const nb::dict& types, EarlySettings settings,
                            const std::optional<EarlyCauses>& causes, Exceptions exceptions)
     : engine_(graph, ranges, settings.late), outputs_(std::move(outputs)),
-      decisions_(outputs_.size()),
-      at_start_(at_start_of(std::move(at_start), engine_, causes.has_value())),
+      decisions_(outputs_.size()), at_start_(at_start_of(items, engine_, causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(ranges)),
       settings_(std::move(settings)), exceptions_(std::move(exceptions)),
       guard_(exceptions_.refused, exceptions_.in_use), names_(names, graph.inputs, ignored, types),
       row_(graph.inputs), given_(graph.inputs), news_(outputs_.size()), changes_(outputs_.size()),
-      open_(outputs_.size(), 0), wanted_(engine_.size()) {
+      open_(outputs_.size(), 0), kept_(outputs_.size(), 0), wanted_(engine_.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
     std::uint32_t before = 0;
     steps_before_ = steps_before(graph, before);
@@ -56,6 +56,10 @@ EarlyMonitor::EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t>
             last[output / 2] = forever;
         if (at_start_) at_start_->limit(last);
         engine_.limit(last);
+        // What is late may need any tick, and verdicts cost little as they are.
+        if (!settings_.late && !settings_.verdict && !outputs_.empty()) {
+            zone_ = early::ZoneEngine::of(graph, outputs_, items, ranges_, settings_.zone);
+        }
     }
     // What is known before any sample came, such as the truth of constants, waits for the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
@@ -101,13 +105,19 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     if (wrong != nullptr) return guard_.refuse(wrong);
     if (settings_.late && *index <= closed_) return guard_.refuse("late");
     try {
-        const auto failure =
-            settings_.late ? observe(*index) : engine_.row(*index, std::span<const double>(row_));
+        const auto failure = settings_.late ? observe(*index) : row(*index, row_);
         if (failure) return fail(*failure, *index, t);
         return advance(*index, t);
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }
+}
+
+template <class Value>
+std::optional<EarlyMonitor::Failure> EarlyMonitor::row(Tick index,
+                                                       const std::vector<Value>& values) {
+    const std::span<const Value> all(values);
+    return zone_ ? zone_->row(index, all) : engine_.row(index, all);
 }
 
 // Takes observations, late or not.
@@ -142,7 +152,7 @@ nb::object EarlyMonitor::take(double time, const std::vector<double>& lower,
     row.reserve(lower.size());
     for (std::size_t i = 0; i < lower.size(); ++i)
         row.push_back({lower[i], upper[i]});
-    const auto failure = engine_.row(*index, std::span<const Bounds>(row));
+    const auto failure = this->row(*index, row);
     return checked(failure ? fail(*failure, *index, time) : advance(*index, time));
 }
 
@@ -201,6 +211,7 @@ PyObject* EarlyMonitor::advance(Tick index, double time) {
 
 // Reads what the last change of the engine has changed up to the newest sample.
 void EarlyMonitor::note(Tick before) {
+    if (zone_) return; // it is asked for changes
     const Tick newest = times_.newest();
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (settings_.verdict) {
@@ -234,22 +245,27 @@ void EarlyMonitor::settle() {
             open_[i] = early::EagerVerdicts::open(engine_, outputs_[i], open_[i]);
             from = std::max(early::plus(closed + 1, -lag(i)), open_[i]);
         } else {
-            from = std::min(held(i), changes_[i].first());
+            from = std::min(held(i), zone_ ? zone_->first_change(i) : changes_[i].first());
+            from = kept_[i] = std::max(kept_[i], from);
+            if (zone_) zone_->drop_before(i, from);
         }
         wanted = std::min(wanted, from);
         oldest = std::min(oldest, wanted);
     }
+    times_.drop_before(oldest);
+    if (zone_) return;
     if (at_start_) at_start_->settle(engine_, closed, wanted_);
     if (causes_) causes_->settle(engine_, closed, wanted_);
     engine_.settle(closed, wanted_);
-    times_.drop_before(oldest);
 }
 
 nb::object EarlyMonitor::finish() {
     guard_.require_idle();
     const Tick end = times_.newest() + 1;
     std::optional<Failure> failure;
-    const auto rests = engine_.ended(outputs_, end, &failure);
+    const auto zone = zone_ ? std::optional(zone_->ended()) : std::nullopt;
+    std::vector<early::BoundsEngine::Rest> rests;
+    if (!zone) rests = engine_.ended(outputs_, end, &failure);
     if (failure) return checked(fail(*failure, end - 1, times_.last()));
     if (settings_.verdict) {
         for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -267,15 +283,24 @@ nb::object EarlyMonitor::finish() {
         return checked(result());
     }
     nb::list all;
-    for (const auto& rest : rests) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        const Tick first = std::min(kept_[i], end);
         nb::list values;
-        for (const Bounds& bounds : rest.bounds)
+        const auto add = [&](const Bounds& each) {
+            const Bounds bounds = unsigned_zeros(each);
             values.append(nb::make_tuple(bounds.lower, bounds.upper));
-        all.append(nb::make_tuple(rest.first, values));
+        };
+        if (zone) {
+            std::ranges::for_each(zone->all_from(i, first), add);
+        } else {
+            std::ranges::for_each(rests[i].bounds | std::views::drop(first - rests[i].first), add);
+        }
+        all.append(nb::make_tuple(first, values));
     }
     nb::object start = nb::none();
     if (at_start_ && end > 0) {
-        const Bounds value = at_start_->ended(engine_, end);
+        const Bounds value =
+            unsigned_zeros(zone ? zone->at_start() : at_start_->ended(engine_, end));
         start = nb::make_tuple(value.lower, value.upper);
     }
     finished_ = true;

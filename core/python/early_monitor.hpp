@@ -10,6 +10,7 @@
 #include "../early/causation.hpp"
 #include "../early/eager_verdicts.hpp"
 #include "../early/sample_times.hpp"
+#include "../early/zone_engine.hpp"
 #include "change_class.hpp"
 #include "early_backend.hpp"
 #include "failures.hpp"
@@ -31,17 +32,18 @@ namespace rtamt::python {
 struct EarlySettings {
     double period = 0;
     double tolerance = 0;
-    bool late = false;                     // samples may come in any order
-    early::Tick lateness = 0;              // by how many samples at most
-    bool replays = false;                  // update() takes nothing by itself
-    std::optional<ResultClass<3>> verdict; // of what update() returns; none: bounds
-    std::optional<ChangeClass> change;     // of what reported() returns
+    bool late = false;                               // samples may come in any order
+    early::Tick lateness = 0;                        // by how many samples at most
+    bool replays = false;                            // update() takes nothing by itself
+    std::optional<ResultClass<3>> verdict;           // of what update() returns; none: bounds
+    std::optional<ChangeClass> change;               // of what reported() returns
+    early::Tick zone = early::ZoneEngine::crossover; // up to where bounds are computed anew
 };
 
 class EarlyMonitor : public EarlyBackend {
   public:
     EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
-                 std::vector<early::Item> at_start, std::vector<Bounds> ranges,
+                 const std::vector<early::Item>& items, std::vector<Bounds> ranges,
                  const std::vector<nb::str>& names, const nb::object& ignored,
                  const nb::dict& types, EarlySettings settings,
                  const std::optional<EarlyCauses>& causes, Exceptions exceptions);
@@ -96,12 +98,14 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] double earliest() const { return times_.earliest(); }
     [[nodiscard]] early::Tick closed() const { return closed_; }
     [[nodiscard]] bool finished() const { return finished_; }
+    [[nodiscard]] bool computes_zone() const { return zone_.has_value(); }
     [[nodiscard]] std::size_t state_bytes() const;
 
   private:
     using Failure = early::BoundsEngine::Failure;
 
     early::BoundsEngine engine_;
+    std::optional<early::ZoneEngine> zone_; // in its place where windows are short
     std::vector<std::uint32_t> outputs_;
     std::vector<early::EagerVerdicts> decisions_; // by output
     std::optional<early::BoundsAtStart> at_start_;
@@ -120,6 +124,7 @@ class EarlyMonitor : public EarlyBackend {
     std::vector<std::vector<early::Decision>> news_; // by output
     std::vector<early::BoundChanges> changes_;       // by output
     std::vector<early::Tick> open_;                  // by output, the first tick without a verdict
+    std::vector<early::Tick> kept_; // by output, the first tick whose bounds the end still gives
     std::vector<early::Tick> wanted_;
     std::vector<early::BoundsEngine::Observation> observations_;
     early::Tick closed_ = -1; // nothing up to here will come
@@ -130,6 +135,9 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] bool in_order(early::Tick index) const noexcept;
     [[nodiscard]] PyObject* fail(const Failure& failure, early::Tick index, double time) noexcept;
     [[nodiscard]] std::optional<Failure> observe(early::Tick index);
+    template <class Value>
+    [[nodiscard]] std::optional<Failure> row(early::Tick index, const std::vector<Value>& values);
+    [[nodiscard]] std::vector<early::BoundChange> runs(std::size_t output) const;
     [[nodiscard]] early::Tick closed_after(early::Tick index) const noexcept;
     [[nodiscard]] early::Tick final_up_to() const noexcept;
     void note(early::Tick before);

@@ -53,7 +53,7 @@ nb::object EarlyMonitor::verdicts(std::size_t output) {
 
 std::optional<std::pair<double, double>> EarlyMonitor::at_start() const {
     if (!at_start_) return std::nullopt;
-    const Bounds value = at_start_->value();
+    const Bounds value = unsigned_zeros(zone_ ? zone_->at_start() : at_start_->value());
     return std::pair{value.lower, value.upper};
 }
 
@@ -61,7 +61,8 @@ std::optional<std::pair<double, double>> EarlyMonitor::bounds(std::size_t output
                                                               Tick sample) const {
     if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     if (sample < held(output)) return std::nullopt;
-    const Bounds value = engine_.at(outputs_[output], sample);
+    const Bounds value =
+        unsigned_zeros(zone_ ? zone_->at(output, sample) : engine_.at(outputs_[output], sample));
     return std::pair{value.lower, value.upper};
 }
 
@@ -69,18 +70,24 @@ Tick EarlyMonitor::held(std::size_t output) const {
     return std::max<Tick>(0, early::plus(final_up_to() + 1, -lag(output)) - 1);
 }
 
+std::vector<early::BoundChange> EarlyMonitor::runs(std::size_t output) const {
+    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
+    auto found = zone_ ? zone_->changes(output) : changes_[output].runs(engine_, outputs_[output]);
+    for (early::BoundChange& run : found)
+        run.bounds = unsigned_zeros(run.bounds);
+    return found;
+}
+
 std::vector<std::tuple<Tick, Tick, double, double>>
 EarlyMonitor::changes(std::size_t output) const {
-    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
     std::vector<std::tuple<Tick, Tick, double, double>> result;
-    for (const early::BoundChange& run : changes_[output].runs(engine_, outputs_[output]))
+    for (const early::BoundChange& run : runs(output))
         result.emplace_back(run.l, run.r, run.bounds.lower, run.bounds.upper);
     return result;
 }
 
 nb::object EarlyMonitor::reported(std::size_t output) const {
-    if (output >= outputs_.size()) throw std::out_of_range("There is no such output.");
-    const auto runs = changes_[output].runs(engine_, outputs_[output]);
+    const auto runs = this->runs(output);
     const Tick settled = early::plus(final_up_to(), -lag(output));
     auto list = nb::steal(PyList_New(static_cast<Py_ssize_t>(runs.size())));
     if (!list.is_valid()) throw nb::python_error();
@@ -114,6 +121,11 @@ nb::object EarlyMonitor::supposed(
             supposed.row.push_back({lower[i], upper[i]});
         suppositions.push_back(std::move(supposed));
     }
+    if (zone_) {
+        const early::ZoneEngine zone = zone_->supposed(suppositions);
+        const Bounds value = unsigned_zeros(output ? zone.at(*output, sample) : zone.at_start());
+        return nb::make_tuple(value.lower, value.upper);
+    }
     if (const auto failure = engine_.suppose(suppositions)) {
         const Tick t = failure->tick;
         return checked(fail(*failure, t, next > 0 ? times_.at(t) : static_cast<double>(t)));
@@ -127,6 +139,7 @@ nb::object EarlyMonitor::supposed(
         value = at_start.value();
     }
     engine_.revert();
+    value = unsigned_zeros(value);
     return nb::make_tuple(value.lower, value.upper);
 }
 
@@ -183,23 +196,30 @@ void EarlyMonitor::restore(const nb::bytes& state) {
 }
 
 void EarlyMonitor::transfer(Snapshot& snapshot) {
-    engine_.transfer(snapshot);
-    if (at_start_) at_start_->transfer(snapshot);
+    if (zone_) {
+        zone_->transfer(snapshot);
+    } else {
+        engine_.transfer(snapshot);
+        if (at_start_) at_start_->transfer(snapshot);
+    }
     if (causes_) causes_->transfer(snapshot);
     for (auto& decisions : decisions_)
         decisions.transfer(snapshot);
     times_.transfer(snapshot);
     snapshot.values(open_.data(), open_.size());
+    snapshot.values(kept_.data(), kept_.size());
     snapshot.item(closed_);
     snapshot.item(samples_);
     snapshot.item(finished_);
     snapshot.require(closed_ >= -1 && closed_ < forever);
     for (const Tick open : open_)
         snapshot.require(open >= 0);
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        snapshot.require(kept_[i] >= 0 && kept_[i] <= held(i));
 }
 
 std::size_t EarlyMonitor::state_bytes() const {
-    std::size_t sum = engine_.bytes() + times_.bytes();
+    std::size_t sum = (zone_ ? zone_->bytes() : engine_.bytes()) + times_.bytes();
     for (const auto& decisions : decisions_)
         sum += decisions.bytes();
     return sum;

@@ -331,7 +331,7 @@ class EarlyMonitor:
     one may come late; None where all come in order. ``verdict``: the class of what update() returns, None for bounds.
     ``replays``: whether update() takes nothing by itself. ``causes``: the parts, outputs and starts of
     ``compiler.causation.Causes``, and the class of what update() returns. ``change``: the class of what reported()
-    returns, and that of its bounds.
+    returns, and that of its bounds. ``zone``: up to how many ticks a node bounds are computed anew.
     """
 
     def __init__(
@@ -350,6 +350,7 @@ class EarlyMonitor:
         replays: bool = False,
         causes: tuple[Any, ...] | None = None,
         change: tuple[type, type] | None = None,
+        zone: int = 50,
     ) -> None: ...
     def take(self, time: float, lower: Sequence[float], upper: Sequence[float], after: int) -> Any:
         """Take bounds of every input at one time, in order."""
@@ -428,6 +429,10 @@ class EarlyMonitor:
     def closed(self) -> int: ...
     @property
     def finished(self) -> bool: ...
+    @property
+    def computes_zone(self) -> bool:
+        """Whether it computes the bounds of all open samples anew."""
+
     @property
     def state_bytes(self) -> int: ...
 

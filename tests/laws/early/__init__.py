@@ -8,6 +8,7 @@ monitors        the monitors that must obey the laws: add one there
 laws            the laws of discrete time, each a function of a case and a monitor
 dense_laws      those of dense time
 specifications  laws of whole specifications: requirements, semantics, forms of times, copies
+engines         the two engines of bounds in discrete time
 soak            ``python -m tests.laws.early.soak 1000000``: the laws on that many cases
 ==============  ==========================================================================
 """

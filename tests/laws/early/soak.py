@@ -19,7 +19,7 @@ from itertools import count, islice
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple
 
-from tests.laws.early import dense_laws, laws, specifications
+from tests.laws.early import dense_laws, engines, laws, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
 from tests.laws.early.definition import DEFINITION
 from tests.laws.early.monitors import IMPLEMENTATIONS, PYTHON
@@ -87,6 +87,10 @@ def causes(rng: Random, made: Implementation) -> None:
 def causation_as_defined(rng: Random, made: Implementation) -> None:
     unbounded = rng.random() < 0.5
     laws.causation_as_defined(case(rng, exact=True, ranges=False, unbounded=unbounded), made)
+
+
+def engines_agree(rng: Random, _made: Implementation) -> None:
+    engines.agree(rng, case(rng, odd=rng.random() < 0.2))
 
 
 def dense_sound(rng: Random, made: Implementation) -> None:
@@ -179,6 +183,7 @@ LAWS: list[Law] = [
     eager,
     causes,
     causation_as_defined,
+    engines_agree,
     dense_sound,
     dense_narrowing,
     dense_finished,
@@ -197,11 +202,12 @@ LAWS: list[Law] = [
     specification_as_defined,
 ]
 
-#: Laws that compare an implementation with the definition, or with an evaluation.
+#: Laws that compare an implementation with the definition, with an evaluation, or parts of the engine.
 COMPARISONS: list[Law] = [
     as_defined,
     fails_alike,
     causation_as_defined,
+    engines_agree,
     dense_as_defined,
     dense_start,
     dense_corrected,
@@ -218,7 +224,7 @@ def laws_of(made: Implementation) -> list[Law]:
     excluded = (
         COMPARISONS
         if made is DEFINITION
-        else [dense_fails_alike, specification_as_defined]
+        else [dense_fails_alike, specification_as_defined, engines_agree]
         if made is PYTHON
         else []
     )
