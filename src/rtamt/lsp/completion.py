@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from rtamt.lsp.document import Analysis
 
+#: The characters of a declaration that are shown.
+_LONGEST = 500
+
 _WORD = lazy_pattern(r'[\w.$/]*$|"(?:[^"\r\n]|"")*$')
 
 
@@ -74,7 +77,8 @@ def _declared(analysis: Analysis, word: Span) -> Iterator[Item]:
             continue
         if not symbol.scope.start <= word.start <= symbol.scope.end:
             continue
-        declared = " ".join(analysis.text[symbol.whole.start : symbol.whole.end].split())
+        end = min(symbol.whole.end, symbol.whole.start + _LONGEST)
+        declared = " ".join(analysis.text[symbol.whole.start : end].split())
         name = symbol.name if NAME.fullmatch(symbol.name) or "/" in symbol.name else quoted(symbol.name)
         yield Item(symbol.name, symbol.kind, Edit(word, name), symbol.kind, f"```stl\n{declared}\n```")
 

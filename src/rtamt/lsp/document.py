@@ -9,7 +9,7 @@ from rtamt.errors import BoundError, SpecificationError, StlError
 from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.lexer import comments
-from rtamt.language.parsing.specfile import parse_document
+from rtamt.language.parsing.specfile import NO_FORMULA, parse_document
 from rtamt.language.units.durations import positive_period
 from rtamt.lint.report import findings
 from rtamt.lint.rules import SHORTER, UNUSED
@@ -66,8 +66,7 @@ class Analysis:
         try:
             self.spec = self._parsed(text)
         except StlError as error:
-            place = error.span if isinstance(error, SpecificationError) else None
-            if place is not None and place.start == place.end:  # the end of the text
+            if isinstance(error, SpecificationError) and error.message == NO_FORMULA:
                 self._read_library()
             if self.spec is None:
                 self._read_errors(error)

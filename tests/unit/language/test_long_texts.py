@@ -44,6 +44,7 @@ READ = {
     "names of paths": "float a/b/c/d " + repeated("a/b/c/d + ") + "a/b/c/d >= 0",
 }
 REJECTED = {
+    "templates without a formula": repeated("def f(x) = \n"),
     "comments that are opened again and again": repeated("/* "),
     "a quote and no other": 'x >= "' + repeated("a"),
     "quotes, one too many": repeated('"') + '"',

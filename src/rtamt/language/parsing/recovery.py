@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from rtamt.language.document import Assertion
     from rtamt.language.formula import Formula, Span
 
-#: The errors of one text that are looked for.
-MOST_ERRORS = 100
+#: The errors of one text that are looked for, and the wrong statements, also those whose error follows from another.
+MOST_ERRORS, MOST_STATEMENTS = 100, 1000
 
 _CLOSING = {")": "(", "]": "[", "}": "{"}
 _DECLARING = frozenset((*TYPES, *DECLARING))
@@ -75,7 +75,10 @@ class _RecoveringParser(DocumentParser):
         """Read the text to its end, and return its errors."""
         self._errors = []
         scope = self.scope
-        while (error := self._next_error()) is not None:
+        for _ in range(MOST_STATEMENTS):
+            error = self._next_error()
+            if error is None:
+                break
             begin = self._begin
             if not self._follows(error, begin):
                 self._errors.append(error)
@@ -87,6 +90,8 @@ class _RecoveringParser(DocumentParser):
             self._found = [each for each in self._found if _start(each) < self.starts[begin]]
             self.index = end = self._next_statement(begin)
             self._assume(begin, end)
+        else:
+            return self._errors
         if self._found or not self._errors:
             self._errors += [each for each in self._final_errors() if not self._concerns_unknown(each)]
         return self._errors[:MOST_ERRORS]

@@ -93,7 +93,8 @@ def parse_document(
     return DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
 
 
-#: The message for declarations that come too late.
+#: The message for texts that only others can import, and that for declarations that come too late.
+NO_FORMULA = "the text has declarations but no formula"
 LATE = "declarations and annotations stand before the first formula"
 
 
@@ -148,8 +149,7 @@ class DocumentParser(GroupParser):
     def _final_errors(self, *, imported: bool = False) -> Iterator[SpecificationError]:
         """Yield the errors of the text as a whole; one that is imported needs no formula."""
         if not self._found and not imported:
-            empty = "the text is empty" if self.index == 0 else "the text has declarations but no formula"
-            yield self.error(empty, self.token.span)
+            yield self.error("the text is empty" if self.index == 0 else NO_FORMULA, self.token.span)
         yield from self._undeclared_in_imports()
         yield from self._variables_as_requirements()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -22,9 +23,11 @@ def templates_to_come(parser: FormulaParser) -> dict[str, str]:
     names = {words[at + 1] for at in starts}
     uses = {
         words[at + 1]: {
-            words[i] for i in range(at + 2, _end(parser, at + 3)) if words[i] in names and words[i + 1] == "("
+            words[i]
+            for i in range(at + 2, _end(parser, at + 3, until))
+            if words[i] in names and words[i + 1] == "("
         }
-        for at in starts
+        for at, until in pairwise([*starts, len(words) - 1])
     }
     found = {name: f"'{name}' is only defined further down; move its definition up" for name in names}
     for cycle in _cycles(uses):
@@ -35,10 +38,10 @@ def templates_to_come(parser: FormulaParser) -> dict[str, str]:
     return found
 
 
-def _end(parser: FormulaParser, at: int) -> int:
-    """Return about where a definition ends: at a semicolon, or where a line begins that does not continue it."""
+def _end(parser: FormulaParser, at: int, until: int) -> int:
+    """Return about where a definition ends: at a semicolon, at the next one, or where a line does not continue it."""
     tokens, infix, opening = parser.tokens, parser.language.infix, parser.language.opening
-    while tokens[at].kind != "end" and tokens[at].text != ";":
+    while at < until and tokens[at].text != ";":
         before, token = tokens[at - 1], tokens[at]
         line = parser.text[before.end : token.start]
         complete = before.text == ")" or (

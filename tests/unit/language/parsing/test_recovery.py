@@ -10,7 +10,7 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import PACKAGED, Library
 from rtamt.language.parsing.lexer import tokenize
-from rtamt.language.parsing.recovery import MOST_ERRORS, all_errors
+from rtamt.language.parsing.recovery import MOST_ERRORS, MOST_STATEMENTS, all_errors
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.text_errors import errors_of
 
@@ -179,6 +179,8 @@ def test_a_text_with_a_token_more_or_less_has_the_first_error_and_no_other_failu
 
 def test_there_is_a_limit():
     assert len(all_errors("x >= ;" * (MOST_ERRORS + 1))) == MOST_ERRORS
+    # Errors that follow from another one, too: the last statement is not read.
+    assert len(all_errors("enum A {\n" * MOST_STATEMENTS + "require R: x >")) == 1
 
 
 def test_every_bound_that_the_period_does_not_allow_is_an_error():
