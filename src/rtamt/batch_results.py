@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from rtamt.engine import Query
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.rows import Rows
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 

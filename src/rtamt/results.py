@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from rtamt.engine.direct import Reading
     from rtamt.explain.explanation import Explanation
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.episodes import Episode
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 

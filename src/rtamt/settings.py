@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.units.durations import Duration
     from rtamt.language.value_types import ValueType
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
 Semantics: TypeAlias = str | Enum | PredicateSemantics

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from rtamt.language.units.durations import Duration
     from rtamt.rewrite.quantifiers import Members
     from rtamt.settings import Semantics
-    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -18,7 +18,7 @@ from rtamt.settings import (
     check_language,
     roles_of,
 )
-from rtamt.signals.domains import DEFAULT, time_domain
+from rtamt.signals.time_domains import DEFAULT, time_domain
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics, Settings
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 #: The folder of the packs.

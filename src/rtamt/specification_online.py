@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rtamt.settings import DenseSettings, DiscreteSettings, IntervalSettings, Semantics, Watch
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.verdicts.early.dense_causation import DenseCausationMonitor
     from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
     from rtamt.verdicts.early.discrete_causation import DiscreteCausationMonitor

@@ -17,7 +17,7 @@ from rtamt.specification_text import SpecificationText
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
 
 
 #: Missing signals that are named.

@@ -27,8 +27,8 @@ from rtamt.rewrite.quantifiers import resolve
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
-from rtamt.signals.domains import Defaults, time_domain
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.signals.time_domains import Defaults, time_domain
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.document import Document
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
     from rtamt.language.printing.sentences import Sentence
     from rtamt.language.units.durations import Duration
     from rtamt.language.value_types import ValueType
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rtamt.rewrite.quantifiers import Members
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.settings import Semantics
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification_groups import QuantifiedText
 
 

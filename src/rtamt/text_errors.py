@@ -13,7 +13,7 @@ from rtamt.language.parsing.recovery import all_errors
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.lazy_dataclasses import replace
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domains import DEFAULT
+from rtamt.signals.time_domains import DEFAULT
 from rtamt.specification_loader import domain_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula, Span
     from rtamt.settings import Settings
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 def errors_of(

@@ -22,12 +22,12 @@ from rtamt.engine import _core
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
     from hypothesis.strategies import DrawFn
 
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 FORMULAS = (
     "x >= 3 -> eventually[0:5](y >= 3)",

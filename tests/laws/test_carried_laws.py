@@ -25,7 +25,7 @@ from tests.support import c_api
 from tests.support.strategies import dense_chunkings, dense_traces, formulas, traces
 
 if TYPE_CHECKING:
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 ONE = Fraction(1)
 SAMPLES, TICKS = Discrete(ONE), Dense(ONE)

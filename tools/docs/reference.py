@@ -22,7 +22,7 @@ from rtamt.language.parsing import parser, specfile, templates
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.quantifiers import QUANTIFIERS
 from rtamt.language.units import dimensions
-from rtamt.lint.fix import mended
+from rtamt.lint.fix import with_fixes
 from rtamt.lint.report import findings
 from rtamt.lint.rules import ALL
 
@@ -184,7 +184,7 @@ def warnings() -> str:
 def warning(rule: Rule) -> str:
     """Return the page of one warning: what is wrong, a bad and a good example."""
     found = findings(parse_document(rule.bad))
-    fixed = mended(parse_document(rule.bad), parse_document, STL)
+    fixed = with_fixes(parse_document(rule.bad), parse_document, STL)
     shown = "\n".join(map(str, found))
     parts = [
         f"# {rule.code}: {rule.about}\n",
@@ -273,8 +273,9 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Reinforcement learning": (
         "",
         (
-            "rtamt.learning", "rtamt.learning.single.RobustnessReward", "rtamt.learning.vector.VectorRobustnessReward",
-            "rtamt.learning.parallel.ParallelRobustnessReward",
+            "rtamt.learning", "rtamt.learning.gymnasium_wrapper.RobustnessReward",
+        "rtamt.learning.vector_wrapper.VectorRobustnessReward",
+            "rtamt.learning.pettingzoo_wrapper.ParallelRobustnessReward",
         ),
     ),
     "ROS": ("", ("rtamt.ros",)),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rtamt.language.document import Declaration
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
     from rtamt.specification import Specification
 
 _SAME = "they agree: the formula is the same"

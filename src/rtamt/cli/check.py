@@ -28,7 +28,7 @@ from rtamt.errors import escaped
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     import argparse

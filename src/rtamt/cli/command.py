@@ -22,7 +22,7 @@ from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend
 from rtamt.signals.datetimes import nanoseconds_of
-from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
+from rtamt.signals.time_domains import DEFAULT, DOMAINS, time_domain
 from rtamt.specification_loader import load, pack, packs, parse
 
 if TYPE_CHECKING:

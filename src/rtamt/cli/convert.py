@@ -10,7 +10,7 @@ from rtamt.cli.terminal import say
 from rtamt.errors import UsageError
 from rtamt.interchange import FORMATS, format_named
 from rtamt.language.units.durations import positive_period
-from rtamt.signals.domains import DEFAULT
+from rtamt.signals.time_domains import DEFAULT
 
 if TYPE_CHECKING:
     import argparse

@@ -23,7 +23,7 @@ from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.requirement_info import RequirementInfo, cut_operator, depth, info_of, loose_variable
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
     import argparse

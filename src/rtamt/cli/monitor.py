@@ -31,8 +31,8 @@ from rtamt.errors import StlError, TraceError
 from rtamt.lazy_numpy import np
 from rtamt.metrics import add_metrics_options, exported
 from rtamt.rewrite.check import unbounded_future
-from rtamt.signals.regular import TOLERANCE
 from rtamt.signals.sampling import HeldSampler
+from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.signal import Signal
 from rtamt.signals.trace import in_seconds
 from rtamt.verdicts.early.at_start import StartMonitor

@@ -16,7 +16,7 @@ from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
 from rtamt.readers.formats import format_of
-from rtamt.signals.domains import time_domain
+from rtamt.signals.time_domains import time_domain
 from rtamt.specification_loader import pack
 
 if TYPE_CHECKING:

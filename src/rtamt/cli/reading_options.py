@@ -21,7 +21,7 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.signals.arrays import TIME, timestamps
-from rtamt.signals.regular import check_regular, infer_period
+from rtamt.signals.sampling_period import check_regular, infer_period
 
 if TYPE_CHECKING:
     import argparse

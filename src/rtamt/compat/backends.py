@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 
 def is_compiled() -> bool:

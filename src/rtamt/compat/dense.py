@@ -27,7 +27,7 @@ from rtamt.signals import arrays
 from rtamt.signals.counting import all_integers
 from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.dense import record_dense
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.usage_guard import exclusive
 

@@ -21,7 +21,7 @@ from rtamt.signals import arrays
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_variable
 from rtamt.signals.discrete import DiscreteTrace, record_discrete
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling_period import TOLERANCE
 
 if TYPE_CHECKING:
     from rtamt.language.document import Document

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rtamt.language.document import Document
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 
 class Explainer:

@@ -21,7 +21,7 @@ from rtamt.language.shares import rank_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
 

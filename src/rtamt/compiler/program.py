@@ -28,7 +28,7 @@ from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Apply, Formula
     from rtamt.language.operators import Operator
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 #: Opcodes in the order of the core's enumeration; a test compares the two.
 OPCODES = (

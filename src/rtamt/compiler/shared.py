@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.graph import Graph
     from rtamt.compiler.program import Program
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 #: How many programs and plans are kept for other values.
 _KEPT = 64

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Apply
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class SampledLowering(Lowering):

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rtamt.compiler.stored import StoredPlan
     from rtamt.engine.early import EarlyQuery, EarlySession
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import BoundedSignal
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class RefusedError(Exception):

@@ -9,8 +9,8 @@ from rtamt.lazy_tuples import NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 
 class Reading(Protocol):

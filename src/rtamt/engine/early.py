@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.causation import Causes
     from rtamt.compiler.graph import Graph
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine.backend import Backend
     from rtamt.engine.online import OnlineMonitor
-    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
+    from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 
 #: The names of the back ends: the compiled core, and the definition in Python. The first is the default.

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
-    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.episodes import Episode
+    from rtamt.signals.time_domain_interface import TimeDomain
 
     Self = TypeVar("Self", bound="OnlineMonitor")
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import CallSite, Program
     from rtamt.language.formula import Apply
     from rtamt.language.operators import Operator
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
     Array = NDArray[np.float64]
     Events = tuple[NDArray[np.int64], Array]

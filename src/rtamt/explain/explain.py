@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rtamt.engine import TimeAxis
     from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 #: How many places are tried for one that overturns the verdict alone.
 _TRIED = 64

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Generic, Literal, overload
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.fleet.fleet_bytes import unpacked
+from rtamt.fleet.fleet_snapshot import unpacked
 from rtamt.fleet.gaps import GAPS
 from rtamt.fleet.keys import capacity_of, keys_of
 from rtamt.fleet.late_data import Reordered
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from typing_extensions import TypeVar
 
     from rtamt.engine import OnlineMonitor
-    from rtamt.fleet.fleet_bytes import FleetState
+    from rtamt.fleet.fleet_snapshot import FleetState
     from rtamt.fleet.gaps import Gaps
     from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetPoints, FleetVerdicts, SuiteUpdate
     from rtamt.fleet.suite import Suite

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.engine import OnlineMonitor
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
     from rtamt.language.value_types import ValueType
-    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
     from rtamt.specification import Specification
 
 

@@ -7,7 +7,7 @@ from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
-from rtamt.fleet.fleet_bytes import FleetState, packed
+from rtamt.fleet.fleet_snapshot import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
-from rtamt.fleet.fleet_bytes import MONITORS, REQUIREMENTS
+from rtamt.fleet.fleet_snapshot import MONITORS, REQUIREMENTS
 from rtamt.fleet.late_data import InOrder, Reordered
 from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.engine import OnlineMonitor
-    from rtamt.fleet.fleet_bytes import FleetState
+    from rtamt.fleet.fleet_snapshot import FleetState
     from rtamt.fleet.gaps import Gaps
     from rtamt.fleet.per_key import MonitorPerKey
     from rtamt.fleet.suite_per_key import SuitePerKey

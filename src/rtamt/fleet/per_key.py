@@ -10,7 +10,7 @@ from rtamt.engine.fleet_keys import full, place_of
 from rtamt.errors import EvaluationError, TraceError, UsageError, shown
 from rtamt.fleet.collectors import collector_of
 from rtamt.fleet.monitor_state import MonitorStates
-from rtamt.fleet.monitors_bytes import Monitors, packed, require_same, unpacked
+from rtamt.fleet.monitors_snapshot import Monitors, packed, require_same, unpacked
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.arrays import TIME, timestamps

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, choices, placed, shown
 from rtamt.fleet.groups import Asking, Way, grouped, way_of
-from rtamt.fleet.suite_bytes import packed, unpacked
+from rtamt.fleet.suite_snapshot import packed, unpacked
 from rtamt.fleet.verdict_table import SELECTABLE, Row, VerdictTable, number_of
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.printing.printer import excerpt, to_text
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine import OnlineMonitor, Query
     from rtamt.settings import EvaluationSettings
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.verdicts.prepared import Found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, choices, placed, shown
-from rtamt.fleet.monitors_bytes import packed_requirements, unpacked_requirements
+from rtamt.fleet.monitors_snapshot import packed_requirements, unpacked_requirements
 from rtamt.fleet.reports import SuiteUpdate
 from rtamt.lazy_numpy import np
 from rtamt.signals.data_errors import unknown_variable

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from rtamt.language.formula import Formula, Span
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
     from rtamt.language.parsing.templates import Template
     from rtamt.language.quantifiers import Group
     from rtamt.language.records import Operator

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.results import Result
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 

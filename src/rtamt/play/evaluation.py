@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rtamt.play.online import Replay
     from rtamt.play.recordings import File, Recordings
     from rtamt.results import Result
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.specification import Specification
 
 #: Causes that are listed, stretches of signals and runs of violation that are drawn.

@@ -9,7 +9,7 @@ from rtamt.errors import StlError
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.signals.arrays import is_number
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,7 @@ from rtamt.extras import library
 from rtamt.lazy_numpy import np
 from rtamt.plot import style
 from rtamt.plot.texts import shortened
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

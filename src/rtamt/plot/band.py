@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.dense import DenseTrace
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 
 @dataclass(frozen=True, slots=True, eq=False)

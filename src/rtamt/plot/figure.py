@@ -11,7 +11,7 @@ from rtamt.plot import style
 from rtamt.plot.axes import Edges, matplotlib
 from rtamt.plot.lines import Line
 from rtamt.plot.texts import in_lines, names_height, room, shortened, wrapped
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

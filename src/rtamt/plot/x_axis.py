@@ -12,7 +12,7 @@ from rtamt.signals.epoch import is_epoch, moment_text
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
 
 #: Timestamps that start later than this many seconds are counted from their start.
 _FAR = 1e5

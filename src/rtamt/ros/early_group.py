@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rtamt.ros.binding import Output
     from rtamt.ros.group import Record
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class Bounds(NamedTuple):

@@ -12,8 +12,8 @@ from rtamt.ros.diagnostics import Condition, Level, Notice, begins_anew, seconds
 from rtamt.ros.early_group import Bounds
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict
-from rtamt.signals.domains import DEFAULT, time_domain
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.signals.time_domains import DEFAULT, time_domain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping, Sequence

@@ -12,7 +12,7 @@ from rtamt.metrics import add_metrics_options
 from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor
 from rtamt.settings import assignments
-from rtamt.signals.domains import DEFAULT, DOMAINS, time_domain
+from rtamt.signals.time_domains import DEFAULT, DOMAINS, time_domain
 from rtamt.specification_loader import load
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rtamt.ros.group import Record
     from rtamt.signals.dense import Dense
     from rtamt.signals.discrete import Discrete
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification import Specification
     from rtamt.verdicts.robustness_and_truth import Outputs
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.value_types import ValueType
     from rtamt.signals.coding import Types
-    from rtamt.signals.regular import RegularTimes
+    from rtamt.signals.sampling_period import RegularTimes
 
     FloatArray = NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import rescaled
 from rtamt.signals.data_errors import missing_variable
-from rtamt.signals.domain_interface import DomainTrace, TimeDomain
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.domain_interface import Bounds, Mask
     from rtamt.signals.ticks import TickArray
+    from rtamt.signals.time_domain_interface import Bounds, Mask
 
 
 @dataclass(frozen=True, init=False)

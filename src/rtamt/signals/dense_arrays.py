@@ -12,7 +12,7 @@ from rtamt.signals import arrays
 from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of
 from rtamt.signals.data_errors import NAN_MEND
-from rtamt.signals.regular import merged, never_set
+from rtamt.signals.sampling_period import merged, never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import sequence_of
 from rtamt.signals.time_columns import check_frame

@@ -24,8 +24,7 @@ from rtamt.signals.arrays import (
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
-from rtamt.signals.domain_interface import DomainTrace, TimeDomain
-from rtamt.signals.regular import (
+from rtamt.signals.sampling_period import (
     TOLERANCE,
     RegularTimes,
     check_increasing,
@@ -35,6 +34,7 @@ from rtamt.signals.regular import (
 )
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rtamt.language.units.durations import Duration
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
-    from rtamt.signals.domain_interface import Bounds, Mask
+    from rtamt.signals.time_domain_interface import Bounds, Mask
 
 
 @dataclass(frozen=True, init=False)

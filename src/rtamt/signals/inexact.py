@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
 
     Mask = NDArray[np.bool_]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.rewrite.structure import NEVER
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

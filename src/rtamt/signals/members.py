@@ -21,7 +21,7 @@ from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, WithTimeBases, field_of, is_frame, is_mapping, not_a_mapping
 from rtamt.signals.inexact import gaps_of, items_of
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
 from rtamt.signals.trace import Channel, Trace
 

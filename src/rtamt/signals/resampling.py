@@ -10,7 +10,7 @@ from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, format_duration
 from rtamt.lazy_numpy import np
 from rtamt.signals.listing import show_time
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

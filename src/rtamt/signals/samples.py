@@ -11,7 +11,7 @@ from rtamt.signals import arrays
 from rtamt.signals.coding import NO_TYPES, encoded_value, no_truth
 from rtamt.signals.counting import implausible, is_implausible
 from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
-from rtamt.signals.regular import not_increasing
+from rtamt.signals.sampling_period import not_increasing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -13,8 +13,8 @@ from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
-from rtamt.signals.regular import check_increasing
 from rtamt.signals.resampling import Sampler
+from rtamt.signals.sampling_period import check_increasing
 from rtamt.signals.trace import Channel, Trace
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
 
 
 def sampled(

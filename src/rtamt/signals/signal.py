@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.signals.regular import RegularTimes
+from rtamt.signals.sampling_period import RegularTimes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

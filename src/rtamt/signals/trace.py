@@ -20,8 +20,8 @@ from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
-from rtamt.signals.regular import merged
 from rtamt.signals.resampling import grid_of, resampled
+from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
 from rtamt.signals.slicing import sliced
 

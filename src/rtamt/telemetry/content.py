@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from rtamt.results import Result
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain_interface import DomainTrace
     from rtamt.signals.episodes import Episode
     from rtamt.signals.signal import Signal
+    from rtamt.signals.time_domain_interface import DomainTrace
 
     Nanoseconds = NDArray[np.int64]
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.episodes import Episodes
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification import Specification
     from rtamt.verdicts.trackers import Positions
 

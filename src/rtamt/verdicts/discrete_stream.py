@@ -9,7 +9,7 @@ from rtamt.engine.discrete.monitor import push_samples
 from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.regular import check_increasing, has_period, infer_period
+from rtamt.signals.sampling_period import check_increasing, has_period, infer_period
 from rtamt.signals.signal import Signal
 from rtamt.verdicts.chunks import Group, StreamResult
 from rtamt.verdicts.streaming import Stream

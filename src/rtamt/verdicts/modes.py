@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean, shown
 from rtamt.lazy_dataclasses import dataclass
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.rewrite.semantics import PredicateSemantics
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.verdicts.early.monitor import EarlyMonitor
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import DomainTrace
+    from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.verdicts.decompose import Leaf
     from rtamt.verdicts.robustness_and_truth import Evaluate, Outputs
     from rtamt.verdicts.trackers import Tracker

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.program import Program
     from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.verdicts.decompose import Anchored, Leaf
 
 #: Registers of a program, of 2 KiB each: together half of a second-level cache of 1 MiB.

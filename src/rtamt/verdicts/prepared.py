@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rtamt.compiler.stored import StoredPlan
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.domain_interface import DomainTrace, TimeDomain
+    from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
     #: A reduced leaf: its value, and the position at which a minimum is first below 0.
     Reduced = tuple[float, int | None]

@@ -9,8 +9,8 @@ from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.semantics import apply_semantics, boolean
-from rtamt.signals.domain_interface import DomainTrace
 from rtamt.signals.signal import Signal
+from rtamt.signals.time_domain_interface import DomainTrace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.engine.backend import Place
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 #: The outputs of a standalone program, in this order: ρ, and +inf or -inf as the formula holds or not. Of several
 #: requirements, both of all together, then of each: ``robustness.R1``, ``verdict.R1``.

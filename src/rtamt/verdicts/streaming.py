@@ -12,8 +12,8 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
-from rtamt.signals.domains import time_domain
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling_period import TOLERANCE
+from rtamt.signals.time_domains import time_domain
 from rtamt.verdicts.chunks import Requirement, StreamResult
 from rtamt.verdicts.decompose import anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import outputs_under
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.units.durations import Duration
     from rtamt.settings import Semantics
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification import Specification
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import BoundError, ParseError, TraceError, UsageError
-from rtamt.language.parsing.sampling import Sampling
+from rtamt.language.parsing.sampling_clause import Sampling
 from rtamt.signals.sampling import HeldSampler
 
 TEXT = "sample 100ms hold for 500ms; always(x <= 3 -> y >= 1)"

@@ -4,7 +4,7 @@ import pytest
 
 import rtamt
 from rtamt.cli import main
-from rtamt.signals import domains
+from rtamt.signals import time_domains
 from tests.unit.signals.third_domain.turns import Turns
 
 TEXT = "always(req >= 3 -> eventually[0:2](gnt >= 3))"
@@ -14,8 +14,8 @@ DATA = {"time": [0.0, 0.1, 7.0, 7.2, 9.0], "req": [0, 6, 0, 0, 0], "gnt": [0, 0,
 
 @pytest.fixture
 def listed(monkeypatch):
-    """What a new time domain adds to the list in ``signals/domains.py``."""
-    monkeypatch.setitem(domains._LISTED, Turns.name, Turns)
+    """What a new time domain adds to the list in ``signals/time_domains.py``."""
+    monkeypatch.setitem(time_domains._LISTED, Turns.name, Turns)
 
 
 def test_a_third_time_domain_parses_checks_bounds_evaluates_and_explains():

@@ -8,11 +8,11 @@ import pytest
 
 import rtamt
 from rtamt.engine import BACKENDS
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 SRC = Path(rtamt.__file__).parent
 #: Where time domains and their traces are defined.
-HOME = {SRC / "signals" / f"{name}.py" for name in ("domain_interface", "domains", *DOMAINS)}
+HOME = {SRC / "signals" / f"{name}.py" for name in ("time_domain_interface", "time_domains", *DOMAINS)}
 MODULES = sorted(set(SRC.rglob("*.py")) - HOME)
 CLASSES = {"TimeDomain", "DomainTrace", "Discrete", "Dense", "DiscreteTrace", "DenseTrace"}
 

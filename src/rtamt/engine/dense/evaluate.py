@@ -16,7 +16,7 @@ from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.arrays import TIME
 from rtamt.signals.dense import Dense, DenseTrace
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import TimeScale
 

@@ -14,7 +14,7 @@ from rtamt.engine.dense.steps import Steps, constant
 from rtamt.engine.quantifiers import QuantifierExecutor as Quantifier
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.signals.regular import merged
+from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

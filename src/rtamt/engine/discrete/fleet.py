@@ -21,8 +21,8 @@ from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.regular import irregular
 from rtamt.signals.samples import read_time
+from rtamt.signals.sampling_period import irregular
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -19,12 +19,12 @@ from rtamt.signals.arrays import Timestamps
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.episodes import plain_times
-from rtamt.signals.regular import (
+from rtamt.signals.samples import read_time, read_values, time_of
+from rtamt.signals.sampling_period import (
     check_increasing,
     check_regular,
     irregular,
 )
-from rtamt.signals.samples import read_time, read_values, time_of
 from rtamt.signals.signal import Signal
 from rtamt.usage_guard import exclusive, in_use
 

@@ -11,7 +11,7 @@ from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
-from rtamt.signals.regular import RegularTimes
+from rtamt.signals.sampling_period import RegularTimes
 from rtamt.signals.signal import Signal
 from rtamt.signals.time_columns import check_frame
 

@@ -45,7 +45,7 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.groups import GroupParser
 from rtamt.language.parsing.imports import Library
-from rtamt.language.parsing.sampling import begins_sampling, parse_sampling
+from rtamt.language.parsing.sampling_clause import begins_sampling, parse_sampling
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.template_order import templates_to_come
 from rtamt.language.parsing.templates import begins_template, parse_template
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
     from rtamt.errors import SpecificationError
     from rtamt.language.parsing.lexer import Token
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
 
 
 def parse_document(

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from rtamt.engine import Watched
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Causation, CausationRun
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 def _check_causes(formula: Formula, text: str | None, watch: Sequence[Watched]) -> None:

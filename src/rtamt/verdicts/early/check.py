@@ -18,7 +18,7 @@ from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval
-from rtamt.signals.regular import TOLERANCE, check_increasing, check_regular, infer_period, merged
+from rtamt.signals.sampling_period import TOLERANCE, check_increasing, check_regular, infer_period, merged
 from rtamt.verdicts.decompose import conjuncts
 from rtamt.verdicts.early.discrete_eager import EagerMonitor
 from rtamt.verdicts.early.discrete_interval import DiscreteIntervalMonitor

@@ -10,8 +10,8 @@ from rtamt.errors import TraceError
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.signals.data_errors import missing_variable, unknown_variable
-from rtamt.signals.regular import irregular, not_increasing
 from rtamt.signals.samples import read_time
+from rtamt.signals.sampling_period import irregular, not_increasing
 from rtamt.usage_guard import in_use
 from rtamt.verdicts.early.caller_clock import CallerClock, Timestamp
 from rtamt.verdicts.early.monitor import EarlyMonitor
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class DiscreteEarlyMonitor(EarlyMonitor):

@@ -12,8 +12,8 @@ from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Cause
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):

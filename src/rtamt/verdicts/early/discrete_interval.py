@@ -12,7 +12,7 @@ from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Change, Interval
-from rtamt.signals.regular import irregular
+from rtamt.signals.sampling_period import irregular
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor
 from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError

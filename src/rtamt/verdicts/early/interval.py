@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units.durations import Duration
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Change, Interval
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 #: How many samples come between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from rtamt.engine.early import EarlySession
     from rtamt.language.formula import Formula
-    from rtamt.signals.domain_interface import TimeDomain
     from rtamt.signals.outcomes import Cause, Verdict, VerdictRun
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 
 class EarlyMonitor(OnlineMonitor):

@@ -10,7 +10,7 @@ from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import columns_of
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.discrete import DiscreteTrace
-from rtamt.signals.domain_interface import TimeDomain
+from rtamt.signals.time_domain_interface import TimeDomain
 
 TURN = Fraction(1)
 

@@ -3,7 +3,7 @@
 import pytest
 
 import rtamt
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 
 
 @pytest.fixture(params=[name for name, domain in DOMAINS.items() if "interval" in domain.parts])

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import rtamt
-from rtamt.fleet.monitors_bytes import packed, unpacked
+from rtamt.fleet.monitors_snapshot import packed, unpacked
 
 SPEC = rtamt.parse("always[0:1](x >= 3)")
 CONTINUES = "; a fleet with a monitor for each key continues with the same requirement and settings"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.rewrite.ground import grounds
 from rtamt.signals.coding import NO_TYPES
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.formula import Formula
-    from rtamt.language.parsing.sampling import Sampling
+    from rtamt.language.parsing.sampling_clause import Sampling
     from rtamt.language.units.durations import Duration
     from rtamt.rewrite.check import BoundUnit
     from rtamt.signals.arrays import FloatArray

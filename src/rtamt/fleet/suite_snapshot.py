@@ -22,13 +22,13 @@ from rtamt.compiler.stored import LATEST, StoredPlan
 from rtamt.errors import UsageError, shown
 from rtamt.fleet.groups import Group, Programs, Way
 from rtamt.fleet.verdict_table import SELECTABLE
-from rtamt.language.parsing.sampling import Sampling
+from rtamt.language.parsing.sampling_clause import Sampling
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy_patterns import lazy_pattern
 from rtamt.signals.binding import Binding
 from rtamt.signals.discrete import DISCRETE
-from rtamt.signals.domains import DOMAINS
+from rtamt.signals.time_domains import DOMAINS
 from rtamt.specification_recorded import Optional
 from rtamt.verdicts.prepared import Joined, Prepared, Window
 from rtamt.verdicts.standalone import check_code
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from rtamt.fleet.suite import SuiteRequirement
     from rtamt.language.value_types import ValueType
-    from rtamt.signals.domain_interface import TimeDomain
+    from rtamt.signals.time_domain_interface import TimeDomain
 
 _MAGIC = b"RTAMTSTE"
 _VERSION = 1

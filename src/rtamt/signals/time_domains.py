@@ -9,9 +9,9 @@ from rtamt.errors import UsageError, choices, shown
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.domain_interface import TimeDomain
-from rtamt.signals.regular import TOLERANCE
+from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.ticks import NANOSECOND
+from rtamt.signals.time_domain_interface import TimeDomain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

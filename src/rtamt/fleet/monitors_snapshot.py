@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.fleet.fields import DATA, INTEGER, KIND, NATURAL, REAL, TEXT, Field, Source, damaged, many, row
-from rtamt.fleet.fleet_bytes import MONITORS, REQUIREMENTS
+from rtamt.fleet.fleet_snapshot import MONITORS, REQUIREMENTS
 from rtamt.fleet.keys import MOST, is_padded
 from rtamt.lazy_tuples import NamedTuple
 

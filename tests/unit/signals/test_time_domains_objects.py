@@ -8,7 +8,7 @@ import pytest
 import rtamt
 from rtamt.engine import engine_of
 from rtamt.plot.x_axis import XAxis
-from rtamt.signals.domains import DOMAINS, time_domain
+from rtamt.signals.time_domains import DOMAINS, time_domain
 
 TEXT = "always[0:100ms](x >= 3)"
 OBJECTS = {
