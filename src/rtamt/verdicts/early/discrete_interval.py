@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from heapq import heappop, heappush
+from itertools import pairwise
 from math import floor
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from rtamt.compiler.graph import FOREVER
+from rtamt.engine import SlowPath, inner_of
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
@@ -19,7 +22,10 @@ from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.early.prediction import Later, later_samples
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
+
+#: The first and the last sample with the same bounds, and these.
+Run: TypeAlias = "tuple[int, int, float, float]"
 
 
 class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonitorBase):
@@ -60,8 +66,18 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         """See :class:`EarlyMonitor`."""
         return super().samples - self._filled
 
+    def _connect(self, backend: Any) -> None:
+        # The core alone would not forget what was noted when it takes the next sample.
+        super()._connect(SlowPath(inner_of(backend)) if self._noted else backend)
+
+    def _note(self, noted: dict[int, tuple[Any, ...]]) -> None:
+        """Remember what one sample changed beside the last step of the back end."""
+        if noted != self._noted:
+            self._noted = noted
+            self._connect(inner_of(self._backend))
+
     def _settle_presence(self, place: int) -> None:
-        self._noted = {}
+        self._note({})
         if self._late is not None:
             self._fill(max(self._backend.newest, place) - self._late - 1)
 
@@ -121,13 +137,16 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             self._start()
 
     def _start(self) -> None:
+        """Take the samples that were kept; all that they changed counts as changed by the last of them."""
         early = sorted(self._early, key=lambda sample: sample[0])
         kept = (self._events, self._snapshots)
+        noted: dict[int, tuple[Any, ...]] = dict.fromkeys(self._outputs, ())
         try:
             for time, known in early:
                 if self._backend.newest >= 0:
                     self._check_late(time)
                 self._learn(time, known)
+                noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
         except BaseException as error:
             self._connect(self._session.open())
             self._early, (self._events, self._snapshots) = self._early[:-1], kept
@@ -135,6 +154,15 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 raise self._no_value(error) from None
             raise
         self._early = ()
+        self._note(noted)
+        self._retracted = None  # nothing was reported that a correction could retract
+
+    def _news(self, output: int) -> list[Any]:
+        """Return the runs of samples whose bounds the back end changed while it took a sample."""
+        backend = self._backend
+        if self._retracted is None:
+            return [*self._noted.get(output, ()), *backend.changes(output)]
+        return [(t, t, *backend.bounds(output, t)) for t in range(backend.held(output), backend.newest + 1)]
 
     def _check_late(self, time: float) -> None:
         backend = self._backend
@@ -176,8 +204,9 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def _watermark(self, time: float) -> None:
         if self._early and time >= min(then for then, _ in self._early):
             self._start()
+        else:
+            self._note({})
         backend = self._backend
-        self._noted = {}
         if self._late is not None and backend.newest >= 0:
             ahead = floor((time - backend.time(backend.newest)) / float(self._step) + self._tolerance)
             self._fill(backend.newest + min(ahead, 0))
@@ -240,6 +269,10 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         noted = self._noted.get(output)
         if not noted:
             return now
+        if self._retracted is None or output:
+            return [
+                self._change(*run, output=output) for run in latest((*noted, *self._backend.changes(output)))
+            ]
         last = {change.begin for change in now}
         before = [self._change(*run, output=output) for run in noted]
         return [*(change for change in before if change.begin not in last), *now]
@@ -261,7 +294,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
         if not self._finished:
-            if self._early:
+            unreported = bool(self._early)
+            if unreported:
                 self._start()
             backend = self._backend
             before = [
@@ -278,7 +312,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 tuple(
                     t
                     for t, ends in each.items()
-                    if t >= first and (ends[0] != ends[1] or ends != values[t - first])
+                    if t >= first and (unreported or ends[0] != ends[1] or ends != values[t - first])
                 )
                 for each, (first, values) in zip(before, rest, strict=True)
             )
@@ -286,3 +320,26 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if self.at == "start":
             return []
         return self._changes(0)
+
+
+def latest(runs: Sequence[Run]) -> list[Run]:
+    """Return runs without overlap, in the order of their samples: each sample has the bounds of its last run."""
+    begins = sorted((run[0], -place) for place, run in enumerate(runs))
+    cuts = sorted({cut for begin, end, _, _ in runs for cut in (begin, end + 1)})
+    found: list[Run] = []
+    open_runs: list[int] = []
+    taken = 0
+    for begin, after in pairwise(cuts):
+        while taken < len(begins) and begins[taken][0] <= begin:
+            heappush(open_runs, begins[taken][1])
+            taken += 1
+        while open_runs and runs[-open_runs[0]][1] < begin:
+            heappop(open_runs)
+        if not open_runs:
+            continue
+        bounds = runs[-open_runs[0]][2:]
+        if found and found[-1][1] == begin - 1 and found[-1][2:] == bounds:
+            found[-1] = (found[-1][0], after - 1, *bounds)
+        else:
+            found.append((begin, after - 1, *bounds))
+    return found

@@ -11,6 +11,7 @@ import pytest
 
 import rtamt
 from rtamt import EvaluationError, Interval
+from rtamt.verdicts.early.discrete_interval import latest
 
 SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
 
@@ -105,6 +106,34 @@ def test_late_sample_fills_its_gap():
     assert ends(monitor) == (0.0, 7.0)
     monitor.update(2, x=9)
     assert ends(monitor) == (6.0, 6.0)
+
+
+@pytest.mark.parametrize("how", ["newer sample", "watermark", "end"])
+@pytest.mark.parametrize("copied", [False, True])
+@pytest.mark.parametrize("correction", ["reject", "replay"])
+def test_first_samples_within_the_lateness_are_lost_by_no_change(how: str, copied: bool, correction: str):
+    monitor = interval("once[0:1](x >= 3)", lateness=3, on_correction=correction)
+    for t in (2, 0, 1, 2):
+        monitor.update(t, x=9 if t == 2 else 4 + t)
+        assert monitor.changes() == []
+    if how == "end":
+        changes = monitor.finish()
+    elif how == "watermark":
+        monitor.watermark(2)
+        changes = monitor.changes()
+    else:
+        monitor.update(12, x=1)
+        changes = monitor.changes()
+    expected = [(0, 1.0, True), (1, 2.0, True), (2, 6.0, True)]
+    assert [(c.begin, c.interval.lower, c.final) for c in changes][:3] == expected
+    assert not any(change.retracted for change in changes)
+    if how == "end":
+        return
+    if copied:
+        monitor = copy.copy(monitor)
+        assert monitor.changes() == changes
+    monitor.update(13, x=4)
+    assert [change.begin for change in monitor.changes() if change.end <= 2] == []
 
 
 def test_watermark_closes_what_is_missing():
@@ -245,3 +274,19 @@ def test_uncertain_sample_outside_the_domain_below_a_delay_is_an_error_once_the_
     with pytest.raises(rtamt.EvaluationError, match="time 2 s"):
         monitor.update(2, y=1)
     assert monitor.samples == 2
+
+
+def test_each_sample_has_the_bounds_of_its_last_run():
+    runs = [
+        (0, 9, 0.0, 9.0),
+        (3, 4, 1.0, 2.0),
+        (4, 4, 2.0, 2.0),
+        (20, 20, 5.0, 5.0),
+        (8, 12, 0.0, 9.0),
+        (0, 0, 1.0, 1.0),
+    ]
+    last = {sample: bounds for begin, end, *bounds in runs for sample in range(begin, end + 1)}
+    assert [(t, bounds) for begin, end, *bounds in latest(runs) for t in range(begin, end + 1)] == sorted(
+        last.items()
+    )
+    assert [run[:2] for run in latest(runs)] == [(0, 0), (1, 2), (3, 3), (4, 4), (5, 12), (20, 20)]
