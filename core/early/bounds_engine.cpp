@@ -31,7 +31,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late)
     bounds_.resize(steps);
     if (late_) {
         for (const Bounds& range : ranges_)
-            inputs_.push_back({Runs(0, range.lower), Runs(0, -range.upper)});
+            inputs_.emplace_back(0, range);
     }
     find_beyond({});
     (void)propagate(true); // what has no value before it is seen is not known
@@ -40,7 +40,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late)
 
 Bounds BoundsEngine::known(std::uint32_t input, Tick t) const noexcept {
     if (!late_) return ranges_[input];
-    return {inputs_[input][0].at(t).value, -inputs_[input][1].at(t).value};
+    return inputs_[input].at(t).value;
 }
 
 Bounds BoundsEngine::at(std::uint32_t ref, Tick t) const noexcept {
@@ -73,6 +73,7 @@ void BoundsEngine::clear() noexcept {
         state.out[1].clear();
     }
     journal_.clear();
+    input_journal_.clear();
 }
 
 // Takes everything back if something failed.
@@ -84,6 +85,8 @@ std::optional<BoundsEngine::Failure> BoundsEngine::attempt(std::optional<Failure
 void BoundsEngine::revert() {
     for (const Undo& undo : std::views::reverse(journal_))
         undo.runs->set(undo.l, undo.r, undo.old);
+    for (const auto& [input, before] : std::views::reverse(input_journal_))
+        inputs_[input].set(before.begin, before.end, before.value);
     for (WindowSums& sums : sums_)
         sums.forget();
     for (State& state : nodes_)
@@ -167,8 +170,7 @@ void BoundsEngine::settle(Tick closed, std::span<const Tick> wanted) {
     }
     if (!late_) return;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-        for (Runs& runs : inputs_[i])
-            runs.drop_before(std::min(input[i], plus(closed, 1)));
+        inputs_[i].drop_before(std::min(input[i], plus(closed, 1)));
     }
 }
 
@@ -176,8 +178,8 @@ std::size_t BoundsEngine::bytes() const noexcept {
     std::size_t sum = 0;
     for (const State& state : nodes_)
         sum += state.own[0].bytes() + state.own[1].bytes();
-    for (const Registers& registers : inputs_)
-        sum += registers[0].bytes() + registers[1].bytes();
+    for (const auto& known : inputs_)
+        sum += known.bytes();
     return sum;
 }
 
@@ -195,10 +197,8 @@ void BoundsEngine::transfer(Snapshot& snapshot) {
         snapshot.require(state.own[0].front() <= std::max<Tick>(0, state.keep) &&
                          state.own[1].front() <= std::max<Tick>(0, state.keep));
     }
-    for (Registers& registers : inputs_) {
-        registers[0].transfer(snapshot);
-        registers[1].transfer(snapshot);
-    }
+    for (auto& known : inputs_)
+        known.transfer(snapshot);
     snapshot.item(seen_);
     snapshot.require(seen_ >= -1 && seen_ < forever);
     snapshot.item(complete_);

@@ -164,6 +164,10 @@ class BoundsEngine {
         Tick r;
         double old;
     };
+    struct UndoInput {
+        std::uint32_t input;
+        StepMap<Bounds>::Run before;
+    };
 
     Graph graph_;
     std::vector<Bounds> ranges_;
@@ -173,9 +177,10 @@ class BoundsEngine {
     bool awaited_ = false;     // one has none somewhere, or had: see State::undefined
     std::vector<State> nodes_;
     std::vector<std::uint32_t> atoms_;
-    std::vector<Registers> inputs_;                   // where knowledge may be late
+    std::vector<StepMap<Bounds>> inputs_;             // where knowledge may be late
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
     std::vector<Undo> journal_;                       // of a change that may fail
+    std::vector<UndoInput> input_journal_;            // the same of inputs
     bool journaling_ = false;
     bool keeps_undo_ = false;
     std::vector<double> exact_;                // results of steps
@@ -200,6 +205,8 @@ class BoundsEngine {
     // inputs.cpp
     template <class Value>
     [[nodiscard]] std::optional<Failure> take(Tick t, std::span<const Value> values);
+    [[nodiscard]] std::optional<Failure> relearn(std::span<const Observation> observations,
+                                                 bool supposed);
     [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r,
                                                  bool supposed = false);
     [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);

@@ -45,16 +45,41 @@ std::optional<BoundsEngine::Failure> BoundsEngine::row(Tick t, std::span<const B
 }
 
 void BoundsEngine::know(std::span<const Observation> observations) {
-    for (const Observation& observation : observations) {
-        for (int reg = 0; reg < 2; ++reg) {
-            Runs& own = inputs_[observation.input][static_cast<std::size_t>(reg)];
-            const double now = reg == 0 ? observation.bounds.lower : -observation.bounds.upper;
-            while (const auto run = own.first<Below>(observation.l, observation.r, now)) {
-                if (journaling_) journal_.push_back({&own, run->begin, run->end, run->value});
-                own.set(run->begin, run->end, now);
+    for (const auto& [input, l, r, bounds] : observations) {
+        StepMap<Bounds>& own = inputs_[input];
+        for (Tick t = l; t <= r;) {
+            const auto place = own.find(t);
+            const auto run = own.run(place);
+            const Tick end = std::min(run.end, r);
+            Bounds now = run.value;
+            if (now.lower < bounds.lower) now.lower = bounds.lower;
+            if (now.upper > bounds.upper) now.upper = bounds.upper;
+            if (!(now == run.value)) {
+                if (journaling_) input_journal_.push_back({input, {t, end, run.value}});
+                own.set(place, t, end, now);
             }
+            if (end >= forever) break;
+            t = end + 1;
         }
     }
+}
+
+// What atoms make of observations, all of which are known already. One that reads several of the
+// same ticks is computed once.
+std::optional<BoundsEngine::Failure>
+BoundsEngine::relearn(std::span<const Observation> observations, bool supposed) {
+    for (std::size_t k = 0; k < observations.size(); ++k) {
+        const auto& [input, l, r, bounds] = observations[k];
+        for (const std::uint32_t i : readers_[input]) {
+            const auto did = [&](const Observation& before) {
+                return before.l == l && before.r == r && reads(2 * i, before.input);
+            };
+            if (std::ranges::any_of(observations.first(k), did)) continue;
+            auto failure = relearn(i, l, r, supposed);
+            if (failure && !supposed) return failure;
+        }
+    }
+    return std::nullopt;
 }
 
 std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observation> observations,
@@ -63,12 +88,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observa
     ended_ = ended;
     journaling_ = partial_ || keeps_undo_;
     know(observations);
-    for (const Observation& observation : observations) {
-        for (const std::uint32_t i : readers_[observation.input]) {
-            const auto failure = relearn(i, observation.l, observation.r);
-            if (failure) return attempt(failure);
-        }
-    }
+    if (const auto failure = relearn(observations, false)) return attempt(failure);
     return attempt(propagate(false));
 }
 
@@ -92,10 +112,7 @@ BoundsEngine::suppose(std::span<const Observation> observations) {
     begin(seen_);
     journaling_ = true;
     know(observations);
-    for (const Observation& observation : observations) {
-        for (const std::uint32_t i : readers_[observation.input])
-            (void)relearn(i, observation.l, observation.r, true);
-    }
+    (void)relearn(observations, true);
     return attempt(propagate(false));
 }
 
@@ -118,14 +135,13 @@ std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, 
         Tick end = r;
         for (const Step& step : steps) {
             if (step.opcode != Opcode::input) continue;
-            Bounds& value = row_[step.a];
-            value = ranges_[step.a];
-            if (late_) {
-                const Run lower = inputs_[step.a][0].at(t);
-                const Run upper = inputs_[step.a][1].at(t);
-                value = {lower.value, -upper.value};
-                end = std::min({end, lower.end, upper.end});
+            if (!late_) {
+                row_[step.a] = ranges_[step.a];
+                continue;
             }
+            const auto known = inputs_[step.a].at(t);
+            row_[step.a] = known.value;
+            end = std::min(end, known.end);
         }
         const Wrong wrong = enclose(steps, row_, bounds_);
         if (wrong.any != none && !supposed) {
