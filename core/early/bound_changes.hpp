@@ -1,6 +1,7 @@
 // What the last change of an engine made of one of its nodes: runs of ticks and their bounds now.
 #pragma once
 
+#include "../program/snapshot.hpp"
 #include "bounds_engine.hpp"
 
 #include <algorithm>
@@ -64,6 +65,17 @@ class BoundChanges {
             next = std::max(next, last + 1);
         }
         return result;
+    }
+
+    void transfer(Snapshot& snapshot) {
+        std::size_t size = changed_.size();
+        snapshot.count(size, 2 * sizeof(Tick));
+        changed_.resize(size);
+        for (auto& [first, last] : changed_) {
+            snapshot.item(first);
+            snapshot.item(last);
+            snapshot.require(0 <= first && first <= last && last < forever);
+        }
     }
 
   private:

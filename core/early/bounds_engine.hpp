@@ -63,6 +63,10 @@ class BoundsEngine {
         complete_ = tick;
     }
 
+    // The same now, while nothing else changes: what turns out to have no value, which leaves
+    // everything as it was.
+    [[nodiscard]] std::optional<Failure> close_inputs(Tick tick) noexcept;
+
     // The first operation without a value in what reads no input.
     [[nodiscard]] std::optional<Failure> wrong_constant();
 

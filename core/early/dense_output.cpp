@@ -75,6 +75,8 @@ Tick DenseOutput::settle(const BoundsEngine& engine, Tick closed) noexcept {
 
 void DenseOutput::transfer(Snapshot& snapshot) {
     decisions_.transfer(snapshot);
+    early::transfer(snapshot, decided_);
+    changes_.transfer(snapshot);
     for (Tick* tick : {&open_, &held_, &next_held_}) {
         snapshot.item(*tick);
         snapshot.require(*tick >= 0);

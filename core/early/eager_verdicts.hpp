@@ -19,6 +19,18 @@ struct Decision {
     bool satisfied;
 };
 
+inline void transfer(Snapshot& snapshot, std::vector<Decision>& decisions) {
+    std::size_t size = decisions.size();
+    snapshot.count(size, 3 * sizeof(Tick) + 1);
+    decisions.resize(size);
+    for (Decision& decision : decisions) {
+        snapshot.item(decision.l);
+        snapshot.item(decision.r);
+        snapshot.item(decision.at);
+        snapshot.item(decision.satisfied);
+    }
+}
+
 class EagerVerdicts {
   public:
     // What is decided before any sample came; the first is to date it.
@@ -88,17 +100,7 @@ class EagerVerdicts {
 
     [[nodiscard]] std::size_t bytes() const noexcept { return waiting_.size() * sizeof(Decision); }
 
-    void transfer(Snapshot& snapshot) {
-        std::size_t size = waiting_.size();
-        snapshot.count(size, 3 * sizeof(Tick) + 1);
-        waiting_.resize(size);
-        for (Decision& decision : waiting_) {
-            snapshot.item(decision.l);
-            snapshot.item(decision.r);
-            snapshot.item(decision.at);
-            snapshot.item(decision.satisfied);
-        }
-    }
+    void transfer(Snapshot& snapshot) { rtamt::early::transfer(snapshot, waiting_); }
 
   private:
     std::vector<Decision> waiting_; // by their first ticks, which they share with no other

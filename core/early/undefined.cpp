@@ -25,6 +25,17 @@ std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index, st
     return fails(index);
 }
 
+std::optional<BoundsEngine::Failure> BoundsEngine::close_inputs(Tick tick) noexcept {
+    settle_inputs(tick);
+    for (std::uint32_t i = 0; awaited_ && i < nodes_.size(); ++i) {
+        if (const auto failure = fails(i)) {
+            complete_ = complete_before_;
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
+
 // How far behind the newest sample each node is read when the trace ends, after which every input
 // holds its last value. `forever`: nodes that something else reads so far. The recursion of until
 // ends where the window does that is above it.

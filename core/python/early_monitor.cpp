@@ -176,6 +176,10 @@ nb::object EarlyMonitor::watermark(double time) {
     if (times_.newest() >= 0) {
         const Tick floor = times_.floor(time);
         if (floor > closed_) {
+            if (settings_.late) {
+                const auto failure = engine_.close_inputs(floor);
+                if (failure) return checked(fail(*failure, times_.newest(), times_.last()));
+            }
             closed_ = floor;
             settle();
         }

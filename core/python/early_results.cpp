@@ -205,7 +205,15 @@ void EarlyMonitor::transfer(Snapshot& snapshot) {
     if (causes_) causes_->transfer(snapshot);
     for (auto& decisions : decisions_)
         decisions.transfer(snapshot);
+    for (auto& changes : changes_)
+        changes.transfer(snapshot);
     times_.transfer(snapshot);
+    for (auto& news : news_) {
+        early::transfer(snapshot, news);
+        for (const Decision& decision : news)
+            snapshot.require(0 <= decision.l && decision.l <= decision.r &&
+                             decision.r <= times_.newest() && decision.at <= times_.newest());
+    }
     snapshot.values(open_.data(), open_.size());
     snapshot.values(kept_.data(), kept_.size());
     snapshot.item(closed_);

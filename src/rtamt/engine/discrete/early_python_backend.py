@@ -94,14 +94,14 @@ class PythonEarlyMonitor:
             self.restore(before)
             raise
 
-    def _knowledge(self) -> Knowledge:
+    def _knowledge(self, *, finished: bool = False) -> Knowledge:
         n = self.newest + 1
         columns = {}
         for name in self._names:
             each = [self._known.get(i, {}).get(name, self._ranges[name]) for i in range(n)]
             columns[name] = Enclosure(*(np.array([pair[k] for pair in each], float) for k in (0, 1)))
         closed = min(n, self.closed + 1)
-        return Knowledge(columns, n, self._ranges, self.finished, closed)
+        return Knowledge(columns, n, self._ranges, finished, closed)
 
     def _answer_anew(self) -> None:
         """Forget the answers, which what came makes obsolete: of each formula by its identity."""
@@ -111,7 +111,8 @@ class PythonEarlyMonitor:
     def _bounds(self, formula: Formula) -> Enclosure:
         if id(formula) not in self._found:
             start = self._times[0] if self._times else 0.0
-            self._found[id(formula)] = bounds(formula, self._knowledge(), self._period, start)
+            known = self._knowledge(finished=self.finished and self.newest >= 0)
+            self._found[id(formula)] = bounds(formula, known, self._period, start)
         return self._found[id(formula)]
 
     def _compute(self) -> None:
@@ -208,8 +209,15 @@ class PythonEarlyMonitor:
         """Nothing at or before a time will come."""
         if self.newest >= 0:
             steps = floor((time - self._times[self.newest]) / float(self._period) + self._tolerance)
-            self.closed = max(self.closed, self.newest + steps)
+            before, self.closed = self.closed, max(self.closed, self.newest + steps)
             self._answer_anew()
+            try:
+                for formula in (*self._outputs, self._start):
+                    self._bounds(formula)  # which fails where an operation turns out to have no value
+            except BaseException:
+                self.closed = before
+                self._answer_anew()
+                raise
 
     def finish(self) -> Any:
         """End the trace; return what that makes known."""
@@ -245,6 +253,8 @@ class PythonEarlyMonitor:
         later: Sequence[tuple[int, int, Sequence[float], Sequence[float]]],
     ) -> Pair | None:
         """The bounds of an output at a sample, or at the start, if later samples had these bounds of all inputs."""
+        if output is not None and sample < self.held(output):
+            return None
         known = self._knowledge()
         columns, ranges, n = dict(known.columns), dict(self._ranges), known.n
         for first, last, lower, upper in later:
@@ -261,9 +271,9 @@ class PythonEarlyMonitor:
         start = self._times[0] if self._times else 0.0
         return self._pair(bounds(formula, supposed, self._period, start), sample)
 
-    def bounds(self, output: int, sample: int) -> Pair:
-        """The bounds of an output at a sample."""
-        return self._pair(self._bounds(self._outputs[output]), sample)
+    def bounds(self, output: int, sample: int) -> Pair | None:
+        """The bounds of an output at a sample, None where the core has forgotten them."""
+        return None if sample < self.held(output) else self._pair(self._bounds(self._outputs[output]), sample)
 
     def changes(self, output: int) -> list[Any]:
         """Runs (first, last, lower, upper) that the last call changed."""
@@ -305,9 +315,9 @@ class PythonEarlyMonitor:
         """The first time that may still be reported."""
         return self._times[0]
 
-    def held(self, _output: int) -> int:
-        """The first sample that is held."""
-        return 0
+    def held(self, output: int) -> int:
+        """The first sample whose bounds are held: the last one that is final."""
+        return max(0, min(self.closed, self.newest) - self._lags[output])
 
     def state(self) -> bytes:
         """The state after the samples so far."""

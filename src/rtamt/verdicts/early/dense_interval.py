@@ -10,7 +10,7 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Change, Interval
-from rtamt.signals.runs import compared, merged
+from rtamt.signals.runs import clipped, compared, merged
 from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.early.dense import DenseEarlyMonitor
 from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
@@ -185,6 +185,11 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         first, last = self._times([begin, end])
         return Change(first, last, Interval(lower, upper), final, retracted)
 
+    def _first_open(self, output: int) -> int:
+        """Return the first tick at which an output may still change."""
+        lag, complete = self._session.lag(output), self._backend.complete
+        return NEVER if lag >= FOREVER or complete <= NEVER else int(complete) - lag + 1
+
     @exclusive
     def finish(self) -> list[Change]:
         """End the trace: every variable holds its last value. Return the bounds that were still open."""
@@ -192,22 +197,25 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
             self._require_samples()
             backend = self._backend
             outputs = self._outputs
+            first = [self._first_open(output) for output in outputs]
             before = [backend.runs(output) for output in outputs]
             try:
                 backend.finish()
             except self._undefined as error:
                 raise self._no_value(error) from None
-            self._ended = tuple(_were_open(before[output], backend.runs(output)) for output in outputs)
+            self._ended = tuple(
+                _were_open(before[output], backend.runs(output), first[output]) for output in outputs
+            )
             self._finished = True
         if self.at == "start":
             return []
         return self._changes(0)
 
 
-def _were_open(before: Sequence[Run], now: Sequence[Run]) -> tuple[Run, ...]:
-    """Return the runs of now whose bounds were not equal before, or others."""
+def _were_open(before: Sequence[Run], now: Sequence[Run], first: int) -> tuple[Run, ...]:
+    """Return the runs of now, from a tick on, whose bounds were not equal before, or others."""
     return merged(
         (begin, end, *bounds)
-        for begin, end, was, bounds in compared(before, now)
+        for begin, end, was, bounds in compared(before, tuple(clipped(now, first, FOREVER)))
         if was != bounds or was[0] != was[1]
     )

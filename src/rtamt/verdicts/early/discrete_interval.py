@@ -130,11 +130,15 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
         """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
-        self._early = (*self._early, (time, known))
+        before, self._early = self._early, (*self._early, (time, known))
         times = [time for time, _ in self._early]
         assert self._late is not None
         if round((max(times) - min(times)) / float(self._step)) > self._late:
-            self._start()
+            try:
+                self._start()
+            except BaseException:
+                self._early = before
+                raise
 
     def _start(self) -> None:
         """Take the samples that were kept; all that they changed counts as changed by the last of them."""
@@ -149,7 +153,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
         except BaseException as error:
             self._connect(self._session.open())
-            self._early, (self._events, self._snapshots) = self._early[:-1], kept
+            self._events, self._snapshots = kept
             if isinstance(error, self._undefined):
                 raise self._no_value(error) from None
             raise
@@ -199,7 +203,10 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def _mark_at(self, time: Any, *, late: bool = False) -> None:
         if self._finished:
             raise self._is_finished()
-        self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
+        try:
+            self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
+        except self._undefined as error:
+            raise self._no_value(error) from None
 
     def _watermark(self, time: float) -> None:
         if self._early and time >= min(then for then, _ in self._early):
@@ -290,6 +297,11 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
         return Change(begin, end, Interval(lower, upper), final, retracted)
 
+    def _first_open(self, output: int) -> int:
+        """Return the first sample at which an output may still change."""
+        backend = self._backend
+        return int(max(0, min(backend.closed, backend.newest) - self._session.lag(output) + 1))
+
     @exclusive
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
@@ -298,23 +310,27 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             if unreported:
                 self._start()
             backend = self._backend
+            held = [backend.held(output) for output in self._outputs]
             before = [
-                {t: backend.bounds(output, t) for t in range(backend.held(output), backend.newest + 1)}
-                for output in self._outputs
+                {
+                    t: backend.bounds(output, t)
+                    for t in range(first if unreported else self._first_open(output), backend.newest + 1)
+                }
+                for output, first in zip(self._outputs, held, strict=True)
             ]
             if self._late is not None:
                 self._fill(backend.newest)
             rest, at_end = self._end()
             self._at_end = None if at_end is None else Interval(*at_end)
-            self._rest = tuple(rest)
+            self._rest = tuple(
+                (kept, values[kept - first :]) for kept, (first, values) in zip(held, rest, strict=True)
+            )
             # In one class of formulas the end changes bounds that had met.
             self._open_at_end = tuple(
                 tuple(
-                    t
-                    for t, ends in each.items()
-                    if t >= first and (unreported or ends[0] != ends[1] or ends != values[t - first])
+                    t for t, ends in each.items() if unreported or ends[0] != ends[1] or ends != values[t - first]
                 )
-                for each, (first, values) in zip(before, rest, strict=True)
+                for each, (first, values) in zip(before, self._rest, strict=True)
             )
             self._finished = True
         if self.at == "start":

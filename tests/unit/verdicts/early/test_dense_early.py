@@ -108,10 +108,11 @@ def test_missing_sample_ends_the_one_before():
     monitor.update(1, x=None)
     monitor.update(2, x=(6, 7))
     assert [ends(monitor, t) for t in (0.5, 1, 1.5, 2)] == [(2, 2), (-3, 7), (-3, 7), (3, 4)]
-    assert [(each.begin, each.end, each.interval, each.final) for each in monitor.finish()] == [
-        (1.0, 2.0, Interval(-3.0, 7.0), True),
+    assert [(each.begin, each.end, each.interval, each.final) for each in monitor.changes()] == [
+        (1.1, 2.0, Interval(-3.0, 7.0), True),
         (2.0, 2.1, Interval(3.0, 4.0), True),
     ]
+    assert monitor.finish() == []
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,107 @@
+"""Copies have the last reports, failed calls change nothing, and the end reports what was open."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import pytest
+
+import rtamt
+
+
+def _pickled(monitor):
+    return pickle.loads(pickle.dumps(monitor))  # noqa: S301 - our own
+
+
+backends = pytest.mark.parametrize("backend", ["cpp", "python"])
+times = pytest.mark.parametrize("time", ["discrete", "dense"])
+twins = pytest.mark.parametrize("twin", [copy.copy, _pickled])
+
+
+def monitor_of(text, time, backend, **settings):
+    return rtamt.parse(text, time=time, backend=backend).monitor(**settings)
+
+
+@twins
+@times
+@backends
+def test_a_copy_reports_the_changes_of_the_last_update(backend, time, twin):
+    text = "require A: eventually[0:1](x >= 3)\nrequire B: x >= 1"
+    monitor = monitor_of(text, time, backend, verdict="interval", watch=["A", "B"])
+    for t, x in enumerate([(4, 5), 1, (0, 2)]):
+        monitor.update(t, x=x)
+    other = twin(monitor)
+    assert monitor.changes()
+    assert other.changes() == monitor.changes()
+    assert [other[name] for name in ("A", "B")] == [monitor[name] for name in ("A", "B")]
+
+
+@twins
+@times
+@backends
+def test_a_copy_has_the_verdicts_of_watched_formulas_that_the_last_update_settled(backend, time, twin):
+    text = "require A: eventually[0:9](x >= 3)\nrequire B: x >= 1"
+    monitor = monitor_of(text, time, backend, verdict="eager", watch=["A", "B"])
+    monitor.update(0, x=2)
+    assert monitor["B"]
+    assert [twin(monitor)[name] for name in ("A", "B")] == [monitor[name] for name in ("A", "B")]
+
+
+@times
+@backends
+@pytest.mark.parametrize("samples", [3, 200])
+def test_the_end_reports_only_bounds_that_could_still_change(samples, time, backend):
+    monitor = monitor_of("eventually[0:2](x >= 3)", time, backend, verdict="interval")
+    for t in range(samples):
+        monitor.update(t, x=(1, 2))
+    newest = samples - 1
+    changes = monitor.finish()
+    assert all(change.final and change.interval == rtamt.Interval(-2.0, -1.0) for change in changes)
+    if time == "discrete":
+        assert [change.begin for change in changes] == [newest - 1, newest]
+    else:
+        assert (changes[0].begin, changes[-1].end) == (newest - 2 + 1e-9, newest + 1e-9)
+
+
+@backends
+def test_the_end_keeps_what_the_newest_sample_caused(backend):
+    monitor = monitor_of("once[0:2](x >= 3)", "discrete", backend, verdict="causation")
+    monitor.update(0, x=5)
+    monitor.update(1, x=1)
+    before = [monitor.causation(t) for t in range(2)]
+    monitor.finish()
+    assert [monitor.causation(t) for t in range(2)] == before
+    assert monitor.runs() == [rtamt.CausationRun(1.0, 1.0, 2.0, -2.0)]
+
+
+@backends
+def test_bounds_at_the_start_of_an_empty_trace_are_those_of_the_ranges(backend):
+    monitor = monitor_of("x >= 3", "discrete", backend, verdict="interval", ranges={"x": (1, 4)})
+    assert monitor.finish() == []
+    assert monitor.interval() == rtamt.Interval(-2.0, 1.0)
+
+
+@backends
+def test_what_is_final_is_kept_for_one_sample_in_both_back_ends(backend):
+    monitor = monitor_of("eventually[0:1](x >= 3)", "discrete", backend, verdict="interval")
+    for t in range(4):
+        monitor.update(t, x=t)
+    assert monitor.interval(2) == rtamt.Interval(0.0, 0.0)
+    with pytest.raises(rtamt.UsageError) as error:
+        monitor.interval(1)
+    assert str(error.value) == (
+        "the bounds at 1 s are final and no longer kept; read them from changes() when they are"
+    )
+
+
+@backends
+@pytest.mark.parametrize("value", [-1, (-2, -1)])
+def test_a_watermark_that_leaves_a_value_undefined_is_rejected(value, backend):
+    monitor = monitor_of("sqrt(x) >= 1", "discrete", backend, verdict="interval", lateness=3)
+    for t, x in enumerate([4, value, 9]):
+        monitor.update(t, x=x)
+    for _ in range(2):  # no sample is lost
+        with pytest.raises(rtamt.EvaluationError) as error:
+            monitor.watermark(1)
+        assert str(error.value).startswith("'sqrt(x)' has no value at sample 1, time 1 s: ")
