@@ -31,6 +31,14 @@ inline void transfer(Snapshot& snapshot, std::vector<Decision>& decisions) {
     }
 }
 
+// The first sample whose time is that of a decision.
+[[nodiscard]] inline Tick oldest_of(const std::vector<Decision>& decisions) noexcept {
+    Tick oldest = forever;
+    for (const Decision& decision : decisions)
+        oldest = std::min({oldest, decision.l, decision.at});
+    return oldest;
+}
+
 class EagerVerdicts {
   public:
     // What is decided before any sample came; the first is to date it.
@@ -97,6 +105,9 @@ class EagerVerdicts {
             from = end + 1;
         }
     }
+
+    // The first sample whose time will be reported.
+    [[nodiscard]] Tick oldest() const noexcept { return oldest_of(waiting_); }
 
     [[nodiscard]] std::size_t bytes() const noexcept { return waiting_.size() * sizeof(Decision); }
 

@@ -248,6 +248,7 @@ void EarlyMonitor::settle() {
         if (settings_.verdict) {
             open_[i] = early::EagerVerdicts::open(engine_, outputs_[i], open_[i]);
             from = std::max(early::plus(closed + 1, -lag(i)), open_[i]);
+            oldest = std::min({oldest, decisions_[i].oldest(), early::oldest_of(news_[i])});
         } else {
             from = std::min(held(i), zone_ ? zone_->first_change(i) : changes_[i].first());
             from = kept_[i] = std::max(kept_[i], from);
