@@ -77,8 +77,14 @@ void Causes::read(const BoundsEngine& engine, const BoundsAtStart& at_start,
     }
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         known_[i] = {of(outputs_[i], 0), of(outputs_[i], 1)};
-        for (Pieces& pieces : known_[i]) { // what is caused at the last tick is from there on
-            if (!pieces.empty() && pieces.back().end == last(new_data)) pieces.back().end = forever;
+        if (dense_) continue;
+        // What is caused where nothing changes any more is from there on; windows that reach beyond
+        // the last tick that is computed know less of the ticks before it.
+        const Tick settled = plus(new_data.newest, reach_);
+        for (Pieces& pieces : known_[i]) {
+            while (!pieces.empty() && pieces.back().begin > settled)
+                pieces.pop_back();
+            if (!pieces.empty() && pieces.back().end >= settled) pieces.back().end = forever;
         }
     }
     for (std::size_t i = 0; i < starts_.size(); ++i) {

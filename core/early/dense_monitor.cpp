@@ -154,8 +154,12 @@ std::optional<Bounds> DenseMonitor::caused(std::size_t output, std::optional<Tic
 }
 
 std::vector<BoundChange> DenseMonitor::caused(std::size_t output) const {
+    return caused_up_to(output, finished_ ? newest() : forever);
+}
+
+std::vector<BoundChange> DenseMonitor::caused_up_to(std::size_t output, Tick last) const {
     if (!begun_) return {};
-    return timed(causes_.value().runs(output, finished_ ? newest() : forever), start());
+    return timed(causes_.value().runs(output, last), start());
 }
 
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,

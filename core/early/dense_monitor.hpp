@@ -85,6 +85,8 @@ class DenseMonitor {
     }
     [[nodiscard]] std::optional<Bounds> caused(std::size_t output, std::optional<Tick> time) const;
     [[nodiscard]] std::vector<BoundChange> caused(std::size_t output) const;
+    // The same up to a tick of the trace, which may be behind its end.
+    [[nodiscard]] std::vector<BoundChange> caused_up_to(std::size_t output, Tick last) const;
 
     // An output, or none for the start, at a tick that is held, if an input had these bounds from a
     // time on: behind its newest sample, and up to the next one of them.

@@ -289,7 +289,7 @@ std::array<Pieces, 2> DenseRequirements::caused_pieces() const {
     std::array<Pieces, 2> pieces;
     if (!minimum_->begun) return pieces;
     for (const Place& place : minimum_->places) {
-        for (const BoundChange& run : monitors_[place.group].caused(place.output)) {
+        for (const BoundChange& run : monitors_[place.group].caused_up_to(place.output, forever)) {
             const Tick l = plus(run.l, -minimum_->start);
             const Tick r = plus(run.r, -minimum_->start);
             if (run.bounds.lower > -infinity) pieces[0].push_back({l, r, run.bounds.lower});

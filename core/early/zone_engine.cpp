@@ -76,10 +76,13 @@ bool ZoneEngine::fits(Tick each) {
             own.behind = node.horizon; // what comes before that is final
         }
     }
-    for (const std::uint32_t output : outputs_) {
-        Reach& reach = reach_[output / 2];
-        reach.behind = std::max(reach.behind, graph_.nodes[output / 2].horizon);
-    }
+    const auto keep_until_final = [this](std::uint32_t ref) {
+        Reach& reach = reach_[ref / 2];
+        reach.behind = std::max(reach.behind, graph_.nodes[ref / 2].horizon);
+    };
+    for (const std::uint32_t output : outputs_)
+        keep_until_final(output);
+    if (start_) keep_until_final(start_->a); // which may be no output
     for (std::size_t i = columns_.size(); i-- > 0;) {
         const Node& node = graph_.nodes[i];
         const Reach& own = reach_[i];
@@ -317,10 +320,25 @@ void ZoneEngine::transfer(Snapshot& snapshot) {
                 number(value);
         }
     }
-    if (!snapshot.loading()) return;
-    newest_before_ = newest_;
-    before_.clear();
-    compute();
+    snapshot.item(newest_before_);
+    snapshot.require(newest_before_ >= -1 && newest_before_ <= newest_);
+    bool has_row = !before_.empty();
+    snapshot.item(has_row);
+    before_.resize(has_row ? outputs_.size() : 0);
+    for (Column& before : before_) {
+        snapshot.item(before.first);
+        snapshot.require(before.first >= 0);
+        std::size_t size = before.values[0].size();
+        snapshot.count(size, 2 * sizeof(double));
+        for (auto& values : before.values) {
+            values.resize(size);
+            for (double& value : values)
+                number(value);
+        }
+        for (double& value : before.rest)
+            number(value);
+    }
+    if (snapshot.loading()) compute();
 }
 
 } // namespace rtamt::early

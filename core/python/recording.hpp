@@ -62,8 +62,8 @@ struct GivenColumns {
 [[nodiscard]] bool regular(std::span<const double> times, std::optional<double> before,
                            double period, double tolerance) noexcept;
 
-// As infer_period() in rtamt.signals.sampling_period: the median gap, as the shortest decimal within its
-// precision; 1 for a single timestamp.
+// As infer_period() in rtamt.signals.sampling_period: the median gap, as the shortest decimal
+// within its precision; 1 for a single timestamp.
 [[nodiscard]] double inferred_period(std::span<const double> times);
 
 void add_recording(nb::module_& module);

@@ -19,7 +19,7 @@ from itertools import count, islice
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple
 
-from tests.laws.early import dense_laws, engines, laws, specifications
+from tests.laws.early import dense_laws, engines, laws, reports, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
 from tests.laws.early.definition import DEFINITION
 from tests.laws.early.monitors import IMPLEMENTATIONS, PYTHON
@@ -170,6 +170,11 @@ def specification_as_defined(rng: Random, made: Implementation) -> None:
     specifications.as_defined(rng, made.backend)
 
 
+def reports_as_defined(rng: Random, made: Implementation) -> None:
+    assert made.backend is not None
+    reports.as_defined(rng, made.backend)
+
+
 LAWS: list[Law] = [
     sound,
     narrowing,
@@ -200,6 +205,7 @@ LAWS: list[Law] = [
     specification_bounds,
     specification_verdicts,
     specification_as_defined,
+    reports_as_defined,
 ]
 
 #: Laws that compare an implementation with the definition, with an evaluation, or parts of the engine.
@@ -216,6 +222,7 @@ COMPARISONS: list[Law] = [
     specification_bounds,
     specification_verdicts,
     specification_as_defined,
+    reports_as_defined,
 ]
 
 
@@ -224,7 +231,7 @@ def laws_of(made: Implementation) -> list[Law]:
     excluded = (
         COMPARISONS
         if made is DEFINITION
-        else [dense_fails_alike, specification_as_defined, engines_agree]
+        else [dense_fails_alike, specification_as_defined, reports_as_defined, engines_agree]
         if made is PYTHON
         else []
     )

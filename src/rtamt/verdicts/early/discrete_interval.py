@@ -328,7 +328,9 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             # In one class of formulas the end changes bounds that had met.
             self._open_at_end = tuple(
                 tuple(
-                    t for t, ends in each.items() if unreported or ends[0] != ends[1] or ends != values[t - first]
+                    t
+                    for t, ends in each.items()
+                    if unreported or ends[0] != ends[1] or ends != values[t - first]
                 )
                 for each, (first, values) in zip(before, self._rest, strict=True)
             )

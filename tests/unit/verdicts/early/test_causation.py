@@ -167,3 +167,13 @@ def test_cost_under_until_follows_the_runs_of_the_result_and_not_the_bound():
 
     short, long = (min(cost(bound) for _ in range(3)) for bound in (100, 1000))
     assert long < 4 * short
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_a_run_without_end_ended_where_windows_reached_beyond_it(backend):
+    text = "always[2:5](historically[2:4](once[2:inf] z))"
+    monitor = rtamt.parse(text, semantics="boolean", backend=backend).monitor(verdict="causation")
+    for t, z in enumerate([-4.0, 0.5, 0.0, -1.0, 0.5]):
+        monitor.update(t, z=z)
+    assert [(run.begin, run.end) for run in monitor.runs()] == [(5.0, None)]
+    assert monitor.causation(60) == rtamt.Causation(inf, inf)

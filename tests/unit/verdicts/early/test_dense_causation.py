@@ -144,3 +144,13 @@ def test_many_samples_keep_little_memory_and_the_identity(formula):
             assert upper[k] == bounds.interval(k).upper
         before = monitor.memory if t == 1500 else before
     assert monitor.memory <= before + 2**12
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_requirements_over_different_variables_caused_nothing_behind_the_end(backend):
+    spec = rtamt.parse("require A: z >= 1\nrequire B: x >= 2", time=rtamt.Dense("1ms"), backend=backend)
+    monitor = spec.monitor(verdict="causation", time_unit="ms")
+    for t in (1, 2):
+        monitor.update(t, z=-1.0, x=1.5)
+    monitor.finish()
+    assert monitor.causation(3) == rtamt.Causation(-2.0, -2.0)

@@ -290,3 +290,15 @@ def test_each_sample_has_the_bounds_of_its_last_run():
         last.items()
     )
     assert [run[:2] for run in latest(runs)] == [(0, 0), (1, 2), (3, 3), (4, 4), (5, 12), (20, 20)]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("watch", [[], ["A"], ["B"], ["A", "B"]])
+def test_bounds_at_the_start_never_narrow_beside_watched_requirements(watch, backend):
+    text = "require A: eventually[1:3](y <= 1)\nrequire B: always[0:3](x > -2)"
+    monitor = rtamt.parse(text, backend=backend).monitor(verdict="interval", at="start", watch=watch)
+    found = []
+    for t, (x, y) in enumerate([(-0.5, 2.5), (1.0, 1.0), (2.0, -0.5), (2.0, -0.5)]):
+        monitor.update(t, x=x, y=y)
+        found.append(monitor.interval())
+    assert found == [rtamt.Interval(-inf, 1.5)] * 3 + [rtamt.Interval(1.5, 1.5)]

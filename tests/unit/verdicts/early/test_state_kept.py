@@ -28,7 +28,7 @@ def monitor_of(text, time, backend, **settings):
 @backends
 def test_a_copy_reports_the_changes_of_the_last_update(backend, time, twin):
     text = "require A: eventually[0:1](x >= 3)\nrequire B: x >= 1"
-    monitor = monitor_of(text, time, backend, verdict="interval", watch=["A", "B"], lateness="0.5s")
+    monitor = monitor_of(text, time, backend, verdict="interval", watch=["A", "B"])
     for t, x in enumerate([(4, 5), 1, (0, 2)]):
         monitor.update(t, x=x)
     other = twin(monitor)
