@@ -58,7 +58,7 @@ def test_a_formula_of_c2po(formula: str, expected: str) -> None:
     ("formula", "reason"),
     [
         ("values[3] > 1", "'values' is of the type int[10], which is not covered"),
-        ("rate(x) > 1", "'rate' is not declared"),
+        ("rate(x) > 1", "'rate' is not a function"),
         ("a S[1,3] b", "'S' with a lower bound above 0 is not covered"),
         ("a &&", "expected an operand after '&&'"),
     ],
