@@ -14,6 +14,8 @@ using rtamt::fleet::KeySpan;
 using rtamt::fleet::Output;
 
 struct rtamt_fleet {
+    rtamt_fleet(Metadata&& of, Fleet&& made) : metadata(std::move(of)), fleet(std::move(made)) {}
+
     Metadata metadata;
     Fleet fleet;
     std::string message;
@@ -66,34 +68,6 @@ void update(rtamt_fleet& handle, const KeySpan& keys, const double* times,
     }
 }
 
-void drop(rtamt_fleet& handle, const KeySpan& keys) {
-    if (const auto missing = handle.fleet.drop(keys)) {
-        throw std::invalid_argument("There is no key " + name_of(keys, *missing) + ".");
-    }
-}
-
-// A fleet as `make` makes it of a program, the names of its inputs and its settings.
-template <class Make>
-[[nodiscard]] rtamt_status create(const void* program, std::size_t size, std::size_t capacity,
-                                  double tolerance, rtamt_fleet** fleet, char* message,
-                                  std::size_t room, Make&& make) {
-    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
-    if (fleet == nullptr) {
-        say(no_place);
-        return RTAMT_REFUSED;
-    }
-    *fleet = nullptr;
-    return guarded(
-        [&] {
-            Program parsed = Program::parse(bytes(program, size));
-            Metadata metadata = Metadata::parse(parsed);
-            const Fleet::Settings settings = settings_of(metadata, capacity, tolerance);
-            Fleet made = make(std::move(parsed), metadata.inputs, settings);
-            *fleet = new rtamt_fleet{std::move(metadata), std::move(made), {}, "", {}, {}, {}};
-        },
-        say);
-}
-
 } // namespace
 
 extern "C" {
@@ -143,13 +117,14 @@ rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* const* keys
 }
 
 rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count) {
-    return error_boundary(fleet, [&](rtamt_fleet& self) { drop(self, span_of(keys, count)); });
+    return error_boundary(fleet,
+                          [&](rtamt_fleet& self) { drop(self.fleet, span_of(keys, count)); });
 }
 
 rtamt_status rtamt_fleet_drop_text(rtamt_fleet* fleet, const char* const* keys, size_t count) {
     return error_boundary(fleet, [&](rtamt_fleet& self) {
         std::vector<std::string_view> held;
-        drop(self, span_of(keys, count, held));
+        drop(self.fleet, span_of(keys, count, held));
     });
 }
 

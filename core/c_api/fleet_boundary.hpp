@@ -1,4 +1,4 @@
-// What the C API of fleets and streams shares: keys, and the sentences of errors.
+// What the C API of fleets and streams shares: making handles, keys, and the sentences of errors.
 #pragma once
 
 #include "../fleet/fleet.hpp"
@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -122,6 +123,36 @@ template <class Handle, class Work>
         throw std::invalid_argument("The tolerance must be 0 or more.");
     }
     return {metadata.seconds(), tolerance, false, capacity};
+}
+
+// A handle of what `make` makes of a program, the names of its inputs and its settings.
+template <class Handle, class Make>
+[[nodiscard]] rtamt_status create(const void* program, std::size_t size, std::size_t capacity,
+                                  double tolerance, Handle** handle, char* message,
+                                  std::size_t room, const Make& make) {
+    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
+    if (handle == nullptr) {
+        say(no_place);
+        return RTAMT_REFUSED;
+    }
+    *handle = nullptr;
+    return guarded(
+        [&] {
+            Program parsed = Program::parse(bytes(program, size));
+            Metadata metadata = Metadata::parse(parsed);
+            const fleet::Fleet::Settings settings = settings_of(metadata, capacity, tolerance);
+            auto made = make(std::move(parsed), metadata.inputs, settings);
+            *handle = new Handle{std::move(metadata), std::move(made)};
+        },
+        say);
+}
+
+// Drops keys of a fleet or a stream.
+template <class Keyed>
+void drop(Keyed& keyed, const fleet::KeySpan& keys) {
+    if (const auto missing = keyed.drop(keys)) {
+        throw std::invalid_argument("There is no key " + name_of(keys, *missing) + ".");
+    }
 }
 
 } // namespace rtamt::c_api

@@ -20,6 +20,8 @@ using rtamt::fleet::Rejected;
 using rtamt::fleet::Stream;
 
 struct rtamt_stream {
+    rtamt_stream(Metadata&& of, Stream&& made) : metadata(std::move(of)), stream(std::move(made)) {}
+
     Metadata metadata;
     Stream stream;
     std::string message;
@@ -82,36 +84,8 @@ void discard(rtamt_stream& handle, const KeySpan& key, double time) {
     }
 }
 
-void drop(rtamt_stream& handle, const KeySpan& keys) {
-    if (const auto missing = handle.stream.drop(keys)) {
-        throw std::invalid_argument("There is no key " + name_of(keys, *missing) + ".");
-    }
-}
-
 [[nodiscard]] rtamt_stream_sample sample_of(std::int64_t key, const char* text, double time) {
     return {key, text, time};
-}
-
-// A stream as `make` makes it of a program, the names of its inputs and its settings.
-template <class Make>
-[[nodiscard]] rtamt_status create(const void* program, std::size_t size, std::size_t capacity,
-                                  double tolerance, rtamt_stream** stream, char* message,
-                                  std::size_t room, Make&& make) {
-    const auto say = [&](const char* sentence) { copy_message(sentence, message, room); };
-    if (stream == nullptr) {
-        say(no_place);
-        return RTAMT_REFUSED;
-    }
-    *stream = nullptr;
-    return guarded(
-        [&] {
-            Program parsed = Program::parse(bytes(program, size));
-            Metadata metadata = Metadata::parse(parsed);
-            const Fleet::Settings settings = settings_of(metadata, capacity, tolerance);
-            Stream made = make(std::move(parsed), metadata.inputs, settings);
-            *stream = new rtamt_stream{std::move(metadata), std::move(made), {}, "", {}, {}};
-        },
-        say);
 }
 
 } // namespace
@@ -236,13 +210,14 @@ rtamt_status rtamt_stream_discard_text(rtamt_stream* stream, const char* key, do
 }
 
 rtamt_status rtamt_stream_drop(rtamt_stream* stream, const int64_t* keys, size_t count) {
-    return error_boundary(stream, [&](rtamt_stream& self) { drop(self, span_of(keys, count)); });
+    return error_boundary(stream,
+                          [&](rtamt_stream& self) { drop(self.stream, span_of(keys, count)); });
 }
 
 rtamt_status rtamt_stream_drop_text(rtamt_stream* stream, const char* const* keys, size_t count) {
     return error_boundary(stream, [&](rtamt_stream& self) {
         std::vector<std::string_view> held;
-        drop(self, span_of(keys, count, held));
+        drop(self.stream, span_of(keys, count, held));
     });
 }
 
