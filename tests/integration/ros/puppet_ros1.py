@@ -3,8 +3,10 @@
 import json
 import sys
 import threading
+import xmlrpc.client
 
 import genpy
+import rosgraph
 import roslib.message
 import rospy
 
@@ -63,8 +65,33 @@ class Puppet:
         )
 
     def peers(self, topic):
-        ends = (self.publishers.get(topic, (None,))[0], self.subscribers.get(topic))
-        return min(end.get_num_connections() for end in ends if end is not None)
+        """Return how many publishers and subscribers would miss nothing that is sent on a topic from now on."""
+        found = []
+        if topic in self.publishers:
+            found.append(self.publishers[topic][0].get_num_connections())
+        if topic in self.subscribers:
+            found.append(self.senders(topic))
+        return min(found)
+
+    def senders(self, topic):
+        """Return how many publishers of a topic list this node among those that they send to.
+
+        The count of the subscriber does not say that: a connection stands at its end a moment before the publisher
+        has it in its list, and what is published in between is lost.
+        """
+        topic = rospy.resolve_name(topic)
+        master = rosgraph.Master(rospy.get_name())
+        publishers = dict(master.getSystemState()[0]).get(topic, [])
+        return sum(self.sends(master.lookupNode(node), topic) for node in publishers)
+
+    def sends(self, address, topic):
+        """Return whether the node at an address sends a topic to this node."""
+        with xmlrpc.client.ServerProxy(address) as node:
+            _, _, connections = node.getBusInfo(rospy.get_name())
+        return any(
+            peer == rospy.get_name() and direction == "o" and of == topic and connected
+            for _, peer, direction, _, of, connected, *_ in connections
+        )
 
     def publish(self, topic, fields):
         publisher, cls = self.publishers[topic]

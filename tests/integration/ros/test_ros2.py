@@ -80,6 +80,8 @@ def test_two_processes_on_dds_alone_in_dense_time(dds):
     node = dds.node("--time", "dense", "--stale", "0")
     for topic in ("rtamt/req", "rtamt/gnt", "amcl_pose", "rtamt/rob", "rtamt/rob/verdict", "rtamt/sure"):
         wait_for(lambda topic=topic: puppet.ask(do="peers", topic=topic)["answer"], f"the node on {topic}")
+    # The puppet knows the node's writers; a message on its last subscription proves that they know all its readers.
+    puppet.wait_for("/diagnostics")
 
     for at, gnt in ((10, 1.0), (10.5, 4.0), (11.25, 0.0), (13, 0.0)):
         stamped(puppet, "rtamt/gnt", gnt, at)
