@@ -203,9 +203,19 @@ class PythonDenseEarlyMonitor:
 
     @property
     def complete(self) -> int:
-        """The tick up to which all inputs are as well known as they will ever be, NEVER before the trace starts."""
+        """The tick up to which all inputs are as well known as they will ever be, NEVER before all traces start.
+
+        What a trace does not begin with counts as known.
+        """
         knowledge = self._knowledge(self._came)
-        return NEVER if knowledge.start is None else knowledge.complete
+        complete = FOREVER
+        for output in self._formulas:
+            for _, names in output:
+                own = knowledge.of(names)
+                if own.start is None:
+                    return NEVER
+                complete = min(complete, max(own.complete, own.start - 1))
+        return complete
 
     def place(self, tick: int) -> int:
         """The position of a time, which is the tick itself."""

@@ -53,7 +53,9 @@ class PythonEarlyMonitor:
         self._lateness, self._verdict, self._causes = lateness, verdict, causes
         self._lags = tuple(lags)
         self._known: dict[int, dict[str, Pair]] = {}
-        self._times: dict[int, float] = {}
+        #: The times of samples that do not come a whole number of periods after the last such sample.
+        self._anchors: dict[int, float] = {}
+        self._last = 0.0  # of the newest sample
         self.samples, self.newest, self.closed, self.finished = 0, -1, -1, False
         self._reported: list[dict[int, Any]] = [{} for _ in self._outputs]
         # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
@@ -82,8 +84,9 @@ class PythonEarlyMonitor:
         known = self._known.setdefault(index, {})
         known.update({self._names[number]: (low, high) for number, low, high in values})
         if index > self.newest:
-            self._times[index] = time
-            self.newest = index
+            if not self._anchors or self.time(index) != time:
+                self._anchors[index] = time
+            self.newest, self._last = index, time
         self.samples += 1
         late = 0 if self._lateness is None else self._lateness + 1
         self.closed = max(self.closed, self.newest - late)
@@ -110,7 +113,7 @@ class PythonEarlyMonitor:
 
     def _bounds(self, formula: Formula) -> Enclosure:
         if id(formula) not in self._found:
-            start = self._times[0] if self._times else 0.0
+            start = self._anchors.get(0, 0.0)
             known = self._knowledge(finished=self.finished and self.newest >= 0)
             self._found[id(formula)] = bounds(formula, known, self._period, start)
         return self._found[id(formula)]
@@ -208,7 +211,7 @@ class PythonEarlyMonitor:
     def watermark(self, time: float) -> None:
         """Nothing at or before a time will come."""
         if self.newest >= 0:
-            steps = floor((time - self._times[self.newest]) / float(self._period) + self._tolerance)
+            steps = floor((time - self._last) / float(self._period) + self._tolerance)
             before, self.closed = self.closed, max(self.closed, self.newest + steps)
             self._answer_anew()
             try:
@@ -268,7 +271,7 @@ class PythonEarlyMonitor:
             n += first == last
         formula = self._start if output is None else self._outputs[output]
         supposed = Knowledge(columns, n, ranges, closed=known.closed)
-        start = self._times[0] if self._times else 0.0
+        start = self._anchors.get(0, 0.0)
         return self._pair(bounds(formula, supposed, self._period, start), sample)
 
     def bounds(self, output: int, sample: int) -> Pair | None:
@@ -296,7 +299,7 @@ class PythonEarlyMonitor:
         """The index of a time, or None."""
         if not isfinite(time) or self.newest < 0:
             return 0 if isfinite(time) else None
-        period, last = float(self._period), self._times[self.newest]
+        period, last = float(self._period), self._last
         steps = round((time - last) / period)
         return None if abs(time - last - steps * period) > self._tolerance * period else self.newest + steps
 
@@ -307,13 +310,13 @@ class PythonEarlyMonitor:
 
     def time(self, sample: int) -> float:
         """The time of a sample."""
-        earlier = max((i for i in self._times if i <= sample), default=min(self._times, default=0))
-        return self._times.get(earlier, 0.0) + (sample - earlier) * float(self._period)
+        earlier = max((i for i in self._anchors if i <= sample), default=min(self._anchors, default=0))
+        return self._anchors.get(earlier, 0.0) + (sample - earlier) * float(self._period)
 
     @property
     def earliest(self) -> float:
         """The first time that may still be reported."""
-        return self._times[0]
+        return self._anchors[0]
 
     def held(self, output: int) -> int:
         """The first sample whose bounds are held: the last one that is final."""
@@ -323,7 +326,8 @@ class PythonEarlyMonitor:
         """The state after the samples so far."""
         kept = (
             "_known",
-            "_times",
+            "_anchors",
+            "_last",
             "samples",
             "newest",
             "closed",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
@@ -22,7 +23,7 @@ from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.early.prediction import Later, later_samples
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 #: The first and the last sample with the same bounds, and these.
 Run: TypeAlias = "tuple[int, int, float, float]"
@@ -58,6 +59,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         # Samples that came before it is known where the trace starts.
         self._early: tuple[Any, ...] = ()
         self._at_end: Interval | None = None
+        # The state of the back end before a call that takes several steps, any of which may fail.
+        self._before: bytes | None = None
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -89,6 +92,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             open_here = [k for k in numbers if len(set(backend.known(k, place))) > 1]
             if not open_here:
                 continue
+            self._keep()
             ahead = max(place - backend.newest, 0)
             time = backend.time(place - ahead) + ahead * float(self._step)
             observations = tuple((k, 0.0, 0.0) for k in open_here)
@@ -99,6 +103,28 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 self._noted = {**self._noted, output: changed}
             if self._replays:
                 self._events = (*self._events, (time, place, observations))
+
+    @contextmanager
+    def _whole(self) -> Iterator[None]:
+        """Undo what a call has done if one of its steps fails; of the back end, what followed :meth:`_keep`."""
+        remembered = {name: getattr(self, name) for name in self._remembered}
+        try:
+            yield
+        except BaseException:
+            self.__dict__.update(remembered)
+            backend = inner_of(self._backend)
+            if self._before is not None:
+                backend = self._session.open()
+                backend.restore(self._before)
+            self._connect(backend)
+            raise
+        finally:
+            self._before = None
+
+    def _keep(self) -> None:
+        """Keep the state of the back end before the first of several steps."""
+        if self._before is None:
+            self._before = self._backend.state()
 
     @property
     def _count(self) -> int:
@@ -117,11 +143,13 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             if self._late is None:
                 self._check_order(seconds)
                 self._backend.take(seconds, *self._row(known), index)
-            elif begun:
-                self._check_late(seconds)
-                self._learn(seconds, known)
             else:
-                self._begin(seconds, known)
+                with self._whole():
+                    if begun:
+                        self._check_late(seconds)
+                        self._learn(seconds, known)
+                    else:
+                        self._begin(seconds, known)
         except self._refused:
             raise in_use() from None
         except self._undefined as error:
@@ -130,33 +158,23 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
         """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
-        before, self._early = self._early, (*self._early, (time, known))
+        self._keep()
+        self._early = (*self._early, (time, known))
         times = [time for time, _ in self._early]
         assert self._late is not None
         if round((max(times) - min(times)) / float(self._step)) > self._late:
-            try:
-                self._start()
-            except BaseException:
-                self._early = before
-                raise
+            self._start()
 
     def _start(self) -> None:
         """Take the samples that were kept; all that they changed counts as changed by the last of them."""
+        self._keep()
         early = sorted(self._early, key=lambda sample: sample[0])
-        kept = (self._events, self._snapshots)
         noted: dict[int, tuple[Any, ...]] = dict.fromkeys(self._outputs, ())
-        try:
-            for time, known in early:
-                if self._backend.newest >= 0:
-                    self._check_late(time)
-                self._learn(time, known)
-                noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
-        except BaseException as error:
-            self._connect(self._session.open())
-            self._events, self._snapshots = kept
-            if isinstance(error, self._undefined):
-                raise self._no_value(error) from None
-            raise
+        for time, known in early:
+            if self._backend.newest >= 0:
+                self._check_late(time)
+            self._learn(time, known)
+            noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
         self._early = ()
         self._note(noted)
         self._retracted = None  # nothing was reported that a correction could retract
@@ -204,7 +222,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if self._finished:
             raise self._is_finished()
         try:
-            self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
+            with self._whole():
+                self._watermark(self._seconds(time) - (float(self._lateness) if late else 0))
         except self._undefined as error:
             raise self._no_value(error) from None
 
@@ -306,38 +325,43 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
         if not self._finished:
-            unreported = bool(self._early)
-            if unreported:
-                self._start()
-            backend = self._backend
-            held = [backend.held(output) for output in self._outputs]
-            before = [
-                {
-                    t: backend.bounds(output, t)
-                    for t in range(first if unreported else self._first_open(output), backend.newest + 1)
-                }
-                for output, first in zip(self._outputs, held, strict=True)
-            ]
-            if self._late is not None:
-                self._fill(backend.newest)
-            rest, at_end = self._end()
-            self._at_end = None if at_end is None else Interval(*at_end)
-            self._rest = tuple(
-                (kept, values[kept - first :]) for kept, (first, values) in zip(held, rest, strict=True)
-            )
-            # In one class of formulas the end changes bounds that had met.
-            self._open_at_end = tuple(
-                tuple(
-                    t
-                    for t, ends in each.items()
-                    if unreported or ends[0] != ends[1] or ends != values[t - first]
-                )
-                for each, (first, values) in zip(before, self._rest, strict=True)
-            )
-            self._finished = True
+            try:
+                with self._whole():
+                    self._finish()
+            except self._undefined as error:
+                raise self._no_value(error) from None
         if self.at == "start":
             return []
         return self._changes(0)
+
+    def _finish(self) -> None:
+        unreported = bool(self._early)
+        if unreported:
+            self._start()
+        backend = self._backend
+        held = [backend.held(output) for output in self._outputs]
+        before = [
+            {
+                t: backend.bounds(output, t)
+                for t in range(first if unreported else self._first_open(output), backend.newest + 1)
+            }
+            for output, first in zip(self._outputs, held, strict=True)
+        ]
+        if self._late is not None:
+            self._fill(backend.newest)
+        rest, at_end = self._end()
+        self._at_end = None if at_end is None else Interval(*at_end)
+        self._rest = tuple(
+            (kept, values[kept - first :]) for kept, (first, values) in zip(held, rest, strict=True)
+        )
+        # In one class of formulas the end changes bounds that had met.
+        self._open_at_end = tuple(
+            tuple(
+                t for t, ends in each.items() if unreported or ends[0] != ends[1] or ends != values[t - first]
+            )
+            for each, (first, values) in zip(before, self._rest, strict=True)
+        )
+        self._finished = True
 
 
 def latest(runs: Sequence[Run]) -> list[Run]:

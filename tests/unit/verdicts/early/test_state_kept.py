@@ -105,3 +105,58 @@ def test_a_watermark_that_leaves_a_value_undefined_is_rejected(value, backend):
         with pytest.raises(rtamt.EvaluationError) as error:
             monitor.watermark(1)
         assert str(error.value).startswith("'sqrt(x)' has no value at sample 1, time 1 s: ")
+
+
+def _told(monitor):
+    return monitor.interval(), monitor.changes(), [monitor.interval(t) for t in range(3)], monitor.samples
+
+
+@backends
+@pytest.mark.parametrize("end", [lambda each: each.watermark(2), lambda each: each.finish()])
+def test_a_failing_watermark_or_end_fills_no_missing_sample_in(end, backend):
+    text = "input float x\ninput float y\n(valid(x) -> y >= 1) and sqrt(y) >= 1"
+    monitor = monitor_of(text, "discrete", backend, verdict="interval", lateness=3)
+    for t, y in enumerate([4, 2, (-2, -1), 1, 1]):
+        monitor.update(t, y=y)  # of x it is open whether it comes
+    before = _told(monitor)
+    for _ in range(2):
+        with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\(y\)' has no value at sample 2, time 2 s: "):
+            end(monitor)
+        assert _told(monitor) == before
+    monitor.update(1, x=1)  # it may still come
+    assert monitor.interval(1) == rtamt.Interval(2**0.5 - 1, 2**0.5 - 1)
+
+
+@backends
+def test_a_failing_watermark_does_not_start_the_trace(backend):
+    monitor = monitor_of("sqrt(x) >= 1", "discrete", backend, verdict="interval", lateness=3)
+    monitor.update(1, x=(-2, -1))
+    for _ in range(2):
+        with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\(x\)' has no value at sample 0, time 1 s: "):
+            monitor.watermark(1)
+        assert monitor.samples == 0
+    monitor.update(0, x=4)
+    monitor.watermark(0)
+    assert monitor.interval(0) == rtamt.Interval(1.0, 1.0)
+
+
+@backends
+def test_what_precedes_a_trace_keeps_no_other_requirement_open(backend):
+    text = "require A: always[0:0.002](z >= 0)\nrequire B: z < y\nrequire C: x <= 0.5"
+    monitor = monitor_of(text, rtamt.Dense("1ms"), backend, verdict="interval")
+    for t, x in [(0, (-3.5, -3)), (0.002, -1), (0.004, 4)]:
+        monitor.update(t, x=x)
+    monitor.update(0.001, y=1)
+    monitor.update(0.004, z=1)  # A and B start here, whatever y may be before
+    first = monitor.changes()[0]
+    assert (first.begin, first.end, first.final) == (0.0, 0.002, True)
+
+
+@backends
+def test_a_late_sample_has_the_time_that_follows_from_the_samples_before_it(backend):
+    monitor = rtamt.parse("x >= 0", period="100ms", backend=backend).monitor(
+        verdict="interval", lateness="1s"
+    )
+    for k in (0, 1, 2, 3, 4, 5, 12, 6):
+        monitor.update(k / 10, x=k)
+    assert [(each.begin, each.end) for each in monitor.changes()] == [(6 * 0.1, 6 * 0.1)]  # not 0.6
