@@ -11,6 +11,11 @@
 
 namespace rtamt::early {
 
+// No minus before a zero, which would depend on the order of samples and on the engine.
+[[nodiscard]] inline Bounds unsigned_zeros(const Bounds& bounds) noexcept {
+    return {bounds.lower + 0.0, bounds.upper + 0.0};
+}
+
 struct BoundChange {
     Tick l;
     Tick r;

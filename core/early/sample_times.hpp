@@ -62,6 +62,7 @@ class SampleTimes {
     // The index of the newest sample, -1 before the first.
     [[nodiscard]] Tick newest() const noexcept { return newest_; }
     [[nodiscard]] double last() const noexcept { return last_; }
+    [[nodiscard]] double period() const noexcept { return period_; }
     // The earliest time that is kept.
     [[nodiscard]] double earliest() const noexcept {
         return anchors_.empty() ? last_ : anchors_.front().time;

@@ -37,10 +37,6 @@ using EarlyCauses = std::tuple<std::vector<EarlyCause>, std::vector<std::uint32_
 [[nodiscard]] early::CauseGraph causes_of(const EarlyCauses& causes);
 // What update() returns, by the class of the causes; no minus before a zero.
 [[nodiscard]] ResultClass<2> causation_of(const EarlyCauses& causes);
-// No minus before a zero, which would depend on the order of samples and on the engine.
-[[nodiscard]] inline Bounds unsigned_zeros(const Bounds& bounds) noexcept {
-    return {bounds.lower + 0.0, bounds.upper + 0.0};
-}
 [[nodiscard]] std::pair<double, double> caused_of(const Bounds& caused);
 [[nodiscard]] PyObject* made_of(const ResultClass<2>& causation, const Bounds& caused) noexcept;
 

@@ -91,18 +91,22 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
                 double period, double tolerance, std::optional<Tick> lateness,
                 const nb::object& verdict, bool replays, const std::optional<EarlyCauses>& causes,
                 const std::optional<std::pair<nb::object, nb::object>>& change, Tick zone) {
-                EarlySettings settings{
-                    period,  tolerance,    lateness.has_value(), lateness.value_or(0),
-                    replays, std::nullopt, std::nullopt,         zone};
+                early::DiscreteSettings own{
+                    std::move(outputs), items_of(at_start), bounds_of(ranges), period, tolerance,
+                    lateness,           !verdict.is_none(), std::nullopt,      zone};
+                EarlyMonitor::Settings settings{replays, std::nullopt, std::nullopt, std::nullopt};
                 if (!verdict.is_none()) {
                     settings.verdict.emplace(verdict,
                                              std::array{"time", "satisfied", "decided_at"});
                 }
+                if (causes) {
+                    own.causes = causes_of(*causes);
+                    settings.causation.emplace(causation_of(*causes));
+                }
                 if (change) settings.change.emplace(change->first, change->second);
-                new (self)
-                    EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
-                                 std::move(outputs), items_of(at_start), bounds_of(ranges), names,
-                                 ignored, types, std::move(settings), causes, exceptions);
+                new (self) EarlyMonitor(graph_of(nodes, static_cast<std::uint32_t>(names.size())),
+                                        std::move(own), names, ignored, types, std::move(settings),
+                                        exceptions);
             },
             nb::arg("nodes"), nb::arg("outputs"), nb::arg("at_start"), nb::arg("ranges"),
             nb::arg("names"), nb::arg("ignored"), nb::arg("types"), nb::arg("period"),

@@ -4,13 +4,7 @@
 // caller brings it in the form of take() or learn().
 #pragma once
 
-#include "../early/bound_changes.hpp"
-#include "../early/bounds_at_start.hpp"
-#include "../early/bounds_engine.hpp"
-#include "../early/causation.hpp"
-#include "../early/eager_verdicts.hpp"
-#include "../early/sample_times.hpp"
-#include "../early/zone_engine.hpp"
+#include "../early/discrete_monitor.hpp"
 #include "change_class.hpp"
 #include "early_backend.hpp"
 #include "failures.hpp"
@@ -29,24 +23,17 @@
 
 namespace rtamt::python {
 
-struct EarlySettings {
-    double period = 0;
-    double tolerance = 0;
-    bool late = false;                               // samples may come in any order
-    early::Tick lateness = 0;                        // by how many samples at most
-    bool replays = false;                            // update() takes nothing by itself
-    std::optional<ResultClass<3>> verdict;           // of what update() returns; none: bounds
-    std::optional<ChangeClass> change;               // of what reported() returns
-    early::Tick zone = early::ZoneEngine::crossover; // up to where bounds are computed anew
-};
-
 class EarlyMonitor : public EarlyBackend {
   public:
-    EarlyMonitor(const early::Graph& graph, std::vector<std::uint32_t> outputs,
-                 const std::vector<early::Item>& items, std::vector<Bounds> ranges,
+    struct Settings {
+        bool replays = false;                    // update() takes nothing by itself
+        std::optional<ResultClass<3>> verdict;   // of what update() returns; none: bounds
+        std::optional<ResultClass<2>> causation; // likewise
+        std::optional<ChangeClass> change;       // of what reported() returns
+    };
+    EarlyMonitor(const early::Graph& graph, early::DiscreteSettings monitor,
                  const std::vector<nb::str>& names, const nb::object& ignored,
-                 const nb::dict& types, EarlySettings settings,
-                 const std::optional<EarlyCauses>& causes, Exceptions exceptions);
+                 const nb::dict& types, Settings settings, Exceptions exceptions);
 
     // A list of verdicts, or None; null, with a Python exception set, is a refusal.
     [[nodiscard]] PyObject* update(PyObject* time, const Named& values) noexcept override;
@@ -93,60 +80,32 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] nb::bytes state();
     void restore(const nb::bytes& state);
 
-    [[nodiscard]] std::int64_t samples() const { return samples_; }
-    [[nodiscard]] early::Tick newest() const { return times_.newest(); }
-    [[nodiscard]] double earliest() const { return times_.earliest(); }
-    [[nodiscard]] early::Tick closed() const { return closed_; }
-    [[nodiscard]] bool finished() const { return finished_; }
-    [[nodiscard]] bool computes_zone() const { return zone_.has_value(); }
-    [[nodiscard]] std::size_t state_bytes() const;
+    [[nodiscard]] std::int64_t samples() const { return monitor_.samples(); }
+    [[nodiscard]] early::Tick newest() const { return monitor_.newest(); }
+    [[nodiscard]] double earliest() const { return monitor_.earliest(); }
+    [[nodiscard]] early::Tick closed() const { return monitor_.closed(); }
+    [[nodiscard]] bool finished() const { return monitor_.finished(); }
+    [[nodiscard]] bool computes_zone() const { return monitor_.computes_zone(); }
+    [[nodiscard]] std::size_t state_bytes() const { return monitor_.bytes(); }
 
   private:
-    using Failure = early::BoundsEngine::Failure;
+    using Failure = early::DiscreteMonitor::Failure;
 
-    early::BoundsEngine engine_;
-    std::optional<early::ZoneEngine> zone_; // in its place where windows are short
-    std::vector<std::uint32_t> outputs_;
-    std::vector<early::EagerVerdicts> decisions_; // by output
-    std::optional<early::BoundsAtStart> at_start_;
-    std::optional<early::Causes> causes_;
-    std::optional<ResultClass<2>> causation_; // of what update() returns
-    early::SampleTimes times_;
-    std::vector<Bounds> ranges_;
-    EarlySettings settings_;
+    early::DiscreteMonitor monitor_;
+    Settings settings_;
     Exceptions exceptions_;
     UsageGuard guard_;
     PlainNumbers numbers_;
     Names names_;
     std::vector<std::uint32_t> steps_before_; // by node
     std::vector<double> row_;
-    std::vector<bool> given_;
-    std::vector<std::vector<early::Decision>> news_; // by output
-    std::vector<early::BoundChanges> changes_;       // by output
-    std::vector<early::Tick> open_;                  // by output, the first tick without a verdict
-    std::vector<early::Tick> kept_; // by output, the first tick whose bounds the end still gives
-    std::vector<early::Tick> wanted_;
-    std::vector<early::BoundsEngine::Observation> observations_;
-    early::Tick closed_ = -1; // nothing up to here will come
-    std::int64_t samples_ = 0;
-    bool finished_ = false;
+    std::vector<early::DiscreteMonitor::Observation> observations_;
 
-    void transfer(Snapshot& snapshot);
-    [[nodiscard]] bool in_order(early::Tick index) const noexcept;
     [[nodiscard]] PyObject* fail(const Failure& failure, early::Tick index, double time) noexcept;
-    [[nodiscard]] std::optional<Failure> observe(early::Tick index);
-    template <class Value>
-    [[nodiscard]] std::optional<Failure> row(early::Tick index, const std::vector<Value>& values);
-    [[nodiscard]] std::vector<early::BoundChange> runs(std::size_t output) const;
-    [[nodiscard]] early::Tick closed_after(early::Tick index) const noexcept;
-    [[nodiscard]] early::Tick final_up_to() const noexcept;
-    void note(early::Tick before);
-    [[nodiscard]] PyObject* advance(early::Tick index, double time);
-    [[nodiscard]] early::Tick lag(std::size_t output) const;
-    void settle();
-    [[nodiscard]] PyObject* new_data(std::size_t output) noexcept;
-    [[nodiscard]] PyObject* result() noexcept;
-    nb::object checked(PyObject* result);
+    void require_output(std::size_t output) const;
+    [[nodiscard]] PyObject* decided(std::size_t output) const noexcept;
+    [[nodiscard]] PyObject* result() const noexcept;
+    nb::object checked(PyObject* result) const;
     void require(std::int64_t after);
 };
 

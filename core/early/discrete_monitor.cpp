@@ -1,0 +1,303 @@
+#include "discrete_monitor.hpp"
+
+#include <algorithm>
+#include <ranges>
+#include <stdexcept>
+
+namespace rtamt::early {
+
+namespace {
+
+// How many samples come between two looks at what is not needed any more.
+constexpr std::int64_t pause = 64;
+
+[[nodiscard]] std::optional<BoundsAtStart> at_start_of(std::vector<Item> items,
+                                                       const BoundsEngine& engine, bool follows) {
+    if (items.empty()) return std::nullopt;
+    return BoundsAtStart(std::move(items), engine, follows);
+}
+
+} // namespace
+
+DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
+    : engine_(graph, settings.ranges, settings.lateness.has_value()),
+      outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
+      at_start_(at_start_of(settings.at_start, engine_, settings.causes.has_value())),
+      times_(settings.period, settings.tolerance), ranges_(std::move(settings.ranges)),
+      lateness_(settings.lateness), decides_(settings.decides), news_(outputs_.size()),
+      changes_(outputs_.size()), open_(outputs_.size(), 0), kept_(outputs_.size(), 0),
+      wanted_(engine_.size()) {
+    ranges_.resize(graph.inputs, bounds::anything);
+    for (const std::uint32_t output : outputs_) {
+        if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
+    }
+    if (settings.causes) {
+        causes_.emplace(std::move(*settings.causes), engine_, at_start_.value(), false);
+    } else { // which are of every value, needed or not
+        std::vector<Tick> last(engine_.size(), -1);
+        for (const std::uint32_t output : outputs_)
+            last[output / 2] = forever;
+        if (at_start_) at_start_->limit(last);
+        engine_.limit(last);
+        // What is late may need any tick, and verdicts cost little as they are.
+        if (!late() && !decides_ && !outputs_.empty()) {
+            zone_ = ZoneEngine::of(graph, outputs_, settings.at_start, ranges_, settings.zone);
+        }
+    }
+    // What is known before any sample came, such as the truth of constants, waits for the first.
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        waiting_[i].begin(engine_, outputs_[i]);
+}
+
+// ---- samples ------------------------------------------------------------------------------------
+
+bool DiscreteMonitor::in_order(Tick index) const noexcept {
+    const Tick newest = times_.newest();
+    return newest < 0 || index == newest + 1 || (index > newest && index - 1 <= closed_);
+}
+
+template <class Value>
+std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
+                                                             std::span<const Value> row) {
+    if (auto failure = zone_ ? zone_->row(index, row) : engine_.row(index, row)) return failure;
+    advance(index, time);
+    return std::nullopt;
+}
+
+template std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
+                                                                      std::span<const double> row);
+template std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
+                                                                      std::span<const Bounds> row);
+
+std::optional<DiscreteMonitor::Failure>
+DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> observations) {
+    engine_.settle_inputs(closed_after(index));
+    if (auto failure = engine_.learn(observations, index)) return failure;
+    advance(index, time);
+    return std::nullopt;
+}
+
+Tick DiscreteMonitor::closed_after(Tick index) const noexcept {
+    const Tick newest = std::max(times_.newest(), index);
+    return std::max(closed_, late() ? newest - *lateness_ - 1 : newest);
+}
+
+std::optional<DiscreteMonitor::Failure> DiscreteMonitor::watermark(double time) {
+    if (times_.newest() < 0) return std::nullopt;
+    const Tick floor = times_.floor(time);
+    if (floor <= closed_) return std::nullopt;
+    if (late()) {
+        if (auto failure = engine_.close_inputs(floor)) return failure;
+    }
+    closed_ = floor;
+    settle();
+    return std::nullopt;
+}
+
+// The engine has taken a sample.
+void DiscreteMonitor::advance(Tick index, double time) {
+    const Tick before = times_.newest();
+    if (index > before) times_.add(index, time);
+    ++samples_;
+    closed_ = closed_after(index);
+    note(before);
+    if (samples_ % pause == 0) settle();
+}
+
+// Reads what the last change of the engine has changed up to the newest sample.
+void DiscreteMonitor::note(Tick before) {
+    if (zone_) return; // it is asked for changes
+    const Tick newest = times_.newest();
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        if (decides_) {
+            news_[i].clear();
+            waiting_[i].collect(engine_, outputs_[i], newest, newest, news_[i]);
+            if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
+            continue;
+        }
+        changes_[i].collect(engine_, outputs_[i], before, newest);
+    }
+    if (at_start_) at_start_->read(engine_);
+    if (causes_) causes_->read(engine_, *at_start_, newest);
+}
+
+Tick DiscreteMonitor::lag(std::size_t output) const noexcept {
+    return std::max<Tick>(0, engine_.horizon(outputs_[output]));
+}
+
+// What is missing behind the newest sample cuts windows if the trace ends now.
+Tick DiscreteMonitor::final_up_to() const noexcept {
+    return std::min(closed_, times_.newest());
+}
+
+void DiscreteMonitor::settle() {
+    std::ranges::fill(wanted_, forever);
+    const Tick closed = final_up_to();
+    Tick oldest = closed;
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        Tick& wanted = wanted_[outputs_[i] / 2];
+        Tick from = 0;
+        if (decides_) {
+            open_[i] = EagerVerdicts::open(engine_, outputs_[i], open_[i]);
+            from = std::max(plus(closed + 1, -lag(i)), open_[i]);
+            oldest = std::min({oldest, waiting_[i].oldest(), oldest_of(news_[i])});
+        } else {
+            from = std::min(held(i), zone_ ? zone_->first_change(i) : changes_[i].first());
+            from = kept_[i] = std::max(kept_[i], from);
+            if (zone_) zone_->drop_before(i, from);
+        }
+        wanted = std::min(wanted, from);
+        oldest = std::min(oldest, wanted);
+    }
+    times_.drop_before(oldest);
+    if (zone_) return;
+    if (at_start_) at_start_->settle(engine_, closed, wanted_);
+    if (causes_) causes_->settle(engine_, closed, wanted_);
+    engine_.settle(closed, wanted_);
+}
+
+std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::finish() {
+    const Tick end = times_.newest() + 1;
+    std::optional<Failure> failure;
+    const auto zone = zone_ ? std::optional(zone_->ended()) : std::nullopt;
+    std::vector<BoundsEngine::Rest> rests;
+    if (!zone) rests = engine_.ended(outputs_, end, &failure);
+    if (failure) return *failure;
+    End last;
+    finished_ = true;
+    if (decides_) {
+        decide_rest(rests, end);
+        return last;
+    }
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        const Tick first = std::min(kept_[i], end);
+        Rest& rest = last.outputs.emplace_back(Rest{first, {}});
+        const auto add = [&](const Bounds& each) { rest.bounds.push_back(unsigned_zeros(each)); };
+        if (zone) {
+            std::ranges::for_each(zone->all_from(i, first), add);
+        } else {
+            std::ranges::for_each(rests[i].bounds | std::views::drop(first - rests[i].first), add);
+        }
+    }
+    if (at_start_ && end > 0) {
+        last.at_start = unsigned_zeros(zone ? zone->at_start() : at_start_->ended(engine_, end));
+    }
+    return last;
+}
+
+// Decides what was open when the trace ended.
+void DiscreteMonitor::decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+        news_[i].clear();
+        const BoundsEngine::Rest& rest = rests[i];
+        for (Tick t = std::max(rest.first, open_[i]); t < end; ++t) {
+            const Bounds was = engine_.at(outputs_[i], t);
+            const Bounds now = rest.bounds[static_cast<std::size_t>(t - rest.first)];
+            if (was.lower > 0 || was.upper < 0) continue;
+            if (now.lower > 0) news_[i].push_back({t, t, end - 1, true});
+            if (now.upper < 0) news_[i].push_back({t, t, end - 1, false});
+        }
+    }
+}
+
+// ---- results ------------------------------------------------------------------------------------
+
+std::optional<Bounds> DiscreteMonitor::at_start() const noexcept {
+    if (!at_start_) return std::nullopt;
+    return unsigned_zeros(zone_ ? zone_->at_start() : at_start_->value());
+}
+
+std::optional<Bounds> DiscreteMonitor::bounds(std::size_t output, Tick sample) const noexcept {
+    if (sample < held(output)) return std::nullopt;
+    return unsigned_zeros(zone_ ? zone_->at(output, sample) : engine_.at(outputs_[output], sample));
+}
+
+Tick DiscreteMonitor::held(std::size_t output) const noexcept {
+    return std::max<Tick>(0, plus(final_up_to() + 1, -lag(output)) - 1);
+}
+
+std::vector<BoundChange> DiscreteMonitor::changes(std::size_t output) const {
+    auto found = zone_ ? zone_->changes(output) : changes_[output].runs(engine_, outputs_[output]);
+    for (BoundChange& run : found)
+        run.bounds = unsigned_zeros(run.bounds);
+    return found;
+}
+
+bool DiscreteMonitor::is_final(std::size_t output, const BoundChange& run) const noexcept {
+    return finished_ || run.bounds.lower == run.bounds.upper ||
+           run.r <= plus(final_up_to(), -lag(output));
+}
+
+Bounds DiscreteMonitor::caused_at_start() const noexcept {
+    return causes_ ? causes_->at_start() : bounds::anything;
+}
+
+Bounds DiscreteMonitor::caused(std::size_t output, Tick sample) const {
+    return causes_.value().at(output, sample);
+}
+
+std::vector<BoundChange> DiscreteMonitor::caused(std::size_t output) const {
+    return causes_.value().runs(output, finished_ ? times_.newest() : forever);
+}
+
+std::variant<Bounds, DiscreteMonitor::Failure>
+DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
+                          std::span<const Supposition> suppositions) {
+    if (zone_) {
+        const ZoneEngine zone = zone_->supposed(suppositions);
+        return unsigned_zeros(output ? zone.at(*output, sample) : zone.at_start());
+    }
+    if (const auto failure = engine_.suppose(suppositions)) return *failure;
+    Bounds value{};
+    if (output) {
+        value = engine_.at(outputs_[*output], sample);
+    } else {
+        BoundsAtStart at_start = at_start_.value();
+        at_start.read(engine_);
+        value = at_start.value();
+    }
+    engine_.revert();
+    return unsigned_zeros(value);
+}
+
+std::size_t DiscreteMonitor::bytes() const noexcept {
+    std::size_t sum = (zone_ ? zone_->bytes() : engine_.bytes()) + times_.bytes();
+    for (const EagerVerdicts& waiting : waiting_)
+        sum += waiting.bytes();
+    return sum;
+}
+
+// ---- state --------------------------------------------------------------------------------------
+
+void DiscreteMonitor::transfer(Snapshot& snapshot) {
+    if (zone_) {
+        zone_->transfer(snapshot);
+    } else {
+        engine_.transfer(snapshot);
+        if (at_start_) at_start_->transfer(snapshot);
+    }
+    if (causes_) causes_->transfer(snapshot);
+    for (EagerVerdicts& waiting : waiting_)
+        waiting.transfer(snapshot);
+    for (BoundChanges& changes : changes_)
+        changes.transfer(snapshot);
+    times_.transfer(snapshot);
+    for (std::vector<Decision>& news : news_) {
+        early::transfer(snapshot, news);
+        for (const Decision& decision : news)
+            snapshot.require(0 <= decision.l && decision.l <= decision.r &&
+                             decision.r <= times_.newest() && decision.at <= times_.newest());
+    }
+    snapshot.values(open_.data(), open_.size());
+    snapshot.values(kept_.data(), kept_.size());
+    snapshot.item(closed_);
+    snapshot.item(samples_);
+    snapshot.item(finished_);
+    snapshot.require(closed_ >= -1 && closed_ < forever);
+    for (const Tick open : open_)
+        snapshot.require(open >= 0);
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        snapshot.require(kept_[i] >= 0 && kept_[i] <= held(i));
+}
+
+} // namespace rtamt::early

@@ -1,0 +1,153 @@
+// Verdicts or bounds before the horizon in discrete time: samples a period apart in, runs of ticks
+// out.
+//
+// Ticks are indices of samples, of which the first is 0. Where windows are short, bounds at all
+// open ticks are computed anew after each sample (zone_engine.hpp); else what changes is followed.
+//
+// Cost: that of the engine. Memory: its runs, and times as SampleTimes keeps them.
+#pragma once
+
+#include "bound_changes.hpp"
+#include "bounds_at_start.hpp"
+#include "bounds_engine.hpp"
+#include "causation.hpp"
+#include "eager_verdicts.hpp"
+#include "sample_times.hpp"
+#include "zone_engine.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace rtamt::early {
+
+struct DiscreteSettings {
+    std::vector<std::uint32_t> outputs; // references
+    std::vector<Item> at_start;         // of the bounds at the start; none: not reported
+    std::vector<Bounds> ranges;         // of the inputs
+    double period = 0;
+    double tolerance = 0;              // in periods
+    std::optional<Tick> lateness;      // by how many samples at most; none: samples come in order
+    bool decides = false;              // verdicts; if not, bounds
+    std::optional<CauseGraph> causes;  // what samples cause, in addition to bounds
+    Tick zone = ZoneEngine::crossover; // up to where bounds are computed anew
+};
+
+class DiscreteMonitor {
+  public:
+    using Failure = BoundsEngine::Failure;
+    using Observation = BoundsEngine::Observation;
+    using Supposition = BoundsEngine::Supposition;
+
+    DiscreteMonitor(const Graph& graph, DiscreteSettings settings);
+
+    // The index of a time, if it is on the grid of the samples.
+    [[nodiscard]] std::optional<Tick> place(double time) const noexcept {
+        return times_.place(time);
+    }
+    // Whether a sample may come where all come in order.
+    [[nodiscard]] bool in_order(Tick index) const noexcept;
+
+    // The values or bounds of all inputs at a sample that comes in order. What fails changes
+    // nothing.
+    template <class Value>
+    [[nodiscard]] std::optional<Failure> row(Tick index, double time, std::span<const Value> row);
+    // Those of some inputs at any sample after `closed`.
+    [[nodiscard]] std::optional<Failure> learn(Tick index, double time,
+                                               std::span<const Observation> observations);
+    // Nothing at or before a time will come.
+    [[nodiscard]] std::optional<Failure> watermark(double time);
+
+    // What the end of the trace makes of bounds: of each output those from a tick on, and those at
+    // the start.
+    struct Rest {
+        Tick first;
+        std::vector<Bounds> bounds;
+    };
+    struct End {
+        std::vector<Rest> outputs;
+        std::optional<Bounds> at_start;
+    };
+    // Nothing will come. Verdicts are then in decisions(), and there are no bounds.
+    [[nodiscard]] std::variant<End, Failure> finish();
+
+    // ---- results
+    [[nodiscard]] std::size_t outputs() const noexcept { return outputs_.size(); }
+    // Of an output, what the last call decided, or changed: in order.
+    [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept {
+        return news_[output];
+    }
+    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
+    // Whether such a run will not change any more.
+    [[nodiscard]] bool is_final(std::size_t output, const BoundChange& run) const noexcept;
+    [[nodiscard]] std::optional<Bounds> at_start() const noexcept;
+    // Nothing where the tick is not held any more.
+    [[nodiscard]] std::optional<Bounds> bounds(std::size_t output, Tick sample) const noexcept;
+    // What the newest sample causes: at the start, of an output at a tick, and at all ticks.
+    [[nodiscard]] bool causes() const noexcept { return causes_.has_value(); }
+    [[nodiscard]] Bounds caused_at_start() const noexcept;
+    [[nodiscard]] Bounds caused(std::size_t output, Tick sample) const;
+    [[nodiscard]] std::vector<BoundChange> caused(std::size_t output) const;
+    // The bounds of an output at a tick that is held, or of the formula at the start, if later
+    // samples had these bounds.
+    [[nodiscard]] std::variant<Bounds, Failure> supposed(std::optional<std::size_t> output,
+                                                         Tick sample,
+                                                         std::span<const Supposition> suppositions);
+
+    [[nodiscard]] Bounds known(std::uint32_t input, Tick sample) const noexcept {
+        return sample < 0 ? ranges_[input] : engine_.known(input, sample);
+    }
+    [[nodiscard]] double time(Tick sample) const noexcept { return times_.at(sample); }
+    // The first tick of an output that is held.
+    [[nodiscard]] Tick held(std::size_t output) const noexcept;
+    [[nodiscard]] double period() const noexcept { return times_.period(); }
+    [[nodiscard]] std::int64_t samples() const noexcept { return samples_; }
+    [[nodiscard]] Tick newest() const noexcept { return times_.newest(); }
+    [[nodiscard]] double last_time() const noexcept { return times_.last(); }
+    [[nodiscard]] double earliest() const noexcept { return times_.earliest(); }
+    [[nodiscard]] Tick closed() const noexcept { return closed_; } // nothing up to here will come
+    [[nodiscard]] bool late() const noexcept { return lateness_.has_value(); }
+    [[nodiscard]] bool finished() const noexcept { return finished_; }
+    [[nodiscard]] bool computes_zone() const noexcept { return zone_.has_value(); }
+    [[nodiscard]] const std::vector<Bounds>& ranges() const noexcept { return ranges_; }
+
+    [[nodiscard]] std::size_t bytes() const noexcept;
+
+    // Drops what is not needed any more; before transfer() writes a state, which is then the same
+    // whenever it was done last.
+    void settle();
+    void transfer(Snapshot& snapshot);
+
+  private:
+    BoundsEngine engine_;
+    std::optional<ZoneEngine> zone_; // in its place where windows are short
+    std::vector<std::uint32_t> outputs_;
+    std::vector<EagerVerdicts> waiting_; // by output
+    std::optional<BoundsAtStart> at_start_;
+    std::optional<Causes> causes_;
+    SampleTimes times_;
+    std::vector<Bounds> ranges_;
+    std::optional<Tick> lateness_;
+    bool decides_;
+    std::vector<std::vector<Decision>> news_; // by output
+    std::vector<BoundChanges> changes_;       // by output
+    std::vector<Tick> open_;                  // by output, the first tick without a verdict
+    std::vector<Tick> kept_; // by output, the first tick whose bounds the end still gives
+    std::vector<Tick> wanted_;
+    Tick closed_ = -1;
+    std::int64_t samples_ = 0;
+    bool finished_ = false;
+
+    [[nodiscard]] Tick closed_after(Tick index) const noexcept;
+    [[nodiscard]] Tick final_up_to() const noexcept;
+    [[nodiscard]] Tick lag(std::size_t output) const noexcept;
+    void advance(Tick index, double time);
+    void note(Tick before);
+    void decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end);
+};
+
+} // namespace rtamt::early
