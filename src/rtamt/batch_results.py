@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
 from rtamt.errors import BoundError, StlError, TraceError, placed
+from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.results import Result
@@ -114,22 +115,18 @@ def evaluate_rows(
     groups = _groups_of(spec, query, rows)
     signals = _signals_of(spec, rows, groups, query.formulas)
     if signals is not None:
-        return _together(spec, query, rows, groups, signals)
-    results = [_placed(i, evaluate, rows) for i in range(len(rows))]
+        together = _Together(spec, query, rows, groups, signals)
+        return BatchResult(signals, rows.lengths, together.result, together.satisfied)
+    apart = _Apart([_placed(i, evaluate, rows) for i in range(len(rows))])
     signals = np.full((len(rows), rows.width), np.nan)
-    for i, result in enumerate(results):
+    for i, result in enumerate(apart.results):
         if isinstance(result.signal, BoundedSignal):
             raise TraceError(
                 f"trace {i}: samples are missing, which arrays of traces cannot express: use "
                 f"rtamt.evaluate_batch(spec, traces)"
             )
         signals[i, : len(result.signal)] = result.signal.values
-    return BatchResult(
-        signals,
-        rows.lengths,
-        results.__getitem__,
-        lambda: np.array([result.satisfied for result in results], bool),
-    )
+    return BatchResult(signals, rows.lengths, apart.result, apart.satisfied)
 
 
 def _placed(number: int, evaluate: Callable[[dict[str, Any]], Result], rows: Rows) -> Result:
@@ -139,22 +136,46 @@ def _placed(number: int, evaluate: Callable[[dict[str, Any]], Result], rows: Row
         raise placed(error, f"trace {number}") from None
 
 
-def _together(
-    spec: Specification, query: Query, rows: Rows, groups: list[_Group], signals: FloatArray
-) -> BatchResult:
-    def result(i: int) -> Result:
-        trace = query.record(rows.row(i), spec.input_names, spec.types)
-        (signal,) = trace.signals([signals[i, : rows.lengths[i]]])
-        return Result(spec, spec._with_units(trace), signal, query.semantics)
+@dataclass(frozen=True, eq=False)
+class _Apart:
+    """Traces that were evaluated one by one."""
 
-    def satisfied() -> NDArray[np.bool_]:
-        truth = _signals_of(spec, rows, groups, (spec._outputs().truth,))
+    results: list[Result]
+
+    def result(self, i: int) -> Result:
+        """Return the result of one trace."""
+        return self.results[i]
+
+    def satisfied(self) -> NDArray[np.bool_]:
+        """Return the verdict of each trace."""
+        return np.array([result.satisfied for result in self.results], bool)
+
+
+@dataclass(frozen=True, eq=False)
+class _Together:
+    """Traces that were evaluated together; each has a result when it is asked for."""
+
+    spec: Specification
+    query: Query
+    rows: Rows
+    groups: list[_Group]
+    signals: FloatArray
+
+    def result(self, i: int) -> Result:
+        """Return the result of one trace."""
+        spec, rows = self.spec, self.rows
+        trace = self.query.record(rows.row(i), spec.input_names, spec.types)
+        (signal,) = trace.signals([self.signals[i, : rows.lengths[i]]])
+        return Result(spec, spec._with_units(trace), signal, self.query.semantics)
+
+    def satisfied(self) -> NDArray[np.bool_]:
+        """Return the verdict of each trace."""
+        spec, rows = self.spec, self.rows
+        truth = _signals_of(spec, rows, self.groups, (spec._outputs().truth,))
         if truth is not None:
             holds: NDArray[np.bool_] = truth[:, 0] > 0
             return holds
-        return np.array([result(i).satisfied for i in range(len(rows))], bool)
-
-    return BatchResult(signals, rows.lengths, result, satisfied)
+        return np.array([self.result(i).satisfied for i in range(len(rows))], bool)
 
 
 def _groups_of(spec: Specification, query: Query, rows: Rows) -> list[_Group]:

@@ -17,6 +17,7 @@ in half the time of ``object.__setattr__``. The functions of :mod:`dataclasses` 
 from __future__ import annotations
 
 from operator import attrgetter
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -125,7 +126,7 @@ def _processed(
             attributes["__hash__"] = (lambda self: hash(key(self))) if frozen else None
     if frozen:
         attributes |= {"__setattr__": _frozen, "__delattr__": _frozen}
-    if frozen and slots and "__getstate__" not in given:
+    if not any("__getstate__" in vars(base) for base in cls.__mro__[:-1]) and (frozen or not slots):
         attributes |= {"__getstate__": _state, "__setstate__": _restore}
     if init:
         attributes["__init__"] = _first_init(frozen=frozen)
@@ -238,10 +239,18 @@ def _frozen(_self: Any, name: str, *_value: Any) -> None:
     raise FrozenInstanceError(f"cannot {'assign to' if _value else 'delete'} field {name!r}")
 
 
-def _state(self: Any) -> list[Any]:
-    return [getattr(self, name) for name in self._record_fields]
+class _View(dict[Any, Any]):
+    """What a read-only view shows: unlike the view, it can be pickled and copied."""
 
 
-def _restore(self: Any, state: list[Any]) -> None:
-    for name, value in zip(self._record_fields, state, strict=True):
-        object.__setattr__(self, name, value)
+def _state(self: Any) -> dict[str, Any]:
+    found = vars(self) if hasattr(self, "__dict__") else {}
+    found = found | {name: getattr(self, name) for name in self._record_fields if hasattr(self, name)}
+    return {
+        name: _View(value) if isinstance(value, MappingProxyType) else value for name, value in found.items()
+    }
+
+
+def _restore(self: Any, state: dict[str, Any]) -> None:
+    for name, value in state.items():
+        object.__setattr__(self, name, MappingProxyType(value) if type(value) is _View else value)

@@ -8,6 +8,7 @@ import pickle
 import subprocess
 import sys
 from itertools import product
+from types import MappingProxyType
 from typing import ClassVar
 
 import pytest
@@ -100,6 +101,20 @@ def test_instances_are_pickled_and_matched():
     match Pair(1, 2):
         case Pair(x, y):
             assert (x, y) == (1, 2)
+
+
+@lazy_dataclasses.dataclass(frozen=True)
+class Named:
+    """With a read-only view, which the standard library can neither pickle nor copy."""
+
+    values: MappingProxyType
+
+
+@pytest.mark.parametrize("again", [lambda it: pickle.loads(pickle.dumps(it)), copy.copy, copy.deepcopy])
+def test_read_only_views_are_pickled_and_copied_and_stay_read_only(again):
+    copied = again(Named(MappingProxyType({"x": 1})))
+    assert copied == Named(MappingProxyType({"x": 1}))
+    assert type(copied.values) is MappingProxyType
 
 
 def test_subclasses_that_are_instantiated_first_do_not_compile_for_their_base():

@@ -245,6 +245,12 @@ class Fleet(Generic[Update]):
     def __len__(self) -> int:
         return len(self._samples)
 
+    def __reduce__(self) -> Any:
+        raise UsageError(
+            "a fleet can be neither copied nor pickled: take fleet.snapshot(), and make another fleet of it with "
+            "rtamt.Fleet.restore(spec, state)"
+        )
+
     @exclusive
     def __contains__(self, key: object) -> bool:
         try:

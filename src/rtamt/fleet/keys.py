@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +40,8 @@ def keys_of(keys: Any) -> NDArray[Any]:
             raise _masked(int(masked.argmax()))
         keys = given = keys.data
     if not isinstance(keys, np.ndarray):
+        if isinstance(keys, str | bytes | bytearray | Mapping) or not isinstance(keys, Iterable):
+            raise _no_keys(given)
         keys = list(keys)
         kinds = {type(key) for key in keys}
         if type(np.ma.masked) in kinds:
@@ -60,12 +63,21 @@ def keys_of(keys: Any) -> NDArray[Any]:
     if found.dtype.kind == "O" and isinstance(given, np.ndarray) and found.ndim == 1:
         return keys_of(found.tolist())
     if found.ndim != 1 or found.dtype.kind not in "iuUS":
-        raise TraceError(f"the keys are {shown(given)}, expected a sequence of integers, texts, or bytes")
+        beyond = [key for key in keys if isinstance(key, int) and not -(2**63) <= key < 2**63]
+        raise _beyond(beyond[0]) if beyond else _no_keys(given)
     if found.dtype.kind == "u" and found.size and int(found.max()) >= 2**63:
-        raise TraceError(f"the key {int(found.max())} is beyond 64 bits with a sign; give it as text")
+        raise _beyond(int(found.max()))
     if found.dtype.kind in "iu":
         return np.ascontiguousarray(found, np.int64)
     return np.ascontiguousarray(found, found.dtype.newbyteorder("="))
+
+
+def _no_keys(given: Any) -> TraceError:
+    return TraceError(f"the keys are {shown(given)}, expected a sequence of integers, texts, or bytes")
+
+
+def _beyond(key: int) -> TraceError:
+    return TraceError(f"the key {key} is beyond 64 bits with a sign; give it as text")
 
 
 def _masked(index: int) -> TraceError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property, reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
@@ -133,14 +133,6 @@ class Document:
 
     def __hash__(self) -> int:
         return hash(self.text)
-
-    def __getstate__(self) -> dict[str, Any]:
-        # A read-only view can be neither pickled nor copied; the mapping behind it can.
-        return {k: dict(v) if isinstance(v, MappingProxyType) else v for k, v in self.__dict__.items()}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        for name, value in state.items():
-            object.__setattr__(self, name, MappingProxyType(value) if isinstance(value, dict) else value)
 
     @cached_property
     def parameters(self) -> Mapping[str, float]:

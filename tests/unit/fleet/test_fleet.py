@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import datetime as dt
+import pickle
 import struct
 import threading
 import zlib
@@ -63,6 +65,20 @@ def filled(spec: rtamt.Specification = SPEC, **settings: Any) -> rtamt.Fleet:
         ),
         (["a"], [1], 5, "expected a mapping from variable to values, got int"),
         ([1.5], [1], {"x": [1]}, "the keys are [1.5], expected a sequence of integers, texts, or bytes"),
+        (5, [1], {"x": [1]}, "the keys are 5, expected a sequence of integers, texts, or bytes"),
+        ("ab", [6, 6], {"x": [1, 1]}, "the keys are 'ab', expected a sequence of integers, texts, or bytes"),
+        (
+            b"ab",
+            [6, 6],
+            {"x": [1, 1]},
+            "the keys are b'ab', expected a sequence of integers, texts, or bytes",
+        ),
+        (
+            [-1, 2**63],
+            [1, 1],
+            {"x": [1, 1]},
+            "the key 9223372036854775808 is beyond 64 bits with a sign; give it as text",
+        ),
         (
             [1, "a"],
             [1, 1],
@@ -370,3 +386,13 @@ def test_a_signal_that_is_declared_otherwise_is_another_one_when_a_state_is_rest
     assert same.update_many(np.array([7]), np.array([1.0]), {"m": np.array([value])}).warming.tolist() == [
         False
     ]
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_a_fleet_that_is_copied_or_pickled_names_the_snapshot_instead(again: Any) -> None:
+    with pytest.raises(rtamt.UsageError) as caught:
+        again(filled())
+    assert str(caught.value) == (
+        "a fleet can be neither copied nor pickled: take fleet.snapshot(), and make another fleet of it with "
+        "rtamt.Fleet.restore(spec, state)"
+    )

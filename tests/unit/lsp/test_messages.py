@@ -94,7 +94,12 @@ def command(name, *arguments):
         (request(None), "asked", -32602, NOT_ITS_PARAMETERS),
         (hover(line=-1), "asked", -32602, NOT_ITS_PARAMETERS),
         (hover(character="x"), "asked", -32602, NOT_ITS_PARAMETERS),
-        (hover("file:///project/closed.stl"), "asked", -32602, "the text 'file:///project/closed.stl' is not open"),
+        (
+            hover("file:///project/closed.stl"),
+            "asked",
+            -32602,
+            "the text 'file:///project/closed.stl' is not open",
+        ),
         (hover("::"), "asked", -32602, "the text '::' is not open"),
         (request({}, "no/such"), "asked", -32601, "Method Not Found: no/such"),
         (command("rm"), "asked", -32602, "Invalid Params: Command name 'rm' is not defined"),

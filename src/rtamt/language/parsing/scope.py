@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rtamt.lazy_dataclasses import dataclass, field, fields
+from rtamt.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -43,11 +43,6 @@ class Scope:
     members: Mapping[str, Group] = field(default_factory=lambda: MappingProxyType({}))
     #: The declared units of constants, as written; a bound has that of its constant.
     units: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # A read-only view can be neither pickled nor copied; the mapping behind it can.
-        values = (getattr(self, each.name) for each in fields(self))
-        return Scope, tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in values)
 
     def __contains__(self, name: str) -> bool:
         """Return whether a name is declared; a field (``req.value``) is declared if its signal is."""
