@@ -236,6 +236,17 @@ void Monitor::push(std::optional<std::span<const double>> times,
         previous_[i] = columns[i][count - 1];
 }
 
+bool Monitor::accepts(const Column& times, const std::vector<Column>& columns) const {
+    usage_.require_idle();
+    const std::span<const double> seconds(times.data(), times.shape(0));
+    const auto last = clock_.timestamps().last();
+    return !seconds.empty() && names_.plain() && ordered(seconds, last) &&
+           regular(seconds, last, clock_.period(), clock_.tolerance()) &&
+           std::ranges::all_of(columns, [](const Column& column) {
+               return all_numbers({column.data(), column.shape(0)});
+           });
+}
+
 nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time) {
     usage_.require_idle();
     if (executor_.finished() || !names_.plain()) return nb::none();

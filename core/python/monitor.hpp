@@ -46,6 +46,9 @@ class Monitor {
     [[nodiscard]] std::vector<Result> push(const std::optional<Column>& times,
                                            const std::vector<Column>& columns,
                                            std::optional<std::int64_t> after);
+    // Whether a chunk may be pushed as it is: the timestamps continue those so far, one period
+    // apart, and no value is NaN. False for data that Python has to look at, or to reject.
+    [[nodiscard]] bool accepts(const Column& times, const std::vector<Column>& columns) const;
     // The same of a dict of columns, with timestamps under the name `time` or a period apart.
     // Returns the number of samples so far, and times and values of what became known of each
     // output; None, with nothing changed, for data that Python has to convert or reject.

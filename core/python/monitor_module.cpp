@@ -132,6 +132,9 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
             nb::arg("times").none(), nb::arg("columns"), nb::arg("after") = nb::none(),
             "Take a chunk, a column an input, unless others than `after` samples came before; "
             "return what became known of each output.")
+        .def("accepts", &Monitor::accepts, nb::arg("times"), nb::arg("columns"),
+             "Whether a chunk may be pushed as it is. False for data that has to be looked at, or "
+             "is wrong.")
         .def("take_columns", &Monitor::take_columns, nb::arg("data"), nb::arg("time"),
              "Take a dict of columns; return the number of samples so far, and times and values of "
              "what became known of each output. None for data that has to be converted, or is "

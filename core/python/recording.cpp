@@ -6,6 +6,7 @@
 // (tests/laws/test_recording_laws.py).
 #include "recording.hpp"
 
+#include "arrays.hpp"
 #include "numbers.hpp"
 
 #include <nanobind/stl/optional.h>
@@ -180,7 +181,22 @@ bool regular(std::span<const double> times, std::optional<double> before, double
     return right;
 }
 
+bool all_numbers(std::span<const double> values) noexcept {
+    std::uint64_t wrong = 0; // as wide as a double, for a loop of vector instructions
+    for (const double value : values)
+        wrong |= static_cast<std::uint64_t>(std::isnan(value));
+    return wrong == 0;
+}
+
 namespace {
+
+// Timestamps since 1970 have a precision of about 0.2 µs.
+[[nodiscard]] double blur_of(double gap, std::span<const double> times) noexcept {
+    const double largest = std::max(std::fabs(times.front()), std::fabs(times.back()));
+    const double spacing =
+        std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest;
+    return std::max(1e-6 * gap, 2.0 * spacing);
+}
 
 [[nodiscard]] double median_gap(std::span<const double> times) {
     std::vector<double> gaps(times.size() - 1);
@@ -194,14 +210,10 @@ namespace {
 
 } // namespace
 
-// Timestamps since 1970 have a precision of about 0.2 µs.
 double inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
     const double gap = median_gap(times);
-    const double largest = std::max(std::fabs(times.front()), std::fabs(times.back()));
-    const double spacing =
-        std::nextafter(largest, std::numeric_limits<double>::infinity()) - largest;
-    const double blur = std::max(1e-6 * gap, 2.0 * spacing);
+    const double blur = blur_of(gap, times);
     for (int digits = 1; digits <= 16; ++digits) {
         char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
         if (text == nullptr) throw nb::python_error();
@@ -210,6 +222,19 @@ double inferred_period(std::span<const double> times) {
         if (std::fabs(shortest - gap) <= blur) return shortest;
     }
     return gap;
+}
+
+bool has_period(std::span<const double> times, double period, double coarse) noexcept {
+    if (times.size() < 2) return true;
+    const double blur = blur_of(period, times);
+    std::uint64_t same = 0; // as wide as a double, for a loop of vector instructions
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double gap = times[i] - times[i - 1];
+        const bool near = std::fabs(gap - period) <= blur;
+        const bool apart = std::fabs(gap - std::rint(gap / coarse) * coarse) > 1.001 * blur;
+        same += static_cast<std::uint64_t>(near) & static_cast<std::uint64_t>(apart);
+    }
+    return 2 * same > times.size() - 1;
 }
 
 namespace {
@@ -245,6 +270,14 @@ nb::object read_columns(const NumPy& numpy, const nb::handle& data,
 } // namespace
 
 void add_recording(nb::module_& m) {
+    m.def(
+        "has_period",
+        [](const Column& times, double period, double coarse) {
+            return has_period({times.data(), times.shape(0)}, period, coarse);
+        },
+        nb::arg("times"), nb::arg("period"), nb::arg("coarse"),
+        "Whether more than half of the gaps between timestamps in order are a period, and none "
+        "that a decimal with one digit less describes as well; `coarse` is one in that digit.");
     m.def(
         "read_columns",
         [numpy = NumPy()](const nb::handle& data, const std::vector<nb::str>& names,

@@ -62,9 +62,16 @@ struct GivenColumns {
 [[nodiscard]] bool regular(std::span<const double> times, std::optional<double> before,
                            double period, double tolerance) noexcept;
 
+// Whether a column of doubles has no NaN.
+[[nodiscard]] bool all_numbers(std::span<const double> values) noexcept;
+
 // As infer_period() in rtamt.signals.sampling_period: the median gap, as the shortest decimal
 // within its precision; 1 for a single timestamp.
 [[nodiscard]] double inferred_period(std::span<const double> times);
+
+// As has_period() there, of timestamps in order: whether more than half of the gaps are a period,
+// and none that a number with one digit less describes as well. `coarse`: one in that digit.
+[[nodiscard]] bool has_period(std::span<const double> times, double period, double coarse) noexcept;
 
 void add_recording(nb::module_& module);
 

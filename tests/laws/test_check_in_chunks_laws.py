@@ -100,7 +100,7 @@ def checked(requirement: Requirement, path: Path, **sizes: int) -> list[Outcome]
         patch.setattr("rtamt.readers.arrow.CHUNK", 3)
         patch.setattr("rtamt.readers.csv.BLOCK", 3)
         patch.setattr("rtamt.readers.csv_arrow._WORTH", 0)
-        patch.setattr("rtamt.readers.csv_arrow._SIZE", 40)
+        patch.setattr("rtamt.readers.csv_arrow._SIZE", 100)  # two rows or more
         found = evaluate([requirement], str(path), Reading())
     return [replace(outcome, result=None, seconds=0.0) for outcome in found]
 

@@ -119,4 +119,28 @@ def test_law_plain_files_are_read_by_pyarrow_to_their_end(tmp_path_factory, rows
         found = list(csv_arrow.plain_blocks(str(path), header, [Column("x", 1)]))
     assert sum(block.lines for block in found) == len(rows)
     assert found[-1].end == path.stat().st_size
-    assert np.concatenate([block.columns[0] for block in found]).tolist() == [x for _, x in rows]
+    assert np.concatenate([part[0] for block in found for part in block.parts]).tolist() == [
+        x for _, x in rows
+    ]
+
+
+def test_columns_that_are_not_read_may_hold_text(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text(
+        "time,mode,x\n" + "".join(f"{t},{'höhe' if t % 2 else ''},{t}\n" for t in range(9)), encoding="utf-8"
+    )
+    header = Header(str(path), ("time", "mode", "x"), ",", 1)
+    with reading(16, least=0):
+        found = list(csv_arrow.plain_blocks(str(path), header, [Column("x", 2)]))
+    assert sum(block.lines for block in found) == 9
+    assert found[-1].end == path.stat().st_size
+
+
+@pytest.mark.parametrize("cell", ['"a,b"', '"a', "#", "\r", "a,b", "h\xf6he"])
+def test_rows_that_pyarrow_reads_differently_are_not_left_to_it(tmp_path, cell):
+    path = tmp_path / "odd.csv"
+    path.write_bytes(f"time,mode,x\n0,a,1\n1,{cell},2\n2,b,3\n".encode("latin-1"))
+    header = Header(str(path), ("time", "mode", "x"), ",", 1)
+    with reading(8, least=0):
+        found = list(csv_arrow.plain_blocks(str(path), header, [Column("x", 2)]))
+    assert [block.lines for block in found] == [1]

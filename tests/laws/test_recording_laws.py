@@ -10,14 +10,16 @@ import numpy as np
 import pandas as pd
 import polars as pl
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.engine import native
 from rtamt.engine.discrete import ENGINE
 from rtamt.errors import StlError
 from rtamt.language.formula import variables
 from rtamt.signals.discrete import Discrete
+from rtamt.signals.sampling_period import has_period, infer_period
 from tests.support.strategies import chunkings, formulas, traces
 
 if TYPE_CHECKING:
@@ -215,3 +217,41 @@ def test_a_chunk_in_a_dict_is_taken_as_any_other_mapping(data: st.DataObject, fo
     else:
         assert bits(ends[0].values) == bits(ends[1].values)
         assert bits(ends[0].times) == bits(ends[1].times)
+
+
+@given(
+    st.sampled_from([1.0, 0.1, 0.01, 1 / 3, 0.020833, 3.0, 0.25]),
+    st.lists(st.sampled_from([0.0, 0.0, 1e-9, 1e-7, 1e-5, 0.01, -0.05]), min_size=1, max_size=9),
+    st.sampled_from([0.0, 1.7e9, -50.0]),
+)
+@example(0.333333333, [0.0, 1e-9, 1e-9], 0.0)
+def test_the_core_finds_a_period_where_the_definition_does(
+    period: float, off: list[float], start: float
+) -> None:
+    times = start + np.cumsum([period * (1 + each) for each in off])
+    for expected in {Fraction(repr(period)), infer_period(times)}:
+        assert native.has_period(times, expected) == has_period(times, expected)
+
+
+@pytest.mark.parametrize(
+    ("times", "x"),
+    [
+        ([2.0, 3.0], [np.nan, 1.0]),
+        ([2.0, np.nan], [1.0, 1.0]),
+        ([1.0, 2.0], [1.0, 1.0]),
+        ([2.0, 2.0], [1.0, 1.0]),
+        ([3.0, 4.0], [1.0, 1.0]),
+        ([2.0, 3.5], [1.0, 1.0]),
+    ],
+)
+def test_chunks_that_are_wrong_are_rejected_and_change_nothing(times: list[float], x: list[float]) -> None:
+    messages = []
+    for backend in ("cpp", "python"):
+        monitor = rtamt.parse("x >= 0", backend=backend).monitor()
+        monitor.update_many(pd.DataFrame({"time": [0.0, 1.0], "x": [1.0, 2.0]}))
+        with pytest.raises(rtamt.TraceError) as caught:
+            monitor.update_many(pd.DataFrame({"time": times, "x": x}))
+        messages.append(str(caught.value))
+        assert monitor.samples == 2
+        assert monitor.update_many(pd.DataFrame({"time": [2.0], "x": [3.0]})).values.tolist() == [3.0]
+    assert messages[0] == messages[1]

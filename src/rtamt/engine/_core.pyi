@@ -60,6 +60,12 @@ class Monitor:
         Return what became known of each output.
         """
 
+    def accepts(self, times: NDArray[np.float64], columns: Sequence[NDArray[np.float64]]) -> bool:
+        """Whether a chunk may be pushed as it is.
+
+        False for data that has to be looked at, or is wrong.
+        """
+
     def take_columns(
         self, data: Any, time: str
     ) -> tuple[int, list[tuple[NDArray[np.float64], NDArray[np.float64]]]] | None:
@@ -631,6 +637,12 @@ def read_columns(
 
     Return the timestamps (None without), the period (inferred if None), columns by name and their length. None if
     anything has to be converted, or is wrong.
+    """
+
+def has_period(times: NDArray[np.float64], period: float, coarse: float) -> bool:
+    """Whether more than half of the gaps between timestamps in order are a period.
+
+    None that a decimal with one digit less describes as well counts; ``coarse`` is one in that digit.
     """
 
 def evaluate_bounds(

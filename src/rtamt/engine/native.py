@@ -10,14 +10,17 @@ from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import excerpt
 from rtamt.rewrite.desugar import written
+from rtamt.signals import sampling_period
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
+    from fractions import Fraction
     from types import ModuleType
 
     from rtamt.compiler.program import Program
     from rtamt.engine import _core
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
 
 
 def core() -> ModuleType:
@@ -53,6 +56,16 @@ class _TakenByPython:
 
 def _read_by_python(*_given: Any) -> None:
     """Stand in for :func:`rtamt.engine._core.read_columns` where the core is not built."""
+
+
+def has_period(times: FloatArray, period: Fraction) -> bool:
+    """Return :func:`sampling_period.has_period` of timestamps in order, computed in the core if it is built."""
+    loaded = sys.modules.get("rtamt.engine._core")
+    if loaded is None:
+        return sampling_period.has_period(times, period)
+    gap = float(period)
+    found: bool = loaded.has_period(times, gap, sampling_period.coarse_place(gap))
+    return found
 
 
 if TYPE_CHECKING:

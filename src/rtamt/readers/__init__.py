@@ -8,6 +8,7 @@ formats     the list of file formats
 source      the interface that every reader implements
 ahead       chunks read in a thread while others are evaluated
 assemble    a source to a trace: columns, names, time base
+numbers     the values of a column
 timestamps  the time column, its unit and its values
 dates       dates as text or objects to numpy dates
 gaps        missing samples: skipped or held

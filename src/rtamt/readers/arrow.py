@@ -40,7 +40,7 @@ def open_parquet(path: str) -> Source:
         batches = file.iter_batches(CHUNK, columns=_columns(wanted))
         yield from ahead(_of_batches(batches, wanted, arrow))
 
-    return Source(path, (Table(fields, load, chunks),), close=file.close)
+    return Source(path, (Table(fields, load, chunks, fresh=True),), close=file.close)
 
 
 def open_arrow(path: str) -> Source:
@@ -169,15 +169,16 @@ _NUMBERS = {"float": "f4", "double": "f8"} | {
 
 def values_of(column: Any) -> Raw:
     """Return a column of numbers without missing ones; ``to_numpy`` of pyarrow imports pandas first."""
-    dtype = np.dtype(_NUMBERS[str(column.type)])
-    parts = [
-        np.frombuffer(chunk.buffers()[1], dtype, len(chunk), chunk.offset * dtype.itemsize)
-        for chunk in column.chunks
-        if len(chunk)
-    ]
+    parts = [values_in_place(chunk) for chunk in column.chunks if len(chunk)]
     if len(parts) == 1:
         return parts[0]
-    return np.concatenate(parts) if parts else np.empty(0, dtype)
+    return np.concatenate(parts) if parts else np.empty(0, _NUMBERS[str(column.type)])
+
+
+def values_in_place(chunk: Any) -> Raw:
+    """Return an array of arrow, of numbers without missing ones, as one of numpy in the same memory."""
+    dtype = np.dtype(_NUMBERS[str(chunk.type)])
+    return np.frombuffer(chunk.buffers()[1], dtype, len(chunk), chunk.offset * dtype.itemsize)
 
 
 def _is_plain(column: Any) -> bool:

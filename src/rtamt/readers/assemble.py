@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 from rtamt import lazy_dataclasses
-from rtamt.errors import TraceError, choices, did_you_mean, shown
-from rtamt.language.value_types import Enumeration
+from rtamt.errors import TraceError, choices, did_you_mean
 from rtamt.lazy_numpy import np
 from rtamt.readers.gaps import Gaps
+from rtamt.readers.numbers import numbers_of
 from rtamt.readers.timestamps import TimestampColumn, guess_field
-from rtamt.signals.arrays import TIME, is_number
-from rtamt.signals.coding import encoded_value
+from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
@@ -102,7 +100,16 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
         for i, (selection, raws) in enumerate(zip(selections, chunk, strict=True)):
             if len(selections) > 1 and not len(raws[0]):
                 continue  # nothing of this table
-            made, _ = _channels(source, selection, timestamps[i], raws, choice, gaps[i], before[i])
+            made, _ = _channels(
+                source,
+                selection,
+                timestamps[i],
+                raws,
+                choice,
+                gaps[i],
+                before[i],
+                copy=not selection.table.fresh,
+            )
             channels.update(made)
             before[i] += len(raws[0]) if raws else 0
         notes = (
@@ -300,16 +307,18 @@ def _channels(
     choice: Choice,
     gaps: Mapping[str, Gaps],
     before: int = 0,
+    *,
+    copy: bool = True,
 ) -> tuple[dict[str, Channel], list[str]]:
     """Return the signals of a table, and the columns that were left out."""
     times = None
     if timestamps is not None:
-        times = timestamps.times(raws[0], before)
+        times = timestamps.times(raws[0], before, copy=copy)
     values = raws if timestamps is None else raws[1:]
     made, left_out = {}, []
     for (name, field), raw in zip(selection.signals, values, strict=True):
         try:
-            numbers, missing = numbers_of(raw, field, source.name, before)
+            numbers, missing = numbers_of(raw, field, source.name, before, copy=copy)
         except TraceError:
             if selection.named or name in choice.names:
                 raise
@@ -343,43 +352,6 @@ def _channels(
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)
     return made, left_out
-
-
-def numbers_of(raw: Raw, field: Field, source: str, before: int = 0) -> tuple[Any, Any]:
-    """Return float64 values and a mask of the missing ones (None: none); raise :class:`TraceError` at no number."""
-    missing = np.ma.getmaskarray(raw) if np.ma.isMaskedArray(raw) else None
-    plain = raw.data if isinstance(raw, np.ma.MaskedArray) else np.asarray(raw)
-    if plain.dtype.kind in "fiub":
-        with np.errstate(over="ignore"):
-            numbers = np.array(plain, dtype=np.float64)
-        if plain.dtype.kind == "f" and plain.dtype.itemsize > 8:
-            beyond = np.flatnonzero(np.isinf(numbers) & ~np.isinf(plain))
-            if len(beyond):
-                raise _no_number(plain[beyond[0]], field, source, before + int(beyond[0]))
-        return numbers, missing
-    if plain.dtype.kind == "U" and isinstance(field.type, Enumeration):
-        plain = plain.astype(object)
-    if plain.dtype.kind != "O":
-        raise _no_number(plain[0] if len(plain) else plain.dtype, field, source, before)
-    absent = np.array([value is None for value in plain], dtype=bool)
-    missing = absent if missing is None else missing | absent
-    values = np.zeros(len(plain))
-    for i in np.flatnonzero(~missing):
-        value = encoded_value(
-            plain[i], field.column, field.type, f"sample {before + i} of {source}", before + int(i)
-        )
-        if not is_number(value) and not isinstance(value, Decimal):
-            raise _no_number(value, field, source, before + int(i))
-        values[i] = value
-    return values, missing
-
-
-def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
-    return TraceError(
-        f"'{field.column}' of {source} is {shown(value)} at sample {row}, expected a number",
-        variable=field.name,
-        index=row,
-    )
 
 
 def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:

@@ -21,11 +21,12 @@ from rtamt.readers.csv import (
     read_header,
     rows,
 )
-from rtamt.readers.csv_arrow import plain_blocks
+from rtamt.readers.csv_arrow import exact, plain_blocks
 from rtamt.readers.csv_cells import LARGEST, Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Field, Source, Table
+from rtamt.signals.arrays import is_masked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -61,7 +62,7 @@ def open_csv(path: str) -> Source:
         parts = list(chunks(wanted))
         return [_joined([part[i] for part in parts]) for i in range(len(wanted))]
 
-    return Source(path, (Table(tuple(fields), load, chunks),))
+    return Source(path, (Table(tuple(fields), load, chunks, fresh=True),))
 
 
 def _require_utf8(path: str) -> None:
@@ -86,7 +87,8 @@ def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list
     columns = [Column(f.column, places[f.column], f.skip_nan) for f in wanted]
     line, end = header.line, 0
     for block in plain_blocks(path, header, columns):
-        yield [_whole(column) for column in block.columns]
+        for part in block.parts:
+            yield [exact(column) for column in part]
         line, end = line + block.lines, block.end
     with open(path, "rb") as file:
         file.seek(end)
@@ -103,7 +105,7 @@ def _blocks(
         values = plain(block, header, columns)
         if values is None or np.abs(values).max(initial=0) >= LARGEST:
             break
-        yield [_whole(column) for column in values]
+        yield [exact(column) for column in values]
         line += len(block)
     # What was a number so far stays one.
     dated = False if line > header.line else None
@@ -115,13 +117,8 @@ def _blocks(
         yield [column.take() for column in cells]
 
 
-def _whole(column: Raw) -> Raw:
-    """Return a column of integers as int64: timestamps are exact then."""
-    return column.astype(np.int64) if (np.isfinite(column) & (column == np.rint(column))).all() else column
-
-
 def _joined(parts: Sequence[Raw]) -> Raw:
-    if any(isinstance(part, np.ma.MaskedArray) for part in parts):
+    if any(map(is_masked, parts)):
         joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call] # of NumPy
         return joined
     return np.concatenate(parts) if parts else np.empty(0)

@@ -13,7 +13,7 @@ from rtamt.lazy_numpy import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, as_array
+from rtamt.signals.arrays import TIME, as_array, is_masked
 from rtamt.signals.time_columns import is_stamps, split_unit
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def _check_lengths(columns: Mapping[str, Raw]) -> None:
 
 def _array(values: Any, name: str) -> Raw:
     try:
-        raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
+        raw = values if is_masked(values) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name) from None
     if raw.dtype.kind in "US" and not isinstance(values, np.ndarray):

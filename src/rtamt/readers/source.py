@@ -66,6 +66,8 @@ class Table:
     time_field: Field | None = None
     #: The line or row of the source in which the first sample stands, for messages.
     first_row: int = 0
+    #: Whether the arrays of chunks are new ones, which nothing else reads or changes.
+    fresh: bool = False
     #: What ``load`` had to leave out, a sentence each; empty until then.
     losses: list[str] = field(default_factory=list)
 

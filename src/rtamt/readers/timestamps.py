@@ -14,7 +14,7 @@ from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, in_seconds
 from rtamt.lazy_numpy import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
-from rtamt.signals.arrays import is_number
+from rtamt.signals.arrays import is_masked, is_number
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
 from rtamt.signals.ticks import NANOSECOND, TimeScale
@@ -94,11 +94,11 @@ class TimestampColumn:
             )
         return unit
 
-    def times(self, raw: Raw, before: int = 0) -> NDArray[Any]:
+    def times(self, raw: Raw, before: int = 0, *, copy: bool = True) -> NDArray[Any]:
         """Return the next timestamps as times: float64 seconds, timedelta64[ns] or datetime64[ns].
 
-        ``before``: how many timestamps there were before. Raises :class:`TraceError` at one that is missing
-        or is no time.
+        ``before``: how many timestamps there were before. ``copy``: whether seconds may not share memory with ``raw``.
+        Raises :class:`TraceError` at one that is missing or is no time.
         """
         raw = self._plain(raw, before)
         if raw.dtype.kind in "mM":
@@ -115,7 +115,8 @@ class TimestampColumn:
             farthest = max(abs(int(raw.min())), abs(int(raw.max()))) if integers else 0
             self._exact = unit != "s" and farthest * size * 10**9 >= _EXACT
         if not self._exact:
-            return in_seconds(raw.astype(np.float64), size)
+            seconds = raw.astype(np.float64, copy=copy)
+            return seconds if unit == "s" else in_seconds(seconds, size)
         named = f"'{self.field.column}'"
         try:
             ticks = TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)
@@ -135,8 +136,8 @@ class TimestampColumn:
         """Return timestamps as numbers or dates of numpy, none of which is missing."""
         if self._dates is not None or raw.dtype.kind in "OUS":
             raw = self._of_objects(_objects(raw), before)
-        missing = np.isnat(raw) if raw.dtype.kind in "mM" else np.ma.getmaskarray(raw)
-        if missing.any():
+        missing = _missing(raw)
+        if missing is not None and missing.any():
             raise TraceError(
                 f"the time column '{self.field.column}' of {self._source} is empty at sample "
                 f"{before + int(missing.argmax())}"
@@ -149,7 +150,7 @@ class TimestampColumn:
         if raw.dtype.kind == "f" and not np.isfinite(raw).all():
             row = int(np.argmin(np.isfinite(raw)))
             raise self._no_time(float(raw[row]), before + row, "expected a finite number")
-        return raw.data if isinstance(raw, np.ma.MaskedArray) else raw
+        return np.ma.getdata(raw) if is_masked(raw) else raw
 
     def _of_objects(self, values: list[Any], before: int) -> Raw:
         first = next((value for value in values if value is not None), None)
@@ -175,7 +176,14 @@ class TimestampColumn:
 def _objects(raw: Raw) -> list[Any]:
     """Return an array as a list in which None stands for what is missing."""
     whole = raw.astype(object)
-    return list(whole.filled(None) if isinstance(whole, np.ma.MaskedArray) else whole)
+    return list(np.ma.filled(whole, None) if is_masked(whole) else whole)
+
+
+def _missing(raw: Raw) -> NDArray[np.bool_] | None:
+    """Return which timestamps are missing, None if none can be."""
+    if raw.dtype.kind in "mM":
+        return np.isnat(raw)
+    return np.ma.getmaskarray(raw) if is_masked(raw) else None
 
 
 def numbers_in(values: Sequence[Any]) -> Raw:

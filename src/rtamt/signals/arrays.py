@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from datetime import datetime, timedelta
@@ -84,11 +85,11 @@ def units_of(data: Any) -> Mapping[str, str]:
 
 
 def columns_of(
-    data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES
+    data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES, *, copy: bool = True
 ) -> tuple[Timestamps | None, dict[str, FloatArray], int]:
     """Return the timestamps (None if there are none), a column for each name, and their common length.
 
-    ``types``: of the variables that may be given by the names of members.
+    ``types``: of the variables that may be given by the names of members. ``copy``: see :func:`array`.
     """
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, WithTimeBases):
@@ -96,8 +97,8 @@ def columns_of(
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
-    columns = {name: _column(data, keys, name, types.get(name)) for name in names}
-    times = timestamps(data[TIME], unit) if TIME in keys else None
+    columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
+    times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
 
 
@@ -117,17 +118,17 @@ def is_mapping(data: Any) -> bool:
     return data.__class__ is dict or isinstance(data, Mapping)
 
 
-def array(values: Any, name: str, first: int = 0) -> FloatArray:
+def array(values: Any, name: str, first: int = 0, *, copy: bool = True) -> FloatArray:
     """Return ``values`` as a contiguous one-dimensional float64 array.
 
-    ``first`` is the index of ``values[0]`` in the recording, for messages. The result is always a copy:
-    sub-formulas are evaluated on demand, even if the caller has changed the data since.
+    ``first`` is the index of ``values[0]`` in the recording, for messages. ``copy``: whether the result may not share
+    memory with ``values``: sub-formulas are evaluated on demand, even if the caller has changed the data since.
     """
     if values.__class__ is np.ndarray and values.dtype == np.float64 and values.ndim == 1:
         # The common case, for which the checks below would cost more than the evaluation.
-        return np.array(values, dtype=np.float64)
+        return np.array(values, dtype=np.float64) if copy else np.ascontiguousarray(values, dtype=np.float64)
     try:
-        if isinstance(values, np.ma.MaskedArray) and values.mask.any():
+        if is_masked(values) and values.mask.any():
             values = np.ma.filled(values.astype(np.float64), np.nan)  # a masked value is a missing one
         raw = as_array(values)
         # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
@@ -149,6 +150,16 @@ def array(values: Any, name: str, first: int = 0) -> FloatArray:
     ):
         raise _not_numbers(values, name, first)  # a longdouble beyond every double
     return result
+
+
+def is_masked(values: Any) -> bool:
+    """Return whether values are an array of numpy with a mask; ``numpy.ma``, which takes 20 ms, is not loaded for it.
+
+    >>> is_masked(np.zeros(1)), is_masked(np.ma.zeros(1))
+    (False, True)
+    """
+    loaded: Any = sys.modules.get("numpy.ma")  # whoever has such an array has loaded it
+    return loaded is not None and isinstance(values, loaded.MaskedArray)
 
 
 def as_array(values: Any) -> NDArray[Any]:
@@ -192,13 +203,14 @@ def is_truth(value: Any) -> bool:
     return isinstance(value, bool) or (not isinstance(value, float | int) and isinstance(value, np.bool_))
 
 
-def timestamps(values: Any, unit: str | None = None) -> Timestamps:
+def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Timestamps:
     """Return timestamps in seconds and as given; numbers are in ``unit`` or seconds, dates count from 1970.
 
-    Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN seconds.
+    ``copy``: see :func:`array`. Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN
+    seconds.
     """
     try:
-        raw = values if isinstance(values, np.ma.MaskedArray) else as_array(values)
+        raw = values if is_masked(values) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise _not_numbers(values, TIME, 0) from None
     if raw.dtype.kind == "O" and any(map(is_moment, raw.flat)):
@@ -216,7 +228,7 @@ def timestamps(values: Any, unit: str | None = None) -> Timestamps:
         seconds = quotients(original.view(np.int64), 1, 10**9)
         seconds[np.isnat(original)] = np.nan
         return Timestamps(seconds, original)
-    numbers = array(values, TIME)
+    numbers = array(values, TIME, copy=copy)
     if unit is None:
         refuse_implausible(raw, TIME)
         return Timestamps(numbers, numbers)
@@ -327,9 +339,9 @@ def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collecti
             raise unknown_variable(str(key), names)
 
 
-def _column(data: Any, keys: Sequence[str], name: str, type_: ValueType | None) -> FloatArray:
+def _column(data: Any, keys: Sequence[str], name: str, type_: ValueType | None, *, copy: bool) -> FloatArray:
     if name in keys:
-        return array(encoded(data[name], name, type_), name)
+        return array(encoded(data[name], name, type_), name, copy=copy)
     head, *path = name.split(".")
     if path and head in keys:
         values = [field_of(value, head, path, i) for i, value in enumerate(data[head])]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.signals.arrays import FloatArray
+
+    #: Positions in order; a range of those that are one apart, which takes no memory.
+    Positions = NDArray[np.int64] | range
 
 #: Episodes that a summary contains.
 _FIRST = 100
@@ -127,6 +130,17 @@ class EpisodeTracker:
         return twin
 
 
+def place_in(positions: Positions, position: int, side: Literal["left", "right"]) -> int:
+    """Return where a position would be inserted to keep the order: before equal ones, or after (``right``).
+
+    >>> [place_in(range(3, 6), position, "right") for position in (2, 3, 9)]
+    [0, 1, 3]
+    """
+    if isinstance(positions, range):
+        return min(max(position + (side == "right") - positions.start, 0), len(positions))
+    return int(positions.searchsorted(position, side))
+
+
 class WindowTracker:
     """Collects episodes from signals in chunks, within a window [begin, end] of positions.
 
@@ -141,17 +155,17 @@ class WindowTracker:
         self._held: float | None = None
         self._last: tuple[int, float] | None = None
 
-    def take(self, positions: NDArray[np.int64], values: FloatArray, times: Any = None) -> None:
+    def take(self, positions: Positions, values: FloatArray, times: Any = None) -> None:
         """Take what became known; ``times``: of the samples, in discrete time, if episodes are to have these."""
-        first = int(positions.searchsorted(self._begin, "right" if self._continuous else "left"))
-        end = len(positions) if self._end is None else int(positions.searchsorted(self._end, "right"))
+        first = place_in(positions, self._begin, "right" if self._continuous else "left")
+        end = len(positions) if self._end is None else place_in(positions, self._end, "right")
         if self._continuous and first:
             self._held = float(values[first - 1])
         if first >= end:
             return
         self._begun()
-        timestamps = positions if times is None else times
-        self._tracker.take(_notable(timestamps[first:end], values[first:end]))
+        timestamps = (np.asarray(positions) if times is None else times)[first:end]
+        self._tracker.take(_notable(timestamps, values[first:end]))
         self._last = int(positions[end - 1]), float(values[end - 1])
 
     def _begun(self) -> None:

@@ -107,20 +107,20 @@ def has_period(times: FloatArray, period: Fraction) -> bool:
     blur = _blur(gap, times)
     same = np.abs(gaps - gap) <= blur
     # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is none of them.
-    step = _last_place(gap) * 10
+    step = coarse_place(gap)
     same &= np.abs(gaps - np.round(gaps / step) * step) > 1.001 * blur
     return 2 * int(same.sum()) > len(gaps)
 
 
-def _last_place(gap: float) -> float:
-    """Return what one means in the last significant digit of a number.
+def coarse_place(gap: float) -> float:
+    """Return what one means in the last digit of a number with one significant digit less.
 
-    >>> _last_place(0.25), _last_place(20.0)
-    (0.01, 10.0)
+    >>> coarse_place(0.25), coarse_place(20.0)
+    (0.1, 100.0)
     """
     exponent = Decimal(repr(gap)).normalize().as_tuple().exponent
     assert isinstance(exponent, int)
-    return float(10.0**exponent)
+    return float(10.0**exponent) * 10
 
 
 def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:

@@ -10,7 +10,7 @@ from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.rewrite.horizon import horizon
-from rtamt.signals.episodes import WindowTracker
+from rtamt.signals.episodes import WindowTracker, place_in
 from rtamt.verdicts.decompose import Anchored, Leaf, anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import align_inputs, outputs_under
 from rtamt.verdicts.trackers import Tracker, Trackers
@@ -22,10 +22,9 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.semantics import PredicateSemantics
     from rtamt.signals.arrays import FloatArray
-    from rtamt.signals.episodes import Episodes
+    from rtamt.signals.episodes import Episodes, Positions
     from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification import Specification
-    from rtamt.verdicts.trackers import Positions
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,8 +167,8 @@ class Output:
         for tracker in self.trackers:
             tracker.take(positions, values)
         if last is not None:
-            inside = positions <= last
-            positions, values = positions[inside], values[inside]
+            end = place_in(positions, last, "right")
+            positions, values = positions[:end], values[:end]
         for tracker in self.minima:
             tracker.take(positions, values)
         for each in self.episodes:

@@ -6,10 +6,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import push_samples
-from rtamt.lazy_numpy import np
+from rtamt.engine.native import has_period
 from rtamt.signals import arrays
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.sampling_period import check_increasing, has_period, infer_period
+from rtamt.signals.sampling_period import check_increasing, infer_period
 from rtamt.signals.signal import Signal
 from rtamt.verdicts.chunks import Group, StreamResult
 from rtamt.verdicts.streaming import Stream
@@ -38,14 +38,18 @@ class DiscreteStream(Stream):
 
     def take(self, chunk: Any) -> None:
         """See :class:`Stream`."""
-        timestamps, columns, n = arrays.columns_of(chunk, self.spec.input_names, self.unit, self.spec.types)
+        # The monitor takes the samples now, and nothing else reads them later.
+        timestamps, columns, n = arrays.columns_of(
+            chunk, self.spec.input_names, self.unit, self.spec.types, copy=False
+        )
         if not n:
             return
         if self._monitor is None:
             self._monitor = self._begin(timestamps)
+        known = push_samples(self._monitor, timestamps, columns, n)
         if self._inferred and timestamps is not None and self._period is not None:
             self.steady = self.steady and has_period(timestamps.seconds, self._period)
-        self._known(self._monitor, push_samples(self._monitor, timestamps, columns, n))
+        self._known(self._monitor, known)
         self.samples += n
 
     def _begin(self, timestamps: Timestamps | None) -> Monitor:
@@ -70,7 +74,7 @@ class DiscreteStream(Stream):
             assert isinstance(signal, Signal)
             begin = output.known
             output.known += len(signal)
-            output.take(np.arange(begin, output.known), signal.values, times=signal.times)
+            output.take(range(begin, output.known), signal.values, times=signal.times)
             # A tracker decides on a position when the next one comes, which needs the timestamp before.
             violated = (t.violated for t in output.trackers if t.violated is not None)
             for position in {0, *violated}:

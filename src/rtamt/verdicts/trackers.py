@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Var
 from rtamt.lazy_numpy import np
 from rtamt.signals.discrete import DiscreteTrace
+from rtamt.signals.episodes import place_in
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.episodes import Positions
     from rtamt.verdicts.decompose import Anchored, Leaf
     from rtamt.verdicts.robustness_and_truth import Evaluate
-
-    Positions = NDArray[np.int64]
 
 
 class Tracker:
@@ -42,8 +40,7 @@ class Tracker:
         if not len(positions):
             return
         if self._pending is not None:
-            position, value = self._pending
-            positions, values = np.concatenate(([position], positions)), np.concatenate(([value], values))
+            self._reduce_one(*self._pending, int(positions[0]))
         self._reduce(positions[:-1], positions[1:], values)
         self._pending = (int(positions[-1]), float(values[-1]))
 
@@ -52,13 +49,16 @@ class Tracker:
         if self._pending is not None:
             position, value = self._pending
             stop = max(position, self._begin) + 1 if self._dense else position + 1
-            self._reduce(np.array([position]), np.array([stop]), np.array([value]))
+            self._reduce_one(position, value, stop)
             self._pending = None
+
+    def _reduce_one(self, start: int, value: float, stop: int) -> None:
+        self._reduce(range(start, start + 1), range(stop, stop + 1), np.array([value]))
 
     def _reduce(self, starts: Positions, stops: Positions, values: FloatArray) -> None:
         # Positions increase: those of the window are a slice, which costs no copy.
-        first = int(stops.searchsorted(self._begin, "right"))
-        end = len(starts) if self._end is None else int(starts.searchsorted(self._end, "right"))
+        first = place_in(stops, self._begin, "right")
+        end = len(starts) if self._end is None else place_in(starts, self._end, "right")
         if first >= end:
             return
         found = values[first:end]

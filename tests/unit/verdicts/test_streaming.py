@@ -336,9 +336,9 @@ def test_each_chunk_is_normalised_once(monkeypatch):
     discrete, dense = arrays.columns_of, dense_arrays.columns_of
 
     def counted(time, function):
-        def call(*args):
+        def call(*args, **options):
             counts[time] += 1
-            return function(*args)
+            return function(*args, **options)
 
         return call
 

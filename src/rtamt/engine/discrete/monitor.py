@@ -419,12 +419,13 @@ class Monitor(MonitorBase, OnlineMonitor):
             self._times.require_alike(timestamps, self.samples)
         else:
             timestamps = Timestamps(timestamps.seconds, self._recent(0))
-        times = timestamps.seconds
-        check_increasing(times, last, self.samples)
-        check_regular(times, self._period, self._tolerance, last, self.samples)
-        for name, column in columns.items():
-            arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
-        return timestamps, [columns[name] for name in self.input_names]
+        times, ordered = timestamps.seconds, [columns[name] for name in self.input_names]
+        if not self._backend.accepts(times, ordered):
+            check_increasing(times, last, self.samples)
+            check_regular(times, self._period, self._tolerance, last, self.samples)
+            for name, column in columns.items():
+                arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
+        return timestamps, ordered
 
     def _is_finished(self) -> UsageError:
         return UsageError("the monitor has finished its trace; call reset() before the next sample")

@@ -1,0 +1,55 @@
+"""The values of a column as numbers, and which of them are missing."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any
+
+from rtamt.errors import TraceError, shown
+from rtamt.language.value_types import Enumeration
+from rtamt.lazy_numpy import np
+from rtamt.signals.arrays import is_masked, is_number
+from rtamt.signals.coding import encoded_value
+
+if TYPE_CHECKING:
+    from rtamt.readers.source import Field, Raw
+
+
+def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bool = True) -> tuple[Any, Any]:
+    """Return float64 values and a mask of the missing ones (None: none); raise :class:`TraceError` at no number.
+
+    ``copy``: whether the values may not share memory with ``raw``.
+    """
+    missing = np.ma.getmaskarray(raw) if is_masked(raw) else None
+    plain = np.ma.getdata(raw) if is_masked(raw) else np.asarray(raw)
+    if plain.dtype.kind in "fiub":
+        with np.errstate(over="ignore"):
+            numbers = plain.astype(np.float64, copy=copy)
+        if plain.dtype.kind == "f" and plain.dtype.itemsize > 8:
+            beyond = np.flatnonzero(np.isinf(numbers) & ~np.isinf(plain))
+            if len(beyond):
+                raise _no_number(plain[beyond[0]], field, source, before + int(beyond[0]))
+        return numbers, missing
+    if plain.dtype.kind == "U" and isinstance(field.type, Enumeration):
+        plain = plain.astype(object)
+    if plain.dtype.kind != "O":
+        raise _no_number(plain[0] if len(plain) else plain.dtype, field, source, before)
+    absent = np.array([value is None for value in plain], dtype=bool)
+    missing = absent if missing is None else missing | absent
+    values = np.zeros(len(plain))
+    for i in np.flatnonzero(~missing):
+        value = encoded_value(
+            plain[i], field.column, field.type, f"sample {before + i} of {source}", before + int(i)
+        )
+        if not is_number(value) and not isinstance(value, Decimal):
+            raise _no_number(value, field, source, before + int(i))
+        values[i] = value
+    return values, missing
+
+
+def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
+    return TraceError(
+        f"'{field.column}' of {source} is {shown(value)} at sample {row}, expected a number",
+        variable=field.name,
+        index=row,
+    )
