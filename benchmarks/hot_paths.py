@@ -23,6 +23,10 @@ CORE = "core,"
 TWO = "always[0:1000](a + b >= -2)"
 #: 900 characters, as a requirement of a large project may have.
 LONG = " and ".join(["always[0:5]((req >= 3) -> eventually[0:5](gnt >= 3))"] * 16)
+#: 1 200 characters, in which no two parts are equal.
+DIFFERENT = " and ".join(
+    f"always[0:{k + 5}]((req{k} >= {k + 1}) -> eventually[0:{k + 3}](gnt{k} >= {k + 30}))" for k in range(20)
+)
 
 
 def noise(n: int, names: str = "ab") -> dict[str, np.ndarray]:
@@ -298,6 +302,7 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "evaluate_batch, an array, a trace of 100 samples": (1000, evaluate_arrays),
     "parse and monitor": (4, parse_and_monitor(TWO)),
     "parse 900 characters and monitor": (2, parse_and_monitor(LONG)),
+    "parse 20 different clauses and monitor": (2, parse_and_monitor(DIFFERENT)),
     "parse 900 characters": (2, parse),
     **{
         f"{CORE} a sample: {text}": (10_000, offline(text))

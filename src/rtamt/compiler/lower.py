@@ -19,8 +19,9 @@ from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Sinc
 from rtamt.language.shares import rank_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
+    from rtamt.language.operators import Kernel
     from rtamt.signals.time_domain_interface import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
@@ -64,6 +65,8 @@ class Lowering(ABC):
         self.parameters: dict[Parameter, int] = {}
         self.lowered: list[tuple[Formula, int]] = []
         self.calls: dict[CallSite, int] = {}
+        #: Whether an instruction has a smaller lag than the horizon of its formula.
+        self.known_early = False
 
     def program(self, outputs: tuple[int, ...]) -> Program:
         """Return the program; instructions that no output needs are kept, since they may fail or be queried."""
@@ -82,36 +85,42 @@ class Lowering(ABC):
         """Emit the instructions of formulas, operands first, and return the index of each formula's last one."""
         # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
         found: dict[int, int] = {}
-        for node in postorder(*formulas):
-            index = found[id(node)] = self._lower_node(node, found)
-            self.lowered.append((node, index))
+        nodes = postorder(*formulas)
+        for node in nodes:
+            if not isinstance(node, Apply):
+                found[id(node)] = self._lower_leaf(node)
+                continue
+            kernel, args = node.op.kernel, [found[id(arg)] for arg in node.args]
+            if isinstance(kernel, Pointwise):  # most
+                found[id(node)] = self.pointwise(node, kernel, *args)
+            else:
+                found[id(node)] = self._lower_apply(node, kernel, self.align(args))
+        self.lowered += zip(nodes, found.values(), strict=True)
         return [found[id(formula)] for formula in formulas]
 
-    def _lower_node(self, node: Formula, found: Mapping[int, int]) -> int:
-        """Return the index of a node, given those of its operands by identity."""
-        if isinstance(node, Apply):
-            args = self.align([found[id(arg)] for arg in node.args])
-            kernel = node.op.kernel
-            if isinstance(kernel, Pointwise):
-                return self.pointwise(node, kernel, args)
-            if isinstance(kernel, Window):
-                return self.window(node, kernel, args[0])
-            if isinstance(kernel, Sum):
-                return self.sum(node, args[0])
-            if isinstance(kernel, Rank):
-                return self.rank(node, args[0])
-            if isinstance(kernel, Shift):
-                return self.shift_by_one(node, kernel, args[0])
-            if isinstance(kernel, Ahead):
-                return self.ahead_of(node, args[0])
-            if isinstance(kernel, Since):
-                return self.since(node, *args)
-            if isinstance(kernel, Until):
-                return self.until(node, *args)
-            return self.call(node, args)
+    def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
+        """Return the index of an operator over aligned operands that is not pointwise."""
+        if isinstance(kernel, Window):
+            return self.window(node, kernel, args[0])
+        if isinstance(kernel, Sum):
+            return self.sum(node, args[0])
+        if isinstance(kernel, Rank):
+            return self.rank(node, args[0])
+        if isinstance(kernel, Shift):
+            return self.shift_by_one(node, kernel, args[0])
+        if isinstance(kernel, Ahead):
+            return self.ahead_of(node, args[0])
+        if isinstance(kernel, Since):
+            return self.since(node, *args)
+        if isinstance(kernel, Until):
+            return self.until(node, *args)
+        return self.call(node, args)
+
+    def _lower_leaf(self, node: Formula) -> int:
+        """Return the index of a variable or a constant."""
         if isinstance(node, Var):
             assert not node.bound, "quantifiers are resolved before"
-            return self.emit(Instruction("input", n=self.places[node.name]), node)
+            return self.emit(instruction(("input", None, None, self.places[node.name], 0.0, 0)), node)
         assert isinstance(node, Const)
         if isinstance(node, Parameter):
             # Never merged with another constant: its value may be changed.
@@ -125,17 +134,18 @@ class Lowering(ABC):
 
     def emit(self, instruction: Instruction, origin: Formula) -> int:
         """Return the index of an instruction, adding it if necessary."""
-        new = len(self.instructions)
+        new = len(self.origins)
         index = self.index_of.setdefault(instruction, new)
         if index == new:
-            self.append(instruction, origin)
+            self.instructions.append(instruction)
+            self.origins.append(origin)
         return index
 
     def append(self, instruction: Instruction, origin: Formula) -> int:
         """Add an instruction and return its index."""
         self.instructions.append(instruction)
         self.origins.append(origin)
-        return len(self.instructions) - 1
+        return len(self.origins) - 1
 
     def lag(self, index: int) -> int:
         """Return the lag of an instruction in steps."""
@@ -149,10 +159,8 @@ class Lowering(ABC):
         """Delay operands until all have the largest lag; constants have no lag."""
         if len(indices) < 2:
             return indices
-        lags = [self.instructions[i].lag for i in indices]
+        lags = [self.instructions[index].lag for index in indices]
         lag = max(lags)
-        if lags.count(lag) == len(lags):
-            return indices
         return [i if own == lag else self.delayed(i, lag) for i, own in zip(indices, lags, strict=True)]
 
     def delayed(self, index: int, lag: int) -> int:
@@ -166,7 +174,7 @@ class Lowering(ABC):
             return index
         origin = self.origins[index]
         assert origin is not None
-        return self.emit(Instruction("shift", index, n=behind, lag=lag), origin)
+        return self.emit(instruction(("shift", index, None, behind, 0.0, lag)), origin)
 
     def moved(self, index: int, distance: int, fill: float, lag: int, origin: Formula) -> int:
         """Return the operand ``distance`` samples ago, ``fill`` where that sample does not exist."""
@@ -200,10 +208,12 @@ class Lowering(ABC):
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
-    def pointwise(self, node: Apply, kernel: Pointwise, args: list[int]) -> int:
+    def pointwise(self, node: Apply, kernel: Pointwise, a: int, b: int | None = None) -> int:
         """Lower an operator on values at one instant."""
-        lag = max([self.instructions[i].lag for i in args])
-        a, b = (*args, None)[:2]
+        lag = self.instructions[a].lag
+        if b is not None and (other := self.instructions[b].lag) != lag:
+            a, b = self.align([a, b])
+            lag = max(lag, other)
         return self.emit(instruction((kernel.opcode, a, b, 0, 0.0, lag)), node)
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:

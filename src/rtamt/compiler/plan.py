@@ -101,7 +101,7 @@ def compile_program(
         inputs = _read_by(outputs)
     lowering = lowering_of(domain)(domain, period, inputs, clip)
     indices = lowering.lower(outputs)
-    if clip is None:  # online: each output is known at its horizon, even if it could be known earlier
+    if clip is None and lowering.known_early:  # online: each output is known at its horizon all the same
         depths = (horizon(formula, period) for formula in outputs)
         indices = [
             index if depth is None else lowering.late(index, int(depth / period))

@@ -15,6 +15,7 @@ from __future__ import annotations
 import struct
 import zlib
 from functools import cached_property, partial
+from itertools import repeat
 from math import isnan
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -222,10 +223,12 @@ class Program:
             int(self.worst_case),
         )
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
-        pack = _RECORD.pack
-        for opcode, a, b, n, x, lag in self.instructions:
-            first, second = NO_OPERAND if a is None else a, NO_OPERAND if b is None else b
-            parts.append(pack(_CODES[opcode], first, second, 0, n, x, lag))
+        if self.instructions:
+            opcodes, first, second, *others = zip(*self.instructions, strict=True)
+            a, b = (
+                [NO_OPERAND if place is None else place for place in places] for places in (first, second)
+            )
+            parts += map(_RECORD.pack, map(_CODES.__getitem__, opcodes), a, b, repeat(0), *others)
         parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
         body = b"".join(parts)
         return body + struct.pack("<I", zlib.crc32(body))

@@ -9,10 +9,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
-from rtamt.language.formula import Formula, Parameter, postorder
+from rtamt.language.formula import Formula, Parameter, leaves_of
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 
@@ -52,7 +51,7 @@ class Shape:
         (4.0, 3.0, True)
         """
         values: dict[str, float] = {}
-        for node in postorder(*formulas):
+        for node in leaves_of(*formulas):
             if isinstance(node, Parameter) and values.setdefault(node.name, node.value) != node.value:
                 values = {}
                 break
@@ -60,7 +59,7 @@ class Shape:
 
     def expanded(self) -> tuple[Formula, ...]:
         """Return the core formulas of these formulas."""
-        return _kept(self.formulas) if self.values else _expanded(self.formulas)
+        return _kept(self.formulas) if self.values else merged(self.formulas)
 
     def program(
         self,
@@ -106,11 +105,7 @@ class Shape:
         return _graph(self.formulas, period, inputs, domain, start, apart).copied()
 
 
-def _expanded(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
-    return tuple([desugar(formula) for formula in merged(formulas)])
-
-
-_kept = lru_cache(_KEPT)(_expanded)
+_kept = lru_cache(_KEPT)(merged)
 
 
 @lru_cache(_KEPT)

@@ -34,6 +34,7 @@ class SampledLowering(Lowering):
         """Return x since x: x itself, and its last value after the last sample."""
         distance, _ = self.bounds(node)
         if distance == 0 or self.is_const(x):
+            self.known_early = self.known_early or distance > 0
             return x
         return self.emit(Instruction("since", x, x, lag=self.lag(x) + distance), node)
 

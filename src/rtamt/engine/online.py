@@ -10,8 +10,8 @@ from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.formula import Formula, types_of, variables
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.rewrite.check import check_online
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.merge import merged
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding
 from rtamt.signals.episodes import EpisodeTracker
@@ -42,12 +42,7 @@ class Watched:
 def grounded(
     domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
 ) -> tuple[Formula, list[Watched]]:
-    """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain.
-
-    Equal parts of a formula are one node then, so that what follows visits them once.
-    """
-    (formula,) = merged((formula,))
-    watch = [replace(each, formula=merged((each.formula,))[0]) for each in watch]
+    """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain."""
     for watched in (Watched("", formula, text), *watch):
         domain.check(watched.formula, watched.text)
     formula, *others = domain.ground(formula, *(watched.formula for watched in watch))
@@ -237,10 +232,12 @@ class OnlineMonitor:
             self._episodes = [tracker.copied() for tracker in self._episodes]
 
 
-def depth_of(formula: Formula, period: Fraction = Fraction(1)) -> Fraction:
-    """Return the horizon of a formula with bounded future in seconds."""
+def depth_of(formula: Formula, period: Fraction = Fraction(1), text: str | None = None) -> Fraction:
+    """Return the horizon of a formula in seconds; raise :class:`BoundError` for unbounded future, see ``text``."""
     depth = horizon(formula, period)
-    assert depth is not None, "unbounded future is refused before"
+    if depth is None:
+        check_online(formula, text)
+    assert depth is not None, "unbounded future is rejected"
     return depth
 
 

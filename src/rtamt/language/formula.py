@@ -174,8 +174,9 @@ class Apply(Formula):
     _size: int = field(init=False, repr=False)
     #: The class of nodes that were found equal to this one.
     _class: EqualNodes = field(init=False, repr=False)
-    #: The nodes below in postorder: a formula is walked many times.
+    #: The nodes below in postorder, and what they contain: a formula is walked many times.
     _below: tuple[Formula, ...] = field(init=False, repr=False)
+    _contents: Contents = field(init=False, repr=False)
 
     def __init__(
         self,
@@ -233,9 +234,11 @@ class Apply(Formula):
 
 
 # A third of the time of ``object.__setattr__``, with which frozen classes store otherwise.
-_store_op, _store_args, _store_interval, _store_span, _store_hash, _store_size, _store_class, _store_below = (
-    vars(Apply)[name].__set__
-    for name in ("op", "args", "interval", "span", "_hash", "_size", "_class", "_below")
+_store_op, _store_args, _store_interval, _store_span = (
+    vars(Apply)[name].__set__ for name in ("op", "args", "interval", "span")
+)
+_store_hash, _store_size, _store_class, _store_below, _store_contents = (
+    vars(Apply)[name].__set__ for name in ("_hash", "_size", "_class", "_below", "_contents")
 )
 
 
@@ -413,23 +416,70 @@ def size(formula: Formula) -> int:
         return formula._size
 
 
-def operators_of(*formulas: Formula) -> set[Operator]:
+class Contents(NamedTuple):
+    """What is in a formula, in postorder: its operators, its variables and constants, and its nodes with intervals."""
+
+    operators: frozenset[Operator]
+    leaves: tuple[Formula, ...]
+    timed: tuple[Apply, ...]
+
+
+def contents(formula: Formula) -> Contents:
+    """Return what a formula contains: most checks and analyses need a part of its nodes only.
+
+    >>> from rtamt.language.operators import STL
+    >>> x = Var("x")
+    >>> contents(STL["not"](STL["and"](x, x))).leaves
+    (<formula x>,)
+    """
+    if not isinstance(formula, Apply):
+        return Contents(frozenset(), (formula,), ())
+    try:
+        return formula._contents
+    except AttributeError:
+        nodes = postorder(formula)
+        operators: set[Operator] = set()
+        leaves, timed = [], []
+        for node in nodes:
+            if isinstance(node, Apply):
+                operators.add(node.op)
+                if node.interval is not None:
+                    timed.append(node)
+            else:
+                leaves.append(node)
+        found = Contents(frozenset(operators), tuple(leaves), tuple(timed))
+        if len(nodes) <= _KEPT:
+            _store_contents(formula, found)
+        return found
+
+
+def leaves_of(*formulas: Formula) -> tuple[Formula, ...]:
+    """Return the variables and constants of formulas in order of appearance."""
+    if len(formulas) == 1:
+        return contents(formulas[0]).leaves
+    return tuple([node for node in postorder(*formulas) if not isinstance(node, Apply)])
+
+
+def operators_of(*formulas: Formula) -> frozenset[Operator]:
     """Return the operators of formulas: what depends on these alone is asked once for each."""
-    return {node.op for node in postorder(*formulas) if isinstance(node, Apply)}
+    if len(formulas) == 1:
+        return contents(formulas[0]).operators
+    return frozenset([node.op for node in postorder(*formulas) if isinstance(node, Apply)])
 
 
 def types_of(*formulas: Formula) -> dict[str, ValueType]:
     """Return the types of the variables of formulas that are no plain numbers."""
     found: dict[str, ValueType] = {}
-    for node in postorder(*formulas):
-        if isinstance(node, Var) and not node.bound and isinstance(node.type, Boolean | Enumeration):
+    for node in leaves_of(*formulas):
+        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration) and not node.bound:
             found[node.name] = node.type
     return found
 
 
 def variables(*formulas: Formula) -> tuple[str, ...]:
     """Return the names of the variables of formulas, each once, in order of first appearance; no fields of members."""
-    return tuple(dict.fromkeys(n.name for n in postorder(*formulas) if isinstance(n, Var) and not n.bound))
+    leaves = leaves_of(*formulas)
+    return tuple(dict.fromkeys([node.name for node in leaves if isinstance(node, Var) and not node.bound]))
 
 
 def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, leaves_of, operators_of, postorder
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
@@ -357,6 +357,8 @@ def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
 
 def quantifiers(*formulas: Formula) -> tuple[Apply, ...]:
     """Return the quantifiers of formulas, those inside others first."""
+    if all(op.binder is None for op in operators_of(*formulas)):
+        return ()
     return tuple(
         node for node in postorder(*formulas) if isinstance(node, Apply) and node.op.binder is not None
     )
@@ -364,4 +366,4 @@ def quantifiers(*formulas: Formula) -> tuple[Apply, ...]:
 
 def fields_of(*formulas: Formula) -> tuple[FieldOf, ...]:
     """Return the fields of members that formulas read, in order of appearance."""
-    return tuple(node for node in postorder(*formulas) if isinstance(node, FieldOf))
+    return tuple([node for node in leaves_of(*formulas) if isinstance(node, FieldOf)])

@@ -6,7 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
+from rtamt.language.formula import Apply, Const, Formula, Interval, children, contents, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
@@ -71,9 +71,8 @@ def check_bounds(
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
     a, b = step.as_integer_ratio()
-    for node in postorder(spelled_out(formula)):
-        if not isinstance(node, Apply) or node.interval is None:
-            continue
+    for node in contents(spelled_out(formula)).timed:
+        assert node.interval is not None
         for bound in (node.interval.begin, node.interval.end):
             if bound is None:
                 continue

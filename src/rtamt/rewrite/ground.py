@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, Interval, folds, postorder
+from rtamt.language.formula import Apply, Formula, Interval, contents, folds
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import replace
@@ -50,9 +50,11 @@ def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = F
             return rebuilt(node, args)
         return Apply(node.op, args, interval, node.span)
 
-    applied = [node for node in postorder(*formulas) if isinstance(node, Apply)]
-    implied = any(_implied(op, continuous=continuous) for op in {node.op for node in applied})
-    if not implied and not any(node.interval.is_open for node in applied if node.interval):
+    parts = list(map(contents, formulas))
+    implied = any(_implied(op, continuous=continuous) for part in parts for op in part.operators)
+    if not implied and not any(
+        node.interval.is_open for part in parts for node in part.timed if node.interval
+    ):
         return tuple(formulas)
     return folds(formulas, changed)
 

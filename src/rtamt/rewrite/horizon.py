@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import lcm
+from math import inf, lcm
 
-from rtamt.language.formula import Apply, Formula, fold, postorder
+from rtamt.language.formula import Apply, Formula, contents, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 
@@ -25,48 +25,53 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     """
     formula = spelled_out(formula)
     parts, found = _counted(formula, period)
-    deepest = found[id(formula)]
-    return None if deepest is None else Fraction(deepest, parts)
+    return _seconds(found[id(formula)], parts)
 
 
 def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
     """Return the horizon of each sub-formula by its identity; ``formula``: see :func:`spelled_out`."""
     parts, found = _counted(formula, period)
-    return {key: None if depth is None else Fraction(depth, parts) for key, depth in found.items()}
+    return {key: _seconds(depth, parts) for key, depth in found.items()}
 
 
-def _counted(formula: Formula, period: Fraction) -> tuple[int, dict[int, int | None]]:
-    """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add."""
+def _seconds(depth: float, parts: int) -> Fraction | None:
+    return Fraction(depth, parts) if isinstance(depth, int) else None
+
+
+def _counted(formula: Formula, period: Fraction) -> tuple[int, dict[int, float]]:
+    """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add.
+
+    They are integers, and inf where they are unbounded.
+    """
     nodes = postorder(formula)
-    applied = [node for node in nodes if isinstance(node, Apply)]
-    ends = [node.interval.end for node in applied if node.interval is not None]
+    ends = [node.interval.end for node in contents(formula).timed if node.interval is not None]
     parts = lcm(period.denominator, *[end.denominator for end in ends if end is not None])
     step = period.numerator * (parts // period.denominator)
-    found: dict[int, int | None] = dict.fromkeys(map(id, nodes), 0)
-    for node in applied:
-        deepest = 0
-        for operand in node.args:
-            depth = found[id(operand)]
-            if depth is None:
-                found[id(node)] = None
-                break
-            if depth > deepest:  # noqa: PLR1730 - max() takes three times as long
-                deepest = depth
-        else:
-            own = _own(node, parts, step) if node.op.tense is _FUTURE else 0
-            found[id(node)] = None if own is None else deepest + own
+    found: dict[int, float] = dict.fromkeys(map(id, nodes), 0)
+    for node in nodes:
+        if isinstance(node, Apply):
+            depth: float = 0
+            for operand in node.args:
+                below = found[id(operand)]
+                if below > depth:  # noqa: PLR1730 - max() takes three times as long
+                    depth = below
+            if node.op.tense is _FUTURE:
+                own = _own(node, parts, step)
+                depth = inf if inf in (depth, own) else depth + own  # a large integer is no float
+            if depth:
+                found[id(node)] = depth
     return parts, found
 
 
-def _own(node: Apply, parts: int, step: int) -> int | None:
+def _own(node: Apply, parts: int, step: int) -> float:
     """Return how far ahead of its operands an operator reads; ``step``: one sample."""
     if node.op.bounds is _NONE:
-        return None if node.op.reach is None else node.op.reach * step
+        return inf if node.op.reach is None else node.op.reach * step
     if node.interval is None:
-        return step if node.op.bounds is _DURATION else None
+        return step if node.op.bounds is _DURATION else inf
     end = node.interval.end
     if end is None:
-        return None
+        return inf
     numerator, denominator = end.as_integer_ratio()
     return numerator * (parts // denominator)
 

@@ -62,6 +62,20 @@ def test_bounds_beyond_the_trace_are_cut_to_it() -> None:
     assert program.lags == (10,)
 
 
+@pytest.mark.parametrize(
+    ("text", "lag"),
+    [
+        ("always[0:3](x >= 3 -> eventually[1:5](y >= 3))", 8),
+        ("ahead[2](3) >= 3", 2),
+        ("ahead[2](3) >= 3 and always[0:1](x >= 3)", 2),
+        ("next(ahead[2](3) >= 3)", 3),
+        ("eventually[2:2](true)", 2),
+    ],
+)
+def test_an_output_is_known_at_its_horizon_even_if_it_could_be_known_earlier(text: str, lag: int) -> None:
+    assert compile_program([desugar(parse_formula(text))], Fraction(1)).lags == (lag,)
+
+
 def test_memory_is_told_before_it_runs() -> None:
     for text, doubles in [
         ("always[0:9999](x)", 10_000),

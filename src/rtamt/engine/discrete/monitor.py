@@ -13,7 +13,6 @@ from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
-from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Timestamps
 from rtamt.signals.caller_times import CallerTimes
@@ -80,14 +79,13 @@ class Monitor(MonitorBase, OnlineMonitor):
         period = domain.period
         assert period is not None
         formula, watch = grounded(domain, formula, text, watch)
-        for watched in (Watched("", formula, text), *watch):
-            check_online(watched.formula, watched.text)
+        of_all = (Watched("", formula, text), *watch)
+        self._depths = [depth_of(each.formula, period, each.text) for each in of_all]
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         if episodes:
             self._remember_episodes(continuous=False)
         self._period = period
         self._tolerance = domain.tolerance
-        self._depths = [depth_of(formula, period) for formula in self._formulas]
         self._lags = [int(depth / period) for depth in self._depths]
         self._oldest = max(self._lags)  # the largest number of samples without a value
         # The results of the last chunk, and the number of samples at that time: after any other update
