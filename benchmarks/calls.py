@@ -72,12 +72,12 @@ def steps() -> Callable[[], float]:
     return each(100, call)
 
 
-def batch(text: str) -> Callable[[], float]:
+def batch(text: str, **settings: str) -> Callable[[], float]:
     """``spec.evaluate_batch(arrays)`` of 10 000 traces of 100 samples: µs a trace."""
     spec = rtamt.parse(text)
     random = np.random.default_rng(1)
     data = {name: random.normal(size=(TRACES, SHORT)) for name in spec.input_names}
-    return each(1, lambda: spec.evaluate_batch(data), TRACES)
+    return each(1, lambda: spec.evaluate_batch(data, **settings), TRACES)
 
 
 def one_by_one() -> Callable[[], float]:
@@ -128,6 +128,12 @@ CALLS: tuple[tuple[str, str, float | None, Callable[[], Callable[[], float]]], .
     ("100 steps", "µs", None, steps),
     ("evaluate_batch, arrays 10 000 x 100, a >= 0", "µs/trace", 0.7, lambda: batch("a >= 0")),
     (f"evaluate_batch, arrays 10 000 x 100, {TEXT}", "µs/trace", None, lambda: batch(TEXT)),
+    (
+        f"evaluate_batch, arrays 10 000 x 100, Boolean, {TEXT}",
+        "µs/trace",
+        None,
+        lambda: batch(TEXT, semantics="boolean"),
+    ),
     ("rtamt.evaluate_batch, 1 000 recordings", "µs/trace", None, one_by_one),
     ("evaluate_all, 10 formulas, 100 samples, warm", "µs/call", None, all_warm),
     ("evaluate(a >= 3), 10^6 samples", "ns/sample", 2, lambda: long(10**6)),

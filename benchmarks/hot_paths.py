@@ -204,16 +204,20 @@ def evaluate_batch() -> Callable[[int], None]:
     return run
 
 
-def evaluate_arrays() -> Callable[[int], None]:
-    """``spec.evaluate_batch`` of an array with 100 traces of 100 samples: a trace."""
-    spec = rtamt.parse(TWO)
-    data = {name: column.reshape(100, 100) for name, column in noise(10_000).items()}
+def evaluate_arrays(**settings: str) -> Callable[[], Callable[[int], None]]:
+    """``spec.evaluate_batch`` of an array with 128 traces of 100 samples: a trace."""
 
-    def run(n: int) -> None:
-        for _ in range(n // 100):
-            spec.evaluate_batch(data)
+    def prepare() -> Callable[[int], None]:
+        spec = rtamt.parse(TWO)
+        data = {name: column.reshape(128, 100) for name, column in noise(12_800).items()}
 
-    return run
+        def run(n: int) -> None:
+            for _ in range(n // 128):
+                spec.evaluate_batch(data, **settings)
+
+        return run
+
+    return prepare
 
 
 def parse_and_monitor(text: str) -> Callable[[], Callable[[int], None]]:
@@ -299,7 +303,11 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "evaluate(data).satisfied, 100 samples": (20, verdict),
     "Fleet.update_many, 16 keys": (20, fleet_update),
     "evaluate_batch, a trace of 100 samples": (100, evaluate_batch),
-    "evaluate_batch, an array, a trace of 100 samples": (1000, evaluate_arrays),
+    "evaluate_batch, an array, a trace of 100 samples": (1280, evaluate_arrays()),
+    "evaluate_batch, an array, Boolean, a trace of 100 samples": (
+        1280,
+        evaluate_arrays(semantics="boolean"),
+    ),
     "parse and monitor": (4, parse_and_monitor(TWO)),
     "parse 900 characters and monitor": (2, parse_and_monitor(LONG)),
     "parse 20 different clauses and monitor": (2, parse_and_monitor(DIFFERENT)),

@@ -1,5 +1,6 @@
 // The extension module rtamt.engine._core: what Python may call, and nothing else.
 #include "../program/opcodes.hpp"
+#include "batch.hpp"
 #include "dense_direct_evaluator.hpp"
 #include "dense_early_monitor.hpp"
 #include "direct_evaluator.hpp"
@@ -69,6 +70,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_evaluator(m, exceptions);
     rtamt::python::add_direct_evaluator(m);
     rtamt::python::add_dense_direct_evaluator(m);
+    rtamt::python::add_batch(m);
     rtamt::python::add_fleet(m);
     rtamt::python::add_reorder_buffer(m);
     rtamt::python::add_recording(m);

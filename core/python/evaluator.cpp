@@ -4,11 +4,9 @@
 #include "arrays.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace rtamt::python {
@@ -51,26 +49,6 @@ struct Made {
         }
     }
 };
-
-// Puts rows into lanes, the last row into the lanes that are left, too.
-template <class Value>
-void gather(const double* rows, std::size_t lanes, std::size_t count, std::vector<Value>& values) {
-    std::array<const double*, std::tuple_size_v<decltype(Value::lane)>> row{};
-    for (std::size_t lane = 0; lane < row.size(); ++lane)
-        row[lane] = rows + std::min(lane, lanes - 1) * count;
-    for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t lane = 0; lane < row.size(); ++lane)
-            values[i].lane[lane] = row[lane][i];
-    }
-}
-
-template <class Value>
-void scatter(const std::vector<Value>& values, std::size_t lanes, std::size_t count, double* rows) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-        for (std::size_t i = 0; i < count; ++i)
-            rows[lane * count + i] = values[i].lane[lane];
-    }
-}
 
 // The threads that an evaluation may have: those that are asked for, but for one for each other
 // evaluation that runs.
@@ -133,63 +111,6 @@ nb::list Evaluator::run(const nb::list& columns, std::size_t count, const nb::ob
     return made.arrays;
 }
 
-nb::tuple Evaluator::run_rows(const nb::list& columns, std::size_t rows, std::size_t count) {
-    const auto held = columns_of(columns, rows * count);
-    const Made made(numpy_, program_.outputs.size(), rows * count);
-    const auto wrong = without_gil(
-        rows * count, [&] { return evaluate_rows(pointers_of(held), rows, count, made.pointers); });
-    return nb::make_tuple(made.arrays, wrong);
-}
-
-// Eight traces at a time; the last few as well, if they are not too few to pay off.
-std::int64_t Evaluator::evaluate_rows(std::span<const double* const> columns, std::size_t rows,
-                                      std::size_t count, std::span<double* const> outputs) {
-    constexpr std::size_t worthwhile = 3;
-    std::unique_ptr<LaneExecutor> executor(spare_lanes_.exchange(nullptr));
-    std::vector<std::vector<Lane::Value>> inputs(columns.size());
-    std::vector<std::vector<Lane::Value>> results(outputs.size());
-    std::vector<const Lane::Value*> from;
-    std::vector<Lane::Value*> to;
-    for (auto& input : inputs) {
-        input.resize(count);
-        from.push_back(input.data());
-    }
-    for (auto& result : results) {
-        result.resize(count);
-        to.push_back(result.data());
-    }
-    std::vector<const double*> row_of(columns.size());
-    std::vector<double*> result_of(outputs.size());
-    const auto alone = [&](std::size_t row) {
-        for (std::size_t i = 0; i < columns.size(); ++i)
-            row_of[i] = columns[i] + row * count;
-        for (std::size_t i = 0; i < outputs.size(); ++i)
-            result_of[i] = outputs[i] + row * count;
-        return !evaluate(row_of, count, result_of, 1);
-    };
-    for (std::size_t first = 0; first < rows; first += width) {
-        const std::size_t lanes = std::min(width, rows - first);
-        bool defined = lanes >= worthwhile;
-        if (defined) {
-            if (!executor) executor = std::make_unique<LaneExecutor>(program_);
-            for (std::size_t i = 0; i < columns.size(); ++i)
-                gather(columns[i] + first * count, lanes, count, inputs[i]);
-            defined = !executor->evaluate(from, count, to);
-            if (!defined) executor.reset();
-        }
-        if (defined) {
-            for (std::size_t i = 0; i < outputs.size(); ++i)
-                scatter(results[i], lanes, count, outputs[i] + first * count);
-            continue;
-        }
-        for (std::size_t row = first; row < first + lanes; ++row) {
-            if (!alone(row)) return static_cast<std::int64_t>(row);
-        }
-    }
-    executor.reset(spare_lanes_.exchange(executor.release()));
-    return -1;
-}
-
 std::optional<discrete::Failure> Evaluator::evaluate(std::span<const double* const> columns,
                                                      std::size_t count,
                                                      std::span<double* const> outputs,
@@ -214,10 +135,7 @@ void add_evaluator(const nb::module_& m, const Exceptions& exceptions) {
         .def("run", &Evaluator::run, nb::arg("columns"), nb::arg("n"),
              nb::arg("threads") = nb::none(),
              "Run over columns of n samples, one an input; return n values an output. A long trace "
-             "is evaluated by at most threads() threads.")
-        .def("run_rows", &Evaluator::run_rows, nb::arg("columns"), nb::arg("rows"), nb::arg("n"),
-             "Run over many traces of n samples, one after another in each column; return as many "
-             "values of each output, and the first trace with an undefined value, or -1.");
+             "is evaluated by at most threads() threads.");
 }
 
 } // namespace rtamt::python

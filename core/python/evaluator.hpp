@@ -1,14 +1,12 @@
 // A program that evaluates many whole traces: it is parsed once, and what runs it is kept.
 //
-// Traces of a batch run eight at a time, a lane each (values/lanes.hpp). A trace gets the same bits
-// in a lane as alone. A long trace is evaluated in parts, on several cores (discrete/parts.hpp).
+// A long trace is evaluated in parts, on several cores (discrete/parts.hpp).
 //
 // Cost: for a short trace, a fraction of a microsecond beside its samples. Memory: that of an
-// executor, and of one with lanes after a batch.
+// executor.
 #pragma once
 
 #include "../discrete/executor.hpp"
-#include "../values/lanes.hpp"
 #include "failures.hpp"
 #include "numpy.hpp"
 
@@ -28,10 +26,7 @@ class Evaluator {
   public:
     // The program has no calls, whose state belongs to one run.
     Evaluator(const nb::bytes& program, Exceptions exceptions);
-    ~Evaluator() {
-        delete spare_.load();
-        delete spare_lanes_.load();
-    }
+    ~Evaluator() { delete spare_.load(); }
     Evaluator(const Evaluator&) = delete;
     Evaluator& operator=(const Evaluator&) = delete;
     Evaluator(Evaluator&&) = delete;
@@ -42,10 +37,6 @@ class Evaluator {
     // `allowed()` returns.
     [[nodiscard]] nb::list run(const nb::list& columns, std::size_t count,
                                const nb::object& allowed);
-
-    // The same of `rows` traces of `count` samples each, one after another in each column. Also
-    // returns the first trace in which a value is undefined, or -1; then there are no results.
-    [[nodiscard]] nb::tuple run_rows(const nb::list& columns, std::size_t rows, std::size_t count);
 
     // The same of columns and outputs of `count` doubles each, by so many threads at most; needs no
     // GIL.
@@ -58,23 +49,17 @@ class Evaluator {
     [[nodiscard]] std::size_t threads(std::size_t count, const nb::object& allowed) const;
 
     [[nodiscard]] std::size_t outputs() const noexcept { return program_.outputs.size(); }
+    [[nodiscard]] const Program& program() const noexcept { return program_; }
 
   private:
-    static constexpr std::size_t width = 8;
     using Executor = discrete::Executor;
-    using Lane = Lanes<width>;
-    using LaneExecutor = discrete::BasicExecutor<Lane>;
 
     Program program_;
     Exceptions exceptions_;
     NumPy numpy_;
     std::atomic<Executor*> spare_{nullptr}; // owned; null while a thread uses it
-    std::atomic<LaneExecutor*> spare_lanes_{nullptr};
 
     [[nodiscard]] std::vector<Buffer> columns_of(const nb::list& columns, std::size_t count) const;
-    [[nodiscard]] std::int64_t evaluate_rows(std::span<const double* const> columns,
-                                             std::size_t rows, std::size_t count,
-                                             std::span<double* const> outputs);
 };
 
 void add_evaluator(const nb::module_& module, const Exceptions& exceptions);

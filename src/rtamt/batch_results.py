@@ -26,10 +26,6 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
-#: Samples of a variable that are evaluated together: few enough for the cache.
-CACHED = 2**13
-
-
 class BatchResult(Sequence[Result]):
     """The results of many traces, as :meth:`Specification.evaluate_batch` returns them.
 
@@ -210,18 +206,10 @@ def _signals_of(
     """Return the values of the formula in each trace; None where it has to be evaluated trace by trace."""
     if not groups:
         return None
-    signals = np.full((len(rows), rows.width), np.nan)
+    signals = spec._evaluators.new_rows(len(rows), rows.width)
+    if (rows.lengths < rows.width).any():
+        signals.fill(np.nan)
     for group in groups:
-        length = len(group.trace.columns[spec.input_names[0]])
-        whole = len(group.rows) == len(rows)
-        size = max(8, CACHED // length // 8 * 8)  # the core evaluates eight traces at once
-        for first in range(0, len(group.rows), size):
-            some = slice(first, first + size) if whole else group.rows[first : first + size]
-            columns = {
-                name: np.ascontiguousarray(column[some, :length]) for name, column in rows.columns.items()
-            }
-            found = spec._evaluators.rows(formulas, group.trace, columns)
-            if found is None:
-                return None
-            signals[some, :length] = found
+        if not spec._evaluators.rows(formulas, group.trace, rows.columns, group.rows, signals):
+            return None
     return signals

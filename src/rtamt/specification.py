@@ -171,7 +171,7 @@ class Specification(OnlineSpecification):
                 raise UsageError(
                     f"arrays of traces cannot be evaluated with {what}: use rtamt.evaluate_batch(spec, traces)"
                 )
-        rows = Rows.of(self.binding.applied(data), self.input_names, lengths)
+        rows = Rows.of(self.binding.applied(data), self.input_names, lengths, self._evaluators.new_rows)
 
         def evaluate(row: Any) -> Result:
             return self.evaluate(row, time=query.domain, semantics=semantics, time_unit=time_unit)

@@ -91,3 +91,31 @@ def test_a_batch_gives_what_each_trace_gives_alone(
     satisfied = [outcome(lambda want=want: want.satisfied) for want in expected]
     unknown = [want for want in satisfied if isinstance(want, str)]
     assert outcome(lambda: list(found.satisfied)) == (unknown[0] if unknown else satisfied)
+
+
+@settings(max_examples=60)
+@given(
+    formulas(max_depth=4, unbounded_future=True),
+    st.sampled_from([1, 3, 7, 8, 9, 63, 64, 65, 100]),
+    st.sampled_from([1, 2, 9, 63, 64, 65]),
+    st.integers(0, 2**32 - 1),
+)
+def test_truth_values_of_many_traces_are_those_of_each_alone(
+    formula: Any, count: int, width: int, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    numbers = [-1.0, -0.5, -0.0, 0.0, 0.5, 1.0, 2.0] + [-np.inf, np.inf] * (seed % 3 == 0)
+    data = {name: random.choice(numbers, (count, width)) for name in ("x", "y")}
+    lengths = random.integers(1, width + 1, count).tolist() if seed % 2 else None
+    spec = rtamt.parse(f"{formula} or x > inf or y > inf", semantics="boolean")
+    expected = [outcome(lambda i=i: alone(spec, data, lengths, i)) for i in range(count)]
+    wrong = [f"trace {i}: {want}" for i, want in enumerate(expected) if isinstance(want, str)]
+    found = outcome(lambda: spec.evaluate_batch(data, lengths=lengths))
+    if wrong:
+        assert found == wrong[0]
+        return
+    for i, want in enumerate(expected):
+        n = len(want.signal)
+        assert found.signals[i, :n].tobytes() == want.signal.values.tobytes()
+        assert np.isnan(found.signals[i, n:]).all()
+    assert found.satisfied.tolist() == [want.satisfied for want in expected]

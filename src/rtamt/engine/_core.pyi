@@ -562,13 +562,35 @@ class Evaluator:
         A long trace is evaluated by at most threads() threads.
         """
 
-    def run_rows(
-        self, columns: list[NDArray[np.float64]], rows: int, n: int
-    ) -> tuple[list[NDArray[np.float64]], int]:
-        """Run over many traces of n samples, one after another in each column.
+class Batch:
+    """Evaluates a plan on many traces of one length at a time.
 
-        Return as many values of each output, and the first trace with an undefined value, or -1.
+    ``stages``: as for :class:`DirectEvaluator`, over so many ``variables``.
+    """
+
+    def __init__(
+        self,
+        stages: list[tuple[Evaluator, list[int], list[tuple[str, list[int]]]]],
+        variables: int,
+    ) -> None: ...
+    def run(
+        self,
+        columns: list[NDArray[np.float64]],
+        rows: NDArray[np.int64],
+        n: int,
+        results: NDArray[np.float64],
+    ) -> bool:
+        """Evaluate the first n samples of these rows of the columns; write to the same rows of the results.
+
+        False where a value is undefined.
         """
+
+    @property
+    def joins_words(self) -> bool:
+        """Whether truth values of 64 traces are joined at once."""
+
+def new_rows(rows: int, width: int) -> NDArray[np.float64]:
+    """Return a new array of this shape, of any numbers, in memory that is used again."""
 
 class DirectEvaluator:
     """Reads, checks and evaluates a recording in one call.

@@ -9,6 +9,7 @@ from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_numpy import np
 from rtamt.rewrite.desugar import written
 from rtamt.signals import sampling_period
 
@@ -68,11 +69,17 @@ def has_period(times: FloatArray, period: Fraction) -> bool:
     return found
 
 
+def _new_rows_by_python(rows: int, width: int) -> FloatArray:
+    """Stand in for :func:`rtamt.engine._core.new_rows` where the core is not built."""
+    return np.empty((rows, width))
+
+
 if TYPE_CHECKING:
     MonitorBase = _core.MonitorBase
     DenseMonitorBase = _core.DenseMonitorBase
     EarlyMonitorBase = _core.EarlyMonitorBase
     TickPoints = _core.TickPoints
+    new_rows = _core.new_rows
     read_columns = _core.read_columns
 else:
     try:
@@ -81,11 +88,13 @@ else:
             EarlyMonitorBase,
             MonitorBase,
             TickPoints,
+            new_rows,
             read_columns,
         )
     except ImportError:
         MonitorBase = DenseMonitorBase = EarlyMonitorBase = _TakenByPython
         TickPoints = object
+        new_rows = _new_rows_by_python
         read_columns = _read_by_python
 
 

@@ -12,6 +12,9 @@ from rtamt.rewrite.presence import channel_of, presences, tracked
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from rtamt.engine.direct import Direct
     from rtamt.engine.engine import Engine
     from rtamt.language.formula import Formula
@@ -85,14 +88,28 @@ class Evaluators:
         return None if make is None else make(query.domain, recording)
 
     def rows(
-        self, formulas: tuple[Formula], one: DomainTrace, columns: Mapping[str, FloatArray]
-    ) -> FloatArray | None:
-        """Return the robustness of a formula in many recordings, a row each, that differ from ``one`` in values alone.
+        self,
+        formulas: tuple[Formula],
+        one: DomainTrace,
+        columns: Mapping[str, FloatArray],
+        rows: NDArray[np.int64],
+        results: FloatArray,
+    ) -> bool:
+        """Write the robustness of a formula in these rows of the columns to the same rows of ``results``.
 
-        None where it has to be evaluated recording by recording.
+        The recordings in these rows differ from ``one`` in values alone. False where it has to be evaluated
+        recording by recording.
         """
         evaluate = getattr(self._evaluator(formulas, one), "rows", None)
-        return None if evaluate is None else evaluate(columns)
+        n = len(next(iter(one.columns.values())))
+        return evaluate is not None and evaluate(columns, rows, n, results)
+
+    @staticmethod
+    def new_rows(count: int, width: int) -> FloatArray:
+        """Return a new array of any numbers for so many recordings, in memory that is used again."""
+        from rtamt.engine.native import new_rows
+
+        return new_rows(count, width)
 
     def _evaluator(
         self, formulas: tuple[Formula, ...], recording: DomainTrace

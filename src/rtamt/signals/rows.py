@@ -11,9 +11,11 @@ from rtamt.signals.arrays import TIME, as_array, is_mapping
 from rtamt.signals.data_errors import missing_variable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
+
+    from rtamt.signals.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +30,13 @@ class Rows:
     times: NDArray[Any] | None
 
     @classmethod
-    def of(cls, data: Any, names: Sequence[str], lengths: Any) -> Rows:
+    def of(
+        cls, data: Any, names: Sequence[str], lengths: Any, new_rows: Callable[[int, int], FloatArray]
+    ) -> Rows:
         """Return the rows of a mapping from variable to an array of shape (traces, samples); values are not checked.
 
-        ``lengths``: how many samples of each row belong to the trace; None: all of them.
+        ``lengths``: how many samples of each row belong to the trace; None: all of them. ``new_rows``: makes the
+        arrays of doubles, of any content.
         """
         if not is_mapping(data):
             raise TraceError(
@@ -41,7 +46,9 @@ class Rows:
         for name in names:
             if name not in data:
                 raise missing_variable(name, [str(key) for key in data if key != TIME])
-            columns[name] = _array(data[name], name, (2,), "give an array of shape (traces, samples)")
+            columns[name] = _array(
+                data[name], name, (2,), "give an array of shape (traces, samples)", new_rows
+            )
         shapes = {name: column.shape for name, column in columns.items()}
         if not shapes:
             raise UsageError("the formula reads no variable, so that there is nothing to evaluate in a batch")
@@ -55,7 +62,7 @@ class Rows:
         times = None
         if TIME in data:
             times = _array(
-                data[TIME], TIME, (1, 2), "give timestamps for all traces, or a row of them for each"
+                data[TIME], TIME, (1, 2), "give timestamps for all traces, or a row of them for each", None
             )
             if times.shape not in (shape, shape[1:]):
                 raise TraceError(
@@ -103,8 +110,14 @@ class Rows:
         return False
 
 
-def _array(values: Any, name: str, dimensions: tuple[int, ...], how: str) -> NDArray[Any]:
-    """Return a copy of the values, doubles where all of them are numbers of at most 64 bits."""
+def _array(
+    values: Any,
+    name: str,
+    dimensions: tuple[int, ...],
+    how: str,
+    new_rows: Callable[[int, int], FloatArray] | None,
+) -> NDArray[Any]:
+    """Return a copy of the values; with ``new_rows``, doubles where all of them are numbers of at most 64 bits."""
     try:
         raw = as_array(values)
     except (TypeError, ValueError):
@@ -119,8 +132,11 @@ def _array(values: Any, name: str, dimensions: tuple[int, ...], how: str) -> NDA
     if raw.ndim not in dimensions:
         expected = " or ".join(map(str, dimensions))
         raise TraceError(f"'{name}' has {raw.ndim} dimensions, expected {expected}: {how}", variable=name)
-    number = raw.dtype.kind in "fiub" and raw.dtype.itemsize <= 8 and name != TIME
-    return np.array(raw, np.float64 if number else None, order="C")
+    if new_rows is not None and raw.dtype.kind in "fiub" and raw.dtype.itemsize <= 8:
+        numbers = new_rows(*raw.shape)
+        np.copyto(numbers, raw, casting="unsafe")
+        return numbers
+    return np.array(raw, order="C")
 
 
 def _lengths(lengths: Any, count: int, width: int) -> NDArray[np.int64]:

@@ -18,8 +18,10 @@ from rtamt.lazy_numpy import np
 from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from fractions import Fraction
+
+    from numpy.typing import NDArray
 
     from rtamt.compiler.plan import Scan
     from rtamt.compiler.program import Program
@@ -42,6 +44,9 @@ class Evaluator:
         self._longest = longest_bound(self._shape.expanded(), period)
         # The last plan, with what it was clipped to, and what runs its programs.
         self._plan: tuple[int, Plan, list[Run]] | None = None
+
+    #: The last plan that was asked for many traces, and what runs it; None where nothing does.
+    _batch: tuple[Plan, Any] | None = None
 
     def plan(self, n: int) -> tuple[Plan, list[Run]]:
         """Return the plan for traces of n samples, and what runs the program of each stage and the last one."""
@@ -72,27 +77,38 @@ class Evaluator:
                     columns[scan.name] = core().scan(scan.kind, *operands)
         return runs[-1].over(columns, n, trace, plan, self._asked)
 
-    def rows(self, columns: Mapping[str, FloatArray]) -> FloatArray | None:
-        """Return the robustness of the only formula at each sample of many traces, a row each, of the same length.
+    def rows(
+        self, columns: Mapping[str, FloatArray], rows: NDArray[np.int64], n: int, results: FloatArray
+    ) -> bool:
+        """Write the robustness of the only formula at the first n samples of these rows to those of ``results``.
 
-        None where it is undefined in one of them, or if an operator has code of its own.
+        False where it is undefined in one of them, or if an operator has code of its own.
         """
-        count, n = next(iter(columns.values())).shape
         plan, runs = self.plan(n)
-        flat = {name: column.reshape(-1) for name, column in columns.items()}
-        for stage, run in zip(plan.stages, runs, strict=False):
-            values = run.rows(flat, count, n)
-            if values is None or any(scan.kind == DEFINED for scan in stage.scans):
-                return None
-            for scan in stage.scans:
-                flat[scan.name] = core().scan(scan.kind, *(values[i] for i in scan.outputs), n=n)
-        values = runs[-1].rows(flat, count, n)
-        return None if values is None else values[0].reshape(count, n)
+        last = self._batch
+        if last is None or last[0] is not plan:
+            stages = self._stages(plan, runs, columns)
+            last = self._batch = plan, None if stages is None else core().Batch(stages, len(columns))
+        batch = last[1]
+        return batch is not None and batch.run(list(columns.values()), rows, n, results)
 
     def direct(self, domain: Discrete, trace: DiscreteTrace) -> Direct | None:
         """Return what evaluates the only formula over data alone, in recordings like this one; None if nothing does."""
         n, names = len(trace), tuple(trace.columns)
         plan, runs = self.plan(n)
+        stages = self._stages(plan, runs, names)
+        if stages is None:
+            return None
+        sizes = (n, n) if n <= self._longest else (self._longest + 1, sys.maxsize)
+        given = domain.period is not None
+        evaluator = core().DirectEvaluator(
+            names, TIME, float(trace.period), given, domain.tolerance, *sizes, stages, threads
+        )
+        return Direct(evaluator.run, frame_columns, Reading(names, trace.period, given))
+
+    @staticmethod
+    def _stages(plan: Plan, runs: Sequence[Run], names: Iterable[str]) -> list[Any] | None:
+        """Return the stages of a plan over these variables as the core reads them; None if an operator has code."""
         places = {name: place for place, name in enumerate(names)}
         stages = []
         for run, scans in zip(runs, [*(stage.scans for stage in plan.stages), ()], strict=True):
@@ -102,12 +118,7 @@ class Evaluator:
             stages.append((run.evaluator, inputs, [(scan.kind, list(scan.outputs)) for scan in scans]))
             for scan in scans:
                 places[scan.name] = len(places)
-        sizes = (n, n) if n <= self._longest else (self._longest + 1, sys.maxsize)
-        given = domain.period is not None
-        evaluator = core().DirectEvaluator(
-            names, TIME, float(trace.period), given, domain.tolerance, *sizes, stages, threads
-        )
-        return Direct(evaluator.run, frame_columns, Reading(names, trace.period, given))
+        return stages
 
 
 class StoredEvaluator(Evaluator):
@@ -187,14 +198,6 @@ class Run:
         except (RuntimeError, core().Undefined) as error:
             raise failed(error, program, trace, plan, asked) from None
         return values
-
-    def rows(self, columns: Mapping[str, FloatArray], count: int, n: int) -> list[FloatArray] | None:
-        """Return the same of ``count`` traces of n samples, one after another; None where one has no value."""
-        if self.evaluator is None:
-            return None
-        values: list[FloatArray]
-        values, wrong = self.evaluator.run_rows([columns[name] for name in self.program.inputs], count, n)
-        return values if wrong < 0 else None
 
 
 def failed(
