@@ -50,7 +50,7 @@ class Collector(ABC):
 
     @abstractmethod
     def update(self, keys: NDArray[Any]) -> Any:
-        """Return the reports as arrays; ``keys``: of the samples."""
+        """Return the reports as arrays; ``keys``: of the samples, an array that the caller may write to later."""
 
     def _rows(self, keys: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
         """Return the key of each row, and the index of its sample."""
@@ -176,7 +176,7 @@ class _Bounds(Collector):
             np.array(retracted, np.bool_),
         )
         return FleetBounds(
-            keys,
+            keys.copy(),
             np.array(lower, np.float64),
             np.array(upper, np.float64),
             np.array(late, np.bool_),
@@ -200,7 +200,9 @@ class _Causes(Collector):
     def update(self, keys: NDArray[Any]) -> FleetCausation:
         """See :class:`Collector`."""
         violation, satisfaction = _columns(self._causes, 2)
-        return FleetCausation(keys, np.array(violation, np.float64), np.array(satisfaction, np.float64))
+        return FleetCausation(
+            keys.copy(), np.array(violation, np.float64), np.array(satisfaction, np.float64)
+        )
 
 
 #: THE LIST of the monitors that a fleet can have, each with what collects its reports.

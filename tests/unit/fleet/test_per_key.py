@@ -52,6 +52,19 @@ def test_causation_is_in_the_order_of_the_batch() -> None:
     assert len(update) == 3
 
 
+@pytest.mark.parametrize("verdict", ["interval", "causation"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_an_update_keeps_its_keys_when_the_caller_uses_their_array_for_the_next_batch(
+    time: str, verdict: str
+) -> None:
+    fleet = rtamt.Fleet(SPEC, 5, verdict=verdict, time=time)
+    keys, updates = np.array([7, 8]), []
+    for t in range(3):
+        updates.append(fleet.update_many(keys, [t, t], {"x": [5.0, 4.0]}))
+        keys[:] = keys[::-1].copy()
+    assert [update.keys.tolist() for update in updates] == [[7, 8], [8, 7], [7, 8]]
+
+
 def test_late_samples_narrow_the_interval_and_those_that_are_too_late_are_counted() -> None:
     spec = rtamt.parse("once[0:2](x >= 3)")
     fleet = rtamt.Fleet(spec, 5, verdict="interval", lateness="2s")
