@@ -135,7 +135,7 @@ void add_monitors(const nanobind::module_& m, const Exceptions& exceptions) {
         .def("accepts", &Monitor::accepts, nb::arg("times"), nb::arg("columns"),
              "Whether a chunk may be pushed as it is. False for data that has to be looked at, or "
              "is wrong.")
-        .def("take_columns", &Monitor::take_columns, nb::arg("data"), nb::arg("time"),
+        .def("take_columns", &Monitor::take_columns, nb::arg("data").none(), nb::arg("time"),
              "Take a dict of columns; return the number of samples so far, and times and values of "
              "what became known of each output. None for data that has to be converted, or is "
              "wrong.")

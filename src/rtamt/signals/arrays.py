@@ -308,8 +308,11 @@ def _keys(data: Any) -> list[str]:
 
 
 def is_frame(data: Any) -> bool:
-    """Return whether data has columns by name, as frames of pandas and polars have; the columns of Arrow are arrays."""
-    return hasattr(data, "columns") and not hasattr(data, "column_names")
+    """Return whether data has columns by name, as frames of pandas and polars have; the columns of Arrow are arrays.
+
+    A lazy frame has none yet.
+    """
+    return not hasattr(data, "column_names") and not hasattr(data, "collect") and hasattr(data, "columns")
 
 
 def not_a_mapping(data: Any, to: str) -> TraceError:
@@ -317,6 +320,8 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
     if isinstance(data, str | PathLike):
         path = shown(fspath(data))
         return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
+    if type(data).__name__ == "LazyFrame":
+        return TraceError("expected data, got a LazyFrame; write frame.collect()")
     if hasattr(data, "column_names"):
         return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
     if getattr(getattr(data, "dtype", None), "names", None):

@@ -96,20 +96,20 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
     The evaluation of a frame reads only that column; ``names``: the variables that it reads. To use another
     column or unit, read the frame with :func:`rtamt.read`.
     """
-    others = [str(column) for column in frame.columns if column != time and column not in names]
+    others = [column for column in frame.columns if column != time and column not in names]
     if time in frame.columns:
-        found = [column for column in others if is_stamps(split_unit(column)[0])]
+        found = [f"'{column}'" for column in others if is_stamps(split_unit(str(column))[0])]
     else:
-        found = [column for column in others if _may_hold_times(column, frame[column])]
+        found = [f"'{column}'" for column in others if _may_hold_times(str(column), frame[column])]
         index = getattr(frame, "index", None)
-        name = str(getattr(index, "name", None) or "index")
-        if type(index).__name__ in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex") or is_stamps(name):
-            found.append(name)
+        name = getattr(index, "name", None)
+        kind = type(index).__name__
+        if kind in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex") or is_stamps(str(name)):
+            found.append("its index" if name is None else f"its index '{name}'")
     if found:
-        listing = ", ".join(f"'{column}'" for column in found)
         raise TraceError(
-            f"the frame may have its timestamps in {listing}, but only '{time}' is read here: read the frame with "
-            f"rtamt.read, which takes other columns and units",
+            f"the frame may have its timestamps in {', '.join(found)}, but only the column '{time}' is read here: read "
+            f"the frame with rtamt.read, which takes other columns and units",
             variable=time,
         )
 

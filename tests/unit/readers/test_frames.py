@@ -212,20 +212,38 @@ def test_messages(call, message):
         (pl.DataFrame({"time_ms": [0, 500], "x": [1, -1]}), "'time_ms'"),
         (pl.DataFrame({"when": DATES[:2], "x": [1, -1]}), "'when'"),
         (pd.DataFrame({"sim_time": [0, 500], "x": [1, -1]}), "'sim_time'"),
-        (pd.DataFrame({"x": [1, -1]}, index=pd.DatetimeIndex(DATES[:2])), "'index'"),
+        (pd.DataFrame({"x": [1, -1]}, index=pd.DatetimeIndex(DATES[:2])), "its index"),
+        (pd.DataFrame({"x": [1, -1]}, index=pd.Index([0, 500], name="time")), "its index 'time'"),
+        (pd.DataFrame([[0, 1, 2]], columns=["x", 7, "t"]), "'t'"),
         (pd.DataFrame({"time": [0, 1], "t [ms]": [0, 500], "x": [1, -1]}), "'t [ms]'"),
     ],
 )
 def test_a_frame_that_is_evaluated_directly_is_not_taken_to_have_no_time(frame, named, time):
     spec = rtamt.parse("always(x >= 0)", time=time)
     sentence = (
-        f"the frame may have its timestamps in {named}, but only 'time' is read here: read the frame with "
+        f"the frame may have its timestamps in {named}, but only the column 'time' is read here: read the frame with "
         f"rtamt.read, which takes other columns and units"
     )
     for evaluate in (spec.evaluate, lambda data: rtamt.check_stream(spec, [data])):
         with pytest.raises(rtamt.TraceError) as error:
             evaluate(frame)
         assert str(error.value) == sentence
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize("others", [[0, 1], [("a", "b"), ("c", "d")], [None, 2.5]])
+def test_a_frame_whose_other_columns_are_not_named_by_texts_is_evaluated(others, time):
+    frame = pd.DataFrame([[5, 7, 7], [4, 8, 8]])
+    frame.columns = pd.Index(["x", *others], dtype=object, tupleize_cols=False)
+    if time == "dense":
+        frame["time"] = [0.0, 1.0]
+    assert rtamt.parse("always(x >= 3)", time=time).evaluate(frame).robustness == 1
+
+
+def test_a_lazy_frame_is_an_error_that_names_collect():
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("always(x >= 3)").evaluate(pl.LazyFrame({"x": [5, 4]}))
+    assert str(error.value) == "expected data, got a LazyFrame; write frame.collect()"
 
 
 def test_a_frame_whose_columns_tell_no_time_is_samples_one_period_apart():

@@ -58,6 +58,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self._open_at_end: tuple[tuple[int, ...], ...] = ()
         # Samples that came before it is known where the trace starts.
         self._early: tuple[Any, ...] = ()
+        # A back end that has taken them, and what their corrections are replayed on.
+        self._rehearsal: tuple[Any, tuple[Any, ...], tuple[Any, ...]] | None = None
         self._at_end: Interval | None = None
         # The state of the back end before a call that takes several steps, any of which may fail.
         self._before: bytes | None = None
@@ -68,6 +70,10 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
     def samples(self) -> int:
         """See :class:`EarlyMonitor`."""
         return super().samples - self._filled
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        self._rehearsal = None  # the original goes on with it
+        super()._resume(state)
 
     def _connect(self, backend: Any) -> None:
         # The core alone would not forget what was noted when it takes the next sample.
@@ -158,12 +164,32 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
         """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
+        self._rehearse(time, known)
         self._keep()
         self._early = (*self._early, (time, known))
         times = [time for time, _ in self._early]
         assert self._late is not None
         if round((max(times) - min(times)) / float(self._step)) > self._late:
             self._start()
+
+    def _rehearse(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
+        """Raise the error for a sample that cannot be taken once the trace starts, and every later one with it."""
+        samples, rehearsal = [(time, known)], self._rehearsal
+        if rehearsal is None or any(time < then for then, _ in self._early):
+            samples = sorted([*self._early, *samples], key=lambda sample: sample[0])
+            rehearsal = self._session.open(), (), ()
+        remembered = {name: getattr(self, name) for name in self._remembered}
+        backend = inner_of(self._backend)
+        try:
+            taking, self._events, self._snapshots = rehearsal
+            self._connect(taking)
+            for each in samples:
+                self._check_late(each[0])
+                self._learn(*each)
+            self._rehearsal = inner_of(self._backend), self._events, self._snapshots
+        finally:
+            self.__dict__.update(remembered)
+            self._connect(backend)
 
     def _start(self) -> None:
         """Take the samples that were kept; all that they changed counts as changed by the last of them."""
@@ -176,6 +202,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             self._learn(time, known)
             noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
         self._early = ()
+        self._rehearsal = None
         self._note(noted)
         self._retracted = None  # nothing was reported that a correction could retract
 

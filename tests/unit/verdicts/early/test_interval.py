@@ -10,7 +10,7 @@ from math import inf
 import pytest
 
 import rtamt
-from rtamt import EvaluationError, Interval
+from rtamt import EvaluationError, Interval, StlError
 from rtamt.verdicts.early.discrete_interval import latest
 
 SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
@@ -223,10 +223,40 @@ def test_samples_whose_later_values_do_not_exist_are_accepted_until_the_trace_is
 
 def test_error_that_a_late_sample_causes_has_the_time_of_the_sample_without_a_value():
     monitor = rtamt.parse("sqrt(delay[1](y, 0)) < 9", period=0.5).monitor(verdict="interval", lateness=2)
-    for time, y in ((10, 1.0), (11, 1.0), (12, 1.0), (10.5, -2.0)):
+    for time, y in ((10, 1.0), (11, 1.0), (12, 1.0)):
         monitor.update(time, y=y)
     with pytest.raises(EvaluationError, match=r"has no value at sample 3, time 11\.5 s"):
-        monitor.update(12.5, y=1.0)
+        monitor.update(10.5, y=-2.0)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("again", [lambda monitor: monitor, copy.copy])
+@pytest.mark.parametrize(
+    ("time", "x", "message"),
+    [
+        (1, 7.0, "'x' is 7 at time 1 s, which contradicts what was known of it, 4: correct it"),
+        (2, -1.0, "'sqrt(x)' has no value at sample 1, time 2 s"),
+        (0, -1.0, "'sqrt(x)' has no value at sample 0, time 0 s"),
+        (1.5, 4.0, "sample 1 at 1.5 s is 0.5 s after the one before, expected 1 s"),
+    ],
+)
+def test_a_wrong_sample_before_the_start_is_an_error_and_does_not_block_all_later_ones(
+    backend, again, time, x, message
+):
+    spec = rtamt.parse("historically[0:1](sqrt(x) >= 1)", period=1, backend=backend)
+    monitor, other = (spec.monitor(verdict="interval", lateness=2) for _ in range(2))
+    monitor.update(1, x=4.0)
+    other.update(1, x=4.0)
+    first = again(monitor)
+    with pytest.raises(StlError) as caught:
+        first.update(time, x=x)
+    assert str(caught.value).startswith(message)
+    for then, value in ((2, 9.0), (0, 1.0), (3, 4.0), (4, 4.0)):
+        first.update(then, x=value)
+        other.update(then, x=value)
+        assert first.changes() == other.changes()
+    assert first.interval() == Interval(0.0, 0.0)
+    assert first.finish() == other.finish()
 
 
 @pytest.mark.parametrize("backend", ["cpp", "python"])

@@ -96,10 +96,9 @@ def test_what_is_final_is_kept_for_one_sample_in_both_back_ends(backend):
 
 
 @backends
-@pytest.mark.parametrize("value", [-1, (-2, -1)])
-def test_a_watermark_that_leaves_a_value_undefined_is_rejected(value, backend):
+def test_a_watermark_that_leaves_a_value_undefined_is_rejected(backend):
     monitor = monitor_of("sqrt(x) >= 1", "discrete", backend, verdict="interval", lateness=3)
-    for t, x in enumerate([4, value, 9]):
+    for t, x in enumerate([4, (-2, -1), 9]):  # the second may still be made more precise
         monitor.update(t, x=x)
     for _ in range(2):  # no sample is lost
         with pytest.raises(rtamt.EvaluationError) as error:
