@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from enum import Enum
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
@@ -18,6 +18,7 @@ from rtamt.signals.arrays import is_number, is_truth
 
 if TYPE_CHECKING:
     from collections.abc import Collection
+    from typing import TypedDict
 
     from rtamt.language.document import Document
     from rtamt.language.units.durations import Duration
@@ -31,17 +32,16 @@ Semantics: TypeAlias = str | Enum | PredicateSemantics
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
 
-class EvaluationSettings(TypedDict, total=False):
-    """The settings of :meth:`Specification.evaluate`, for functions that pass them on."""
-
-    time: str | TimeDomain | None
-    period: Duration | None
-    resolution: Duration | None
-    semantics: Semantics | None
-    time_unit: str | None
-
-
 if TYPE_CHECKING:  # annotations alone name them, and Python would compile each of theirs
+
+    class EvaluationSettings(TypedDict, total=False):
+        """The settings of :meth:`Specification.evaluate`, for functions that pass them on."""
+
+        time: str | TimeDomain | None
+        period: Duration | None
+        resolution: Duration | None
+        semantics: Semantics | None
+        time_unit: str | None
 
     class Settings(TypedDict, total=False):
         """The keyword arguments of :func:`rtamt.parse`, for functions that pass them on."""

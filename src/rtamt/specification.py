@@ -1,11 +1,13 @@
-"""``Specification``: requirements that can be evaluated, monitored, printed and rewritten."""
+"""``Specification``: requirements that can be evaluated, monitored, printed and rewritten.
+
+Results, and what few recordings need, are imported on use: monitors do not wait for them.
+"""
 
 from __future__ import annotations
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rtamt.batch_results import evaluate_rows
 from rtamt.engine import Evaluators, Query, engine_of
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
@@ -13,23 +15,19 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import dataclass
-from rtamt.results import Result, found_directly, requirements_of
-from rtamt.signals import members
 from rtamt.signals.data_errors import nan_of_members
-from rtamt.signals.inexact import Uncertainty, fill_gaps
-from rtamt.signals.rows import Rows
 from rtamt.signals.sampling import sampled
 from rtamt.signals.trace import Trace
 from rtamt.specification_online import OnlineSpecification
-from rtamt.verdicts.offline import by_start, findings_apart
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from rtamt.batch_results import BatchResult
     from rtamt.language.formula import Formula
     from rtamt.language.parsing.imports import Library
     from rtamt.language.units.durations import Duration
+    from rtamt.results import Result
     from rtamt.rewrite.quantifiers import Members
     from rtamt.settings import Semantics
     from rtamt.signals.signal import Signal
@@ -101,7 +99,7 @@ class Specification(OnlineSpecification):
             # A short trace is evaluated in a microsecond: each call from here on takes a tenth of one.
             found = direct[0](data if data.__class__ is dict else direct[1](data, self.input_names))
             if found is not None:
-                return found_directly(self, direct[2], found)
+                return self._found_directly(self, direct[2], found)
         if self.groups:
             query = self._query(time, period, tolerance, resolution, semantics, time_unit)
             spec, data = self._over_data(query, data)
@@ -160,6 +158,9 @@ class Specification(OnlineSpecification):
         >>> batch.robustness, batch.satisfied, batch[1].signal.values
         (array([ 2., -1.]), array([ True, False]), array([-1.,  6.,  6.]))
         """
+        from rtamt.batch_results import evaluate_rows
+        from rtamt.signals.rows import Rows
+
         query = self._query(time, period, tolerance, None, semantics, time_unit)
         rule = query.domain.sampling(self.sampling)
         for what, unfit in (
@@ -180,6 +181,8 @@ class Specification(OnlineSpecification):
 
     def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
         """Return the specification over the members of groups that data has, and data with their presence."""
+        from rtamt.signals import members
+
         rule = self.sampling
         own_time_bases = query.domain.own_time_bases or (rule is not None and rule.hold)
         found = members.bound(
@@ -202,9 +205,13 @@ class Specification(OnlineSpecification):
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
+        from rtamt.results import Result, requirements_of
+
         if self.groups:
             self.require_no_groups("this check")
         if len(self.requirements) > 1 and recording.domain.own_time_bases:
+            from rtamt.verdicts.offline import by_start, findings_apart
+
             outputs = [one._outputs(query.semantics) for one in self.requirements.values()]
             if len(by_start(outputs, recording)) > 1:
                 if recording.bounds:
@@ -221,6 +228,8 @@ class Specification(OnlineSpecification):
 
     def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""
+        from rtamt.signals.inexact import Uncertainty
+
         declared = Uncertainty.of(uncertainty, ranges, self.input_names)
         recording, missing = self._normalised(query, data)
         if self.resolved is not None:
@@ -236,6 +245,8 @@ class Specification(OnlineSpecification):
         except TraceError as error:
             if error.variable not in self.input_names:
                 raise
+            from rtamt.signals.inexact import fill_gaps
+
             own_time_bases = query.domain.own_time_bases
             filled, missing = fill_gaps(data, self.input_names, own_time_bases=own_time_bases)
             if not missing:
@@ -259,6 +270,12 @@ class Specification(OnlineSpecification):
         if time is period is tolerance is resolution is semantics is time_unit is None:
             return self._own_query
         return self._query_of(self._domain_for(time, period, tolerance, resolution), semantics, time_unit)
+
+    @cached_property
+    def _found_directly(self) -> Callable[[Specification, Any, Any], Result]:
+        from rtamt.results import found_directly
+
+        return found_directly
 
     @cached_property
     def _reads_as_given(self) -> bool:

@@ -1,4 +1,7 @@
-"""A specification with quantifiers over the members of groups, and the ordinary one that it is over known members."""
+"""A specification with quantifiers over the members of groups, and the ordinary one that it is over known members.
+
+How quantifiers are replaced is imported on use: most texts have none.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,6 @@ from rtamt.language.document import Declaration
 from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.presence import channel_of
-from rtamt.rewrite.quantifiers import Members, resolved_document
 from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Formula
     from rtamt.language.units.durations import Duration
+    from rtamt.rewrite.quantifiers import Members
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,6 +69,8 @@ class QuantifiedText(RecordedSpecification):
         >>> print(spec.over({"cars": ["car_1", "car_2"]}))
         car_1.x > 3 and car_2.x > 3
         """
+        from rtamt.rewrite.quantifiers import Members
+
         if not isinstance(members, Members):
             members = self._checked_members(members)
         key = tuple(members.names.items()), members.throughout
@@ -79,6 +84,8 @@ class QuantifiedText(RecordedSpecification):
         return {}
 
     def _resolved_over(self, members: Members) -> Self:
+        from rtamt.rewrite.quantifiers import resolved_document
+
         roles = dict(self.roles)
         declarations = {each.name: each for each in self.document.declarations}
         for group, fields in self.groups.values():
@@ -127,4 +134,6 @@ class QuantifiedText(RecordedSpecification):
                 if not self.groups[name][0].matches(member):
                     pattern = self.groups[name][0].pattern
                     raise UsageError(f"'{member}' is no member of '{name}', whose pattern is \"{pattern}\"")
+        from rtamt.rewrite.quantifiers import Members
+
         return Members(names, frozenset(member for found in names.values() for member in found))

@@ -12,7 +12,6 @@ from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
 from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.presence import channel_of
-from rtamt.rewrite.quantifier_streams import Splitting
 from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import require_samples, watched_of
 from rtamt.specification_groups import QuantifiedText
@@ -229,6 +228,8 @@ class OnlineSpecification(QuantifiedText):
         time_unit: str | None,
     ) -> OnlineMonitor:
         """Return a monitor of quantifiers over members that come and go."""
+        from rtamt.rewrite.quantifier_streams import Splitting  # other monitors do not wait for it
+
         domain = self._domain_for(time, period, tolerance, resolution).online
         early = verdict != DELAYED
         make = domain.part(f"members_{verdict}" if early else "members")

@@ -22,14 +22,11 @@ from rtamt.language.units.durations import positive_period
 from rtamt.language.value_types import WHOLE
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.pastify import pastify
-from rtamt.rewrite.quantifiers import resolve
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.ticks import NANOSECOND
 from rtamt.signals.time_domains import Defaults, time_domain
-from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,6 +44,7 @@ if TYPE_CHECKING:
     from rtamt.settings import Semantics
     from rtamt.signals.time_domain_interface import TimeDomain
     from rtamt.specification_groups import QuantifiedText
+    from rtamt.verdicts.robustness_and_truth import Outputs
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -302,6 +300,8 @@ class SpecificationText:
         >>> print(rtamt.parse("x >= 3 -> eventually[0:5](y >= 3)").pastified())
         once[5:5](x >= 3) -> once[0:5](y >= 3)
         """
+        from rtamt.rewrite.pastify import pastify
+
         step = self.period if period is None else positive_period(period)
         formula = self._grounded(self._domain_for(period=period))
         return pastify(formula, step or Fraction(1), self.text, self.unit)
@@ -333,6 +333,8 @@ class SpecificationText:
 
         ``formula``: one that replaces that of the specification, such as its pastified form.
         """
+        from rtamt.verdicts.robustness_and_truth import outputs_of
+
         chosen = self.formula if formula is None else formula
         return outputs_of(chosen, self._apply_semantics(chosen, semantics))
 
@@ -357,6 +359,8 @@ class SpecificationText:
             units=self.document.units,
         )
         if self.resolved is not None:
+            from rtamt.rewrite.quantifiers import resolve
+
             formula = resolve(formula, self.resolved[1])
         return with_values([formula], self.parameters)[0]
 

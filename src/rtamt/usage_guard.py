@@ -6,8 +6,8 @@ the fields of an object, a custom operator. It is rejected, and neither call aff
 
 from __future__ import annotations
 
+from _thread import allocate_lock
 from functools import wraps
-from threading import Lock
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
 
 from rtamt.errors import UsageError
@@ -25,7 +25,7 @@ class UsageGuard:
     __slots__ = ("_lock",)
 
     def __init__(self) -> None:
-        self._lock = Lock()
+        self._lock = allocate_lock()
 
     def __enter__(self) -> None:
         if not self._lock.acquire(blocking=False):

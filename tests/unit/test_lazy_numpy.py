@@ -1,6 +1,7 @@
 """NumPy is imported with its first use, and complete then."""
 
 import ast
+import importlib.util
 import re
 import subprocess
 import sys
@@ -45,6 +46,30 @@ def loaded():
 @pytest.mark.parametrize("use", WITHOUT_ARRAYS)
 def test_numpy_is_not_imported_where_no_array_is_made(loaded, use):
     assert loaded[use] == "False"
+
+
+#: What evaluates recordings or members, or by definition: no part of a monitor of plain numbers.
+NOT_FOR_MONITORS = (
+    "threading",
+    "rtamt.results",
+    "rtamt.verdicts.offline",
+    "rtamt.engine.discrete.evaluate",
+    "rtamt.engine.user_operators",
+    "rtamt.reference.discrete_robustness",
+    "rtamt.rewrite.quantifiers",
+    "rtamt.rewrite.pastify",
+    "rtamt.signals.inexact",
+    "rtamt.signals.members",
+)
+
+
+def test_a_monitor_does_not_wait_for_what_evaluates_recordings():
+    code = f"import sys, rtamt\n{WITHOUT_ARRAYS['a monitor']}\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    known, loaded = done.stdout.splitlines()
+    assert known == "None"
+    assert [each for each in NOT_FOR_MONITORS if each in loaded.split()] == []
+    assert all(importlib.util.find_spec(each) for each in NOT_FOR_MONITORS)
 
 
 COMMAND = """

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from rtamt.compiler.stored import is_built_in
 from rtamt.engine.engine import BACKENDS, engine_of
 from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
@@ -157,6 +156,8 @@ class Compiled(Backend):
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
     ) -> Callable[[Any], list[BoundedSignal]]:
         """See :class:`Backend`."""
+        from rtamt.compiler.stored import is_built_in  # monitors do not wait for it
+
         if all(map(is_built_in, postorder(*map(desugar, formulas)))):
             return self.core_bounds(formulas, step, inputs)
         return self._definition.bounds(formulas, step, inputs)

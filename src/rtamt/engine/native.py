@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from rtamt.engine.user_operators import SampleDriver, calls_of
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import excerpt
@@ -22,6 +21,9 @@ if TYPE_CHECKING:
     from rtamt.engine import _core
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
+
+    #: A call of a custom operator: its kernel, begin and end (-1 for none), the step in seconds, and its operands.
+    KernelCall: TypeAlias = tuple[Any, int, int, float, tuple[int, ...]]
 
 
 def core() -> ModuleType:
@@ -98,6 +100,15 @@ else:
         read_columns = _read_by_python
 
 
+def calls_of(program: Program) -> list[KernelCall]:
+    """Return the calls of a program for the core: the kernel, interval, step and operands of each."""
+    if not program.calls:
+        return []
+    from rtamt.engine.user_operators import kernel_calls  # few programs have calls
+
+    return kernel_calls(program)
+
+
 def core_monitor(
     program: Program,
     period: float,
@@ -112,7 +123,7 @@ def core_monitor(
     gaps and takes the sample; samples of ``ignored`` variables are skipped. ``types``: see ``coding.codes_of``.
     """
     _core = core()
-    code, calls = program.code(), calls_of(program, SampleDriver)
+    code, calls = program.code(), calls_of(program)
     try:
         return _core.Monitor(
             code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls, types

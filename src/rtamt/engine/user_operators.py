@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.compiler.program import CallSite, Program
+    from rtamt.engine.native import KernelCall
     from rtamt.language.formula import Apply
     from rtamt.language.operators import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
@@ -44,11 +45,9 @@ if TYPE_CHECKING:
     Events = tuple[NDArray[np.int64], Array]
 
 
-def calls_of(program: Program, driver: type[_Driver]) -> list[tuple[Any, int, int, float, tuple[int, ...]]]:
-    """Return the calls of a program for the core: the kernel, interval, step and operands of each.
-
-    ``driver``: that of the program's time domain.
-    """
+def kernel_calls(program: Program) -> list[KernelCall]:
+    """Return the calls of a program for the core."""
+    driver = EventDriver if program.domain.continuous else SampleDriver
     return [
         (
             _kernel(site, driver, program.period),

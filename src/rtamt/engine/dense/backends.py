@@ -10,8 +10,7 @@ from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, TickDefinition, named
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, settling
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
-from rtamt.engine.native import core, not_made
-from rtamt.engine.user_operators import EventDriver, calls_of
+from rtamt.engine.native import calls_of, core, not_made
 from rtamt.language.undefined_value import UndefinedAtTickError, undefined
 from rtamt.lazy_dataclasses import replace
 from rtamt.reference import dense_robustness as reference
@@ -147,7 +146,7 @@ class EventProgram(CompiledSession):
     def open(self) -> Any:
         """See :class:`Session`."""
         program = self.program
-        calls = calls_of(program, EventDriver)
+        calls = calls_of(program)
         try:
             return core().DenseMonitor(
                 program.code(), list(program.inputs), self._ignored, calls, self._types

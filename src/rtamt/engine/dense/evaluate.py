@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.plan import DEFINED, Stage
 from rtamt.compiler.shared import Shape
 from rtamt.engine.direct import Direct
-from rtamt.engine.native import core, culprit, not_made
+from rtamt.engine.native import calls_of, core, culprit, not_made
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
-from rtamt.engine.user_operators import EventDriver, calls_of, defined_signal
+from rtamt.engine.user_operators import defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
@@ -172,7 +172,7 @@ def run(
     _core = core()
     try:
         values: list[Samples] = _core.dense_evaluate(
-            program.code(), [columns[name] for name in program.inputs], extra, calls_of(program, EventDriver)
+            program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
         )
     except RuntimeError as error:
         raise not_made(program, error) from None

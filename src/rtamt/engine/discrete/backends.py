@@ -1,4 +1,7 @@
-"""The back ends of discrete time: the compiled core and the definition."""
+"""The back ends of discrete time: the compiled core and the definition.
+
+What evaluates recordings, and what evaluates by definition, is imported on use: monitors do not wait for it.
+"""
 
 from __future__ import annotations
 
@@ -7,26 +10,23 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
-from rtamt.compiler.stored import StoredPlan
-from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
-from rtamt.engine.discrete.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, longest_bound
-from rtamt.engine.discrete.python_backend import PythonMonitor
-from rtamt.engine.native import core, core_monitor
-from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.engine.native import calls_of, core, core_monitor
 from rtamt.errors import UsageError
-from rtamt.reference import discrete_robustness as reference
 from rtamt.rewrite.desugar import desugar
-from rtamt.signals.outcomes import BoundedSignal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
     from rtamt.compiler.program import Program
+    from rtamt.compiler.stored import StoredPlan
+    from rtamt.engine.discrete.evaluate import Evaluator, StoredEvaluator
+    from rtamt.engine.discrete.python_backend import PythonMonitor
     from rtamt.engine.early import EarlyQuery, EarlySession
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import Discrete, DiscreteTrace
+    from rtamt.signals.outcomes import BoundedSignal
 
 _SECOND = Fraction(1)
 
@@ -36,6 +36,8 @@ class CompiledDiscrete(Compiled):
 
     def evaluator(self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]) -> Evaluator:
         """See :class:`Backend`."""
+        from rtamt.engine.discrete.evaluate import Evaluator
+
         return Evaluator(formulas, step)
 
     def stored(
@@ -45,17 +47,25 @@ class CompiledDiscrete(Compiled):
         inputs: tuple[str, ...],
     ) -> StoredPlan:
         """See :class:`Compiled`."""
+        from rtamt.compiler.stored import StoredPlan
+        from rtamt.engine.discrete.evaluate import longest_bound
+
         shape = Shape.of(formulas)
         return StoredPlan.of(shape.plan(step, longest_bound(shape.expanded(), step) + 1), formulas)
 
     def stored_evaluator(self, plan: StoredPlan) -> StoredEvaluator:
         """See :class:`Compiled`."""
+        from rtamt.engine.discrete.evaluate import StoredEvaluator
+
         return StoredEvaluator(plan)
 
     def core_bounds(
         self, formulas: tuple[Formula, ...], step: Fraction, inputs: tuple[str, ...]
     ) -> Callable[[DiscreteTrace], list[BoundedSignal]]:
         """See :class:`Compiled`."""
+        from rtamt.engine.discrete.evaluate import BoundsEvaluator
+        from rtamt.signals.outcomes import BoundedSignal
+
         evaluator = BoundsEvaluator(formulas, step)
         return lambda trace: [BoundedSignal(trace.timestamps, *ends) for ends in evaluator.of_bounds(trace)]
 
@@ -65,7 +75,7 @@ class CompiledDiscrete(Compiled):
 
     def layout(self, program: Program) -> list[Place]:
         """See :class:`Compiled`."""
-        places = core().layout(program.code(), calls_of(program, SampleDriver))
+        places = core().layout(program.code(), calls_of(program))
         return [Place(root, register) for root, register in places]
 
     def session(
@@ -87,11 +97,11 @@ class CompiledDiscrete(Compiled):
 
     def memory(self, program: Program) -> int:
         """See :class:`Backend`."""
-        return int(core().memory(program.code(), calls_of(program, SampleDriver)))
+        return int(core().memory(program.code(), calls_of(program)))
 
     def early_session(self, query: EarlyQuery, domain: Discrete) -> EarlySession:
         """See :class:`Backend`."""
-        from rtamt.engine.discrete import early  # delayed monitors do not wait for it
+        from rtamt.engine.discrete import early
 
         return early.program_of(query, domain)
 
@@ -106,6 +116,7 @@ class DefinedDiscrete(Defined):
         inputs: tuple[str, ...],
     ) -> Callable[[DiscreteTrace], list[FloatArray]]:
         """See :class:`Backend`."""
+        from rtamt.reference import discrete_robustness as reference
 
         def evaluated(trace: DiscreteTrace) -> list[FloatArray]:
             start = float(trace.times[0])
@@ -115,6 +126,8 @@ class DefinedDiscrete(Defined):
 
     def bounds_of(self, formula: Formula, trace: DiscreteTrace) -> BoundedSignal:
         """See :class:`Defined`."""
+        from rtamt.engine import offline_bounds
+
         return offline_bounds.discrete(formula, trace)
 
     def session(
@@ -136,7 +149,7 @@ class DefinedDiscrete(Defined):
 
     def early_session(self, query: EarlyQuery, domain: Discrete) -> EarlySession:
         """See :class:`Backend`."""
-        from rtamt.engine.discrete import early  # delayed monitors do not wait for it
+        from rtamt.engine.discrete import early
 
         return early.definition_of(query, domain)
 
@@ -199,6 +212,8 @@ class SampleDefinition(Session):
 
     def open(self) -> PythonMonitor:
         """See :class:`Session`."""
+        from rtamt.engine.discrete.python_backend import PythonMonitor
+
         return PythonMonitor(*self._made_of)
 
     def part(self, monitor: PythonMonitor, formula: Formula) -> float:

@@ -10,8 +10,8 @@ from rtamt.compiler.shared import Shape
 from rtamt.engine.cores import threads
 from rtamt.engine.direct import Direct
 from rtamt.engine.discrete.recording import Reading, frame_columns
-from rtamt.engine.native import core, culprit, not_made
-from rtamt.engine.user_operators import SampleDriver, calls_of, defined_column
+from rtamt.engine.native import calls_of, core, culprit, not_made
+from rtamt.engine.user_operators import defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
 from rtamt.lazy_numpy import np
@@ -193,7 +193,7 @@ class Run:
             if self.evaluator is not None:
                 values = self.evaluator.run(inputs, n, threads)
             else:
-                calls = calls_of(program, SampleDriver)
+                calls = calls_of(program)
                 values = core().evaluate(program.code(), inputs, n, calls)
         except (RuntimeError, core().Undefined) as error:
             raise failed(error, program, trace, plan, asked) from None
