@@ -32,6 +32,9 @@ Semantics: TypeAlias = str | Enum | PredicateSemantics
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
 
+#: The names of the settings of :meth:`Specification.evaluate` that functions pass on.
+EVALUATION_SETTINGS = ("time", "period", "resolution", "semantics", "time_unit")
+
 if TYPE_CHECKING:  # annotations alone name them, and Python would compile each of theirs
 
     class EvaluationSettings(TypedDict, total=False):

@@ -11,7 +11,7 @@ from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.settings import EvaluationSettings
+from rtamt.settings import EVALUATION_SETTINGS
 from rtamt.signals.binding import Binding
 from rtamt.specification import Specification
 from rtamt.verdicts.modes import DELAYED, mode_of
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rtamt.language.units.durations import Duration
 
 #: What readers of a suite decide, and not a fleet of it.
-_OF_SUITES = frozenset({"tolerance", *EvaluationSettings.__annotations__})
+_OF_SUITES = frozenset({"tolerance", *EVALUATION_SETTINGS})
 
 
 class Opened(NamedTuple):
