@@ -81,9 +81,10 @@ def _numbers(
     arrow: Any, buffer: bytearray, size: int, header: Header, columns: Sequence[Column]
 ) -> list[list[FloatArray]] | None:
     """Return the columns of some lines, in parts; None unless their cells are decimal numbers that doubles can hold."""
-    if any(buffer.find(odd, 0, size) >= 0 for odd in (b'"', b"#")):
+    quotes, comments, returns = (buffer.find(odd, 0, size) >= 0 for odd in (b'"', b"#", b"\r"))
+    if quotes or comments:
         return None
-    if buffer.count(b"\r", 0, size) != buffer.count(b"\r\n", 0, size):
+    if returns and buffer.count(b"\r", 0, size) != buffer.count(b"\r\n", 0, size):
         return None
     names = [str(i) for i in range(len(header.names))]
     wanted = [names[column.position] for column in columns]
