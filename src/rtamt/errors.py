@@ -200,12 +200,13 @@ def placed(error: StlError, where: str) -> StlError:
 
 
 def shown(value: object) -> str:
-    """Return a value for a message: its repr, abbreviated if long.
+    """Return a value for a message: its repr in one line, abbreviated if long.
 
     >>> shown("abc"), len(shown(10**400)), shown(10**10_000)
     ("'abc'", 40, '<an int of about 10001 digits>')
     """
-    return _AS_SHOWN.repr(value)
+    text = _AS_SHOWN.repr(value)
+    return " ".join(text.split()) if "\n" in text else text
 
 
 class _Repr(reprlib.Repr):

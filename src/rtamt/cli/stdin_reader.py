@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from rtamt.cli.json_lines import (
 )
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_dataclasses import replace
 from rtamt.readers.assemble import Choice, select, timestamps_of
 from rtamt.readers.csv import (
     Column,
@@ -179,6 +181,10 @@ class _Timestamps:
         self._choice = choice
         self._dense = dense
         self._kinds: dict[str, str] = {}
+        #: How many columns have a name: several are an error where one is read, as in a file.
+        self._counts: Counter[str] = Counter()
+        #: Whether the column without a name looks like timestamps.
+        self._axis = False
         self._samples = 0
         self._cells: Cells | None = None
         self.column: TimestampColumn | None = None
@@ -200,14 +206,22 @@ class _Timestamps:
         if self.column is not None or (self._choice.time == "" and self._kinds):
             return None
         found = False
+        columns = list(columns)
+        if not self._kinds:
+            self._counts.update(column for column, _ in columns)
         for column, value in columns:
+            self._axis |= not column and _is_measured(value)
             if not self._kinds.get(column):
                 found |= value is not None or column not in self._kinds
                 self._kinds[column] = "" if value is None else "time" if is_date(value) else "number"
         return self._select(all_named) if found else None
 
     def _select(self, all_named: bool) -> Selection:
-        fields = tuple(field_of(column, kind) for column, kind in self._kinds.items())
+        fields = tuple(
+            replace(field_of(column, kind), axis=not column and self._axis)
+            for column, kind in self._kinds.items()
+            for _ in range(max(self._counts[column], 1))
+        )
         source = Source(STDIN, (Table(fields, _load),))
         known = {name for field in fields for name in (field.name, field.column)}
         columns = {name: self._choice.column_of(name, known.__contains__) for name in self._names}
@@ -243,6 +257,11 @@ class _Timestamps:
                 values[TIME] = float(in_seconds(times)[0])
         self._samples += 1
         return time, values
+
+
+def _is_measured(value: Any) -> bool:
+    """Return whether a cell holds a number with a point or an exponent, and not the number of a row."""
+    return isinstance(value, str) and is_number(value) and not value.lstrip("+-").isdigit()
 
 
 def _load(_: Sequence[Field]) -> list[Raw]:

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 _SAMPLE = 100
 #: Bytes of a column in a Parquet file that are read at a time.
 _BUFFER = 2**20
+#: Batches of an Arrow file that are one chunk at most: a program that records may write one for each sample.
+_BATCHES = 2**10
+#: How pandas calls the column of an index without a name.
+_INDEX = "__index_level_0__"
 
 
 def open_parquet(path: str) -> Source:
@@ -34,7 +38,7 @@ def open_parquet(path: str) -> Source:
     fields = _fields(schema, arrow, _dated(first, texts, arrow))
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        return _raws(file.read(columns=_columns(wanted)).flatten(), wanted)
+        return _raws(_flattened(file.read(columns=_columns(wanted)), arrow), wanted)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         batches = file.iter_batches(CHUNK, columns=_columns(wanted))
@@ -65,14 +69,21 @@ def open_arrow(path: str) -> Source:
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         whole = arrow.Table.from_batches(list(batches), schema=reader.schema)
-        return _raws(whole.flatten(), wanted)
+        return _raws(_flattened(whole, arrow), wanted)
 
     return Source(path, (Table(fields, load, chunks),), close=file.close)
 
 
 def _flat(schema: Any, arrow: Any) -> Any:
     """Return a schema with a column for each field of a struct; an ``empty_table`` of pyarrow imports pandas first."""
-    return arrow.Table.from_batches([], schema).flatten().schema
+    return _flattened(arrow.Table.from_batches([], schema), arrow).schema
+
+
+def _flattened(table: Any, arrow: Any) -> Any:
+    """Return a table with a column for each field of a struct, also of structs in structs."""
+    while any(arrow.types.is_struct(column.type) for column in table.schema):
+        table = table.flatten()
+    return table
 
 
 def _valid(batch: Any) -> Any:
@@ -84,16 +95,35 @@ def _valid(batch: Any) -> Any:
 def table_of_arrow(table: Any) -> Table:
     """Return an arrow table; a struct is a column for each of its fields, called ``struct.field``."""
     arrow = library("pyarrow", "arrow tables")
-    flat = table.flatten()
+    flat = _flattened(table, arrow)
     fields = _fields(flat.schema, arrow, _dated(flat, _texts(flat.schema, arrow), arrow))
     return Table(fields, lambda wanted: _raws(flat, wanted))
 
 
+def table_of_batch(batch: Any) -> Table:
+    """Return a record batch as a table."""
+    return table_of_arrow(library("pyarrow", "arrow tables").Table.from_batches([batch]))
+
+
 def _of_batches(batches: Iterable[Any], wanted: Sequence[Field], arrow: Any) -> Iterator[list[Raw]]:
-    for batch in batches:
-        flat = arrow.Table.from_batches([batch]).flatten()
+    for several in _gathered(batches):
+        flat = _flattened(arrow.Table.from_batches(several), arrow)
         for start in range(0, len(flat), CHUNK):
             yield _raws(flat.slice(start, CHUNK), wanted)
+
+
+def _gathered(batches: Iterable[Any]) -> Iterator[list[Any]]:
+    """Yield batches together that are small: the first chunk decides on the period, which takes two samples."""
+    several: list[Any] = []
+    rows = 0
+    for batch in batches:
+        several.append(batch)
+        rows += len(batch)
+        if rows >= CHUNK or (len(several) >= _BATCHES and rows > 1):
+            yield several
+            several, rows = [], 0
+    if several:
+        yield several
 
 
 def _columns(wanted: Sequence[Field]) -> list[str]:
@@ -111,7 +141,7 @@ def _dated(first: Any, texts: Sequence[str], arrow: Any) -> set[str]:
     """Return which columns of texts hold dates, from the first text that is not missing."""
     if first is None or not texts:
         return set()
-    head = first if isinstance(first, arrow.Table) else arrow.Table.from_batches([first]).flatten()
+    head = first if isinstance(first, arrow.Table) else _flattened(arrow.Table.from_batches([first]), arrow)
     cells = {name: head.column(name).slice(0, _SAMPLE).to_pylist() for name in texts}
     return {name for name in texts if is_date(next((c for c in cells[name] if c is not None), None))}
 
@@ -120,20 +150,23 @@ def _fields(schema: Any, arrow: Any, dated: Collection[str]) -> tuple[Field, ...
     types = arrow.types
     fields = []
     for column in schema:
+        type_ = column.type
+        if types.is_dictionary(type_) or types.is_run_end_encoded(type_):
+            type_ = type_.value_type
         kind = ""
-        if column.name in dated or (types.is_temporal(column.type) and not types.is_time(column.type)):
+        if column.name in dated or (types.is_temporal(type_) and not types.is_time(type_)):
             kind = "time"
         elif any(
-            test(column.type)
-            for test in (types.is_integer, types.is_floating, types.is_decimal, types.is_boolean)
+            test(type_) for test in (types.is_integer, types.is_floating, types.is_decimal, types.is_boolean)
         ):
             kind = "number"
-        elif not types.is_null(column.type):
+        elif not types.is_null(type_):
             kind = "text"
         field = field_of(column.name, kind)
         said = column.metadata or {}
         unit = (said.get(b"unit") or said.get(b"units") or b"").decode(errors="replace")
-        fields.append(Field(field.column, field.name, unit or field.unit, kind))
+        axis = column.name == _INDEX and types.is_floating(type_)
+        fields.append(Field(field.column, field.name, unit or field.unit, kind, axis=axis))
     return tuple(fields)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from codecs import getincrementaldecoder
 from io import TextIOWrapper
-from itertools import chain, islice
+from itertools import chain, islice, pairwise
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError
@@ -47,10 +47,15 @@ def open_csv(path: str) -> Source:
         sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
     if any("\ufffd" in name for name in header.names):
         _require_utf8(path)
-    fields = [
-        field_of(column, _kind([row[i].strip() for row in sample if len(row) > i and row[i].strip()]))
-        for i, column in enumerate(header.names)
+    if any("\0" in name for name in header.names):  # UTF-16
+        raise _no_utf8(path)
+    cells = [
+        [row[i].strip() for row in sample if len(row) > i and row[i].strip()]
+        for i in range(len(header.names))
     ]
+    fields = [field_of(column, _kind(cells[i])) for i, column in enumerate(header.names)]
+    if not header.names[0] and _is_axis(cells[0]):
+        fields[0] = replace(fields[0], axis=True)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         try:
@@ -129,3 +134,15 @@ def _kind(cells: Sequence[str]) -> str:
         return "time"
     numeric = any(is_boolean(cell) or is_number(cell.replace(",", ".")) for cell in cells)
     return "text" if cells and not numeric else "number"
+
+
+def _is_axis(cells: Sequence[str]) -> bool:
+    """Return whether the cells of a column without a name are increasing numbers, and not the numbers of the rows.
+
+    Such is the index of a frame that pandas has written.
+    """
+    if len(cells) < 2 or not all(map(is_number, cells)):
+        return False
+    numbers = [float(cell) for cell in cells]
+    steps = {after - before for before, after in pairwise(numbers)}
+    return min(steps) > 0 and steps != {1.0}

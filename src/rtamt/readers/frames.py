@@ -50,14 +50,20 @@ def kind_of(raw: Raw) -> str:
 
 
 def table_of(
-    columns: Mapping[str, Raw], time_column: str | None = None, units: Mapping[str, str] | None = None
+    columns: Mapping[str, Raw],
+    time_column: str | None = None,
+    units: Mapping[str, str] | None = None,
+    axis: str | None = None,
 ) -> Table:
-    """Return arrays of one length as a table; ``time_column``: the column that is known to hold the timestamps."""
+    """Return arrays of one length as a table.
+
+    ``time_column``: the column that is known to hold the timestamps; ``axis``: one that looks like them.
+    """
     fields = {}
     for column, raw in columns.items():
         field = field_of(str(column), kind_of(raw))
         unit = (units or {}).get(column, field.unit)
-        fields[field.column] = Field(field.column, field.name, unit, field.kind)
+        fields[field.column] = Field(field.column, field.name, unit, field.kind, axis=column == axis)
     by_column = {str(column): raw for column, raw in columns.items()}
     _check_lengths(by_column)
     return Table(
@@ -126,14 +132,24 @@ def _pandas(frame: Any) -> Source:
     if len(columns) < len(frame.columns):
         twice = next(str(c) for i, c in enumerate(frame.columns) if c in list(frame.columns[:i]))
         raise TraceError(f"the pandas frame has two columns called '{twice}'; rename one of them")
-    index, time_column = frame.index, None
-    if getattr(index, "nlevels", 1) == 1 and type(index).__name__ != "RangeIndex":
+    index, time_column, axis = frame.index, None, None
+    if type(index).__name__ == "PeriodIndex":
+        index = index.to_timestamp()
+    if index.nlevels > 1:
+        levels = {
+            str(name): index.get_level_values(i) for i, name in enumerate(index.names) if name is not None
+        }
+        columns = {name: _pandas_column(each.to_series()) for name, each in levels.items()} | columns
+    elif type(index).__name__ != "RangeIndex":
         name = str(index.name) if index.name is not None else "index"
         dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
+        # A column that has the name of timestamps comes first, as in an evaluation of the frame.
+        named = any(is_stamps(field_of(column).name) for column in columns)
         if name not in columns:
             columns = {name: _pandas_column(index.to_series()), **columns}
-            time_column = name if dated or is_stamps(field_of(name).name) else None
-    return Source("a pandas frame", (table_of(columns, time_column),))
+            time_column = name if not named and (dated or is_stamps(field_of(name).name)) else None
+            axis = name if index.dtype.kind == "f" else None
+    return Source("a pandas frame", (table_of(columns, time_column, axis=axis),))
 
 
 def _pandas_column(series: Any) -> Raw:
@@ -183,6 +199,12 @@ def _arrow(table: Any) -> Source:
     return Source("an arrow table", (table_of_arrow(table),))
 
 
+def _arrow_batch(batch: Any) -> Source:
+    from rtamt.readers.arrow import table_of_batch
+
+    return Source("an arrow batch", (table_of_batch(batch),))
+
+
 def _xarray(data: Any) -> Source:
     """Return a table for each dimension: the variables along it, and its coordinate as timestamps."""
     tables, left_out = [], [str(name) for name, v in data.data_vars.items() if v.ndim != 1]
@@ -218,6 +240,7 @@ _OPENERS: dict[tuple[str, str], Callable[[Any], Source]] = {
     ("pandas", "Series"): _pandas_series,
     ("polars", "DataFrame"): _polars,
     ("pyarrow", "Table"): _arrow,
+    ("pyarrow", "RecordBatch"): _arrow_batch,
     ("xarray", "Dataset"): _xarray,
     ("xarray", "DataArray"): _xarray_array,
 }

@@ -41,7 +41,7 @@ class Field:
 
     ``kind``: "number", "time" (dates, timestamps of a known unit), "text", or "" while unknown. ``skip_nan``:
     whether a NaN in it is a missing value, and no mistake. ``type``: of the variable, if its values may be names.
-    ``alias``: another name, which listings leave out.
+    ``alias``: another name, which listings leave out. ``axis``: whether it looks like timestamps, whatever its name.
     """
 
     column: str
@@ -51,6 +51,7 @@ class Field:
     skip_nan: bool = field(default=False, compare=False)
     type: ValueType | None = field(default=None, compare=False)
     alias: str = field(default="", compare=False)
+    axis: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

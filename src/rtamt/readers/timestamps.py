@@ -39,12 +39,14 @@ def guess_field(fields: Sequence[Field], source: str, wanted: Collection[str]) -
 
     What a formula reads (``wanted``) is no candidate while there are others. Raises
     :class:`TraceError` that lists the candidates where there are several, or where there is none
-    but columns that are called in a similar way.
+    but columns that are called in a similar way or look like timestamps.
     """
     found = [field for field in fields if is_stamps(field.name)]
     if not found:
         found = [field for field in fields if field.kind == "time"]
-        others = [field for field in fields if field.kind != "time" and may_be_stamps(field.name)]
+        others = [
+            field for field in fields if field.kind != "time" and (field.axis or may_be_stamps(field.name))
+        ]
         others = [field for field in others if not _is_wanted(field, wanted)]
         if others:
             raise _unclear([*found, *others], source)
@@ -59,9 +61,10 @@ def _is_wanted(field: Field, wanted: Collection[str]) -> bool:
 
 
 def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
-    listing = ", ".join(f"'{field.column}'" for field in candidates)
+    listing = ", ".join(f"'{field.column}'" if field.column else "one without a name" for field in candidates)
     has = "several columns that" if len(candidates) > 1 else "a column that"
-    return TraceError(f"{source} has {has} may hold the timestamps: {listing}; {CHOICES}")
+    choices = CHOICES if all(field.column for field in candidates) else f"name it, or {CHOICES}"
+    return TraceError(f"{source} has {has} may hold the timestamps: {listing}; {choices}")
 
 
 class TimestampColumn:

@@ -310,9 +310,10 @@ def _keys(data: Any) -> list[str]:
 def is_frame(data: Any) -> bool:
     """Return whether data has columns by name, as frames of pandas and polars have; the columns of Arrow are arrays.
 
-    A lazy frame has none yet.
+    A lazy frame has none yet. A frame has its columns as attributes, too, a class has not.
     """
-    return not hasattr(data, "column_names") and not hasattr(data, "collect") and hasattr(data, "columns")
+    kind = type(data)
+    return not hasattr(kind, "column_names") and not hasattr(kind, "collect") and hasattr(data, "columns")
 
 
 def not_a_mapping(data: Any, to: str) -> TraceError:

@@ -101,17 +101,30 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
         found = [f"'{column}'" for column in others if is_stamps(split_unit(str(column))[0])]
     else:
         found = [f"'{column}'" for column in others if _may_hold_times(str(column), frame[column])]
-        index = getattr(frame, "index", None)
-        name = getattr(index, "name", None)
-        kind = type(index).__name__
-        if kind in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex") or is_stamps(str(name)):
-            found.append("its index" if name is None else f"its index '{name}'")
+        found += _times_in_index(getattr(frame, "index", None))
     if found:
         raise TraceError(
             f"the frame may have its timestamps in {', '.join(found)}, but only the column '{time}' is read here: read "
             f"the frame with rtamt.read, which takes other columns and units",
             variable=time,
         )
+
+
+def _times_in_index(index: Any) -> list[str]:
+    """Return an index of pandas, or those of its levels, that may hold timestamps, as a message calls them."""
+    if getattr(index, "nlevels", 1) > 1:
+        return [f"its index '{name}'" for name in index.names if _is_called_so(name)]
+    name = getattr(index, "name", None)
+    dated = type(index).__name__ in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex")
+    # Rows are numbered by integers: what is measured is no number of a row.
+    measured = getattr(getattr(index, "dtype", None), "kind", "") == "f"
+    if not (dated or measured or _is_called_so(name)):
+        return []
+    return ["its index" if name is None else f"its index '{name}'"]
+
+
+def _is_called_so(name: Any) -> bool:
+    return name is not None and is_stamps(split_unit(str(name))[0])
 
 
 def _may_hold_times(column: str, values: Any) -> bool:

@@ -242,6 +242,32 @@ def test_a_stream_whose_time_column_is_not_clear_is_rejected_as_the_file_is(run,
     assert run("monitor", "x >= 0", "--time-column", "", stdin=text).code == 0
 
 
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("time,x,x\n0,1,2\n1,1,2\n", "has 2 columns called 'x'; rename all but one of them"),
+        (
+            "time,x,time\n0,1,0\n1,1,0\n",
+            "has several columns that may hold the timestamps: 'time', 'time'; choose one with time=, or on the "
+            "command line --time-column ('' for none)",
+        ),
+        (
+            ",x\n0.0,1\n0.5,1\n",
+            "has a column that may hold the timestamps: one without a name; name it, or choose one with time=, or on "
+            "the command line --time-column ('' for none)",
+        ),
+    ],
+)
+def test_columns_that_are_ambiguous_are_rejected_as_in_the_file(run, write, text, problem):
+    write("log.csv", text)
+    assert run("check", "x >= 0", "log.csv").err == f"rtamt: log.csv {problem}\n"
+    assert run("monitor", "x >= 0", stdin=text).err == f"rtamt: stdin {problem}\n"
+
+
+def test_a_column_that_is_not_read_may_be_there_twice(run):
+    assert run("monitor", "x >= 0", stdin="time,x,y,y\n0,1,2,3\n").out == '{"time": 0.0, "robustness": 1.0}\n'
+
+
 def test_a_time_that_comes_later_is_not_left_out_of_account(run):
     for stdin in (jsonl({"x": 1}, {"x": 1, "time": 7}), "when,x\n,1\n2026-01-01,1\n"):
         answer = run("monitor", "x >= 0", stdin=stdin)

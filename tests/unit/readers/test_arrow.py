@@ -161,3 +161,47 @@ def test_numbers_of_arrow_are_those_of_its_own_conversion(kind):
         found = arrow.values_of(some)
         assert found.dtype == kind
         np.testing.assert_array_equal(found, some.to_numpy())
+
+
+def test_batches_of_one_sample_are_chunks_of_several(tmp_path):
+    path = tmp_path / "log.arrow"
+    table = pa.table({"time": np.arange(4) * 0.5, "x": [1.0, 2.0, -1.0, 3.0]})
+    with pa.OSFile(str(path), "wb") as file, pa.ipc.new_file(file, table.schema) as writer:
+        for batch in table.to_batches(max_chunksize=1):
+            writer.write_batch(batch)
+    (chunk,) = rtamt.scan(path)
+    assert chunk["x"].values.tolist() == [1, 2, -1, 3]
+    found = rtamt.check_stream(rtamt.parse("always(x >= 0)"), rtamt.scan(path))
+    assert (found.robustness, float(found.period), found.first_violation) == (-1, 0.5, 1.0)
+
+
+def test_structs_in_structs_have_a_column_for_each_field(tmp_path):
+    table = pa.table({"time": [0.0, 1.0], "pose": [{"at": {"x": 1.0}}, {"at": {"x": 2.0}}]})
+    parquet.write_table(table, tmp_path / "log.parquet")
+    feather.write_feather(table, tmp_path / "log.feather")
+    for name in ("log.parquet", "log.feather"):
+        assert rtamt.read(tmp_path / name)["pose.at.x"].values.tolist() == [1, 2]
+        (chunk,) = rtamt.scan(tmp_path / name, columns=["pose.at.x"])
+        assert chunk["pose.at.x"].values.tolist() == [1, 2]
+
+
+def test_encoded_numbers_are_signals(tmp_path):
+    runs = pa.RunEndEncodedArray.from_arrays(pa.array([2, 3], pa.int32()), pa.array([1.0, 2.0]))
+    table = pa.table({"time": [0.0, 1.0, 2.0], "x": runs, "y": pa.array([5.0, 5.0, 6.0]).dictionary_encode()})
+    path = tmp_path / "log.arrow"
+    with pa.OSFile(str(path), "wb") as file, pa.ipc.new_file(file, table.schema) as writer:
+        writer.write_table(table)
+    trace = rtamt.read(path)
+    assert trace["x"].values.tolist() == [1, 1, 2]
+    assert trace["y"].values.tolist() == [5, 5, 6]
+
+
+def test_the_index_that_pandas_writes_without_a_name_may_hold_the_timestamps(tmp_path):
+    path = tmp_path / "log.parquet"
+    parquet.write_table(pa.table({"x": [1.0, 2.0], "__index_level_0__": [0.0, 0.5]}), path)
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"{path} has a column that may hold the timestamps: '__index_level_0__'; choose one with time=, or on the "
+        f"command line --time-column ('' for none)"
+    )

@@ -161,7 +161,8 @@ def test_the_data_of_the_caller_is_not_shared():
         (lambda: rtamt.read(5),
          "cannot read data of type int: give a file (CSV, Parquet, Arrow, Excel, PX4 ULog, MDF, ROS bag), the address "
          "of a database, or a dict, a structured numpy array, "
-         "pandas.DataFrame, pandas.Series, polars.DataFrame, pyarrow.Table, xarray.Dataset, xarray.DataArray"),
+         "pandas.DataFrame, pandas.Series, polars.DataFrame, pyarrow.Table, pyarrow.RecordBatch, xarray.Dataset, "
+         "xarray.DataArray"),
         (lambda: rtamt.read(np.zeros((2, 2))),
          "an array of 2 dimensions does not say what is in it: give a dict from name to values, "
          "or an array with named fields"),
@@ -204,6 +205,9 @@ def test_messages(call, message):
     assert str(error.value) == message
 
 
+LEVELS = pd.MultiIndex.from_product([["car"], [0.0, 0.5]], names=["vehicle", "time"])
+
+
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 @pytest.mark.parametrize(
     ("frame", "named"),
@@ -215,6 +219,10 @@ def test_messages(call, message):
         (pd.DataFrame({"x": [1, -1]}, index=pd.DatetimeIndex(DATES[:2])), "its index"),
         (pd.DataFrame({"x": [1, -1]}, index=pd.Index([0, 500], name="time")), "its index 'time'"),
         (pd.DataFrame([[0, 1, 2]], columns=["x", 7, "t"]), "'t'"),
+        (pd.DataFrame({"x": [1, -1]}, index=pd.period_range("2024-01", periods=2, freq="s")), "its index"),
+        (pd.DataFrame({"x": [1, -1]}, index=[0.0, 0.5]), "its index"),
+        (pd.DataFrame({"x": [1, -1]}, index=pd.Index([0, 500], name="time [ms]")), "its index 'time [ms]'"),
+        (pd.DataFrame({"x": [1, -1]}, index=LEVELS), "its index 'time'"),
         (pd.DataFrame({"time": [0, 1], "t [ms]": [0, 500], "x": [1, -1]}), "'t [ms]'"),
     ],
 )
@@ -255,3 +263,51 @@ def test_a_frame_whose_columns_tell_no_time_is_samples_one_period_apart():
             ).robustness
             == -2
         )
+
+
+def test_an_index_of_measured_numbers_may_hold_the_timestamps():
+    frame = pd.DataFrame({"x": [1.0, -1.0]}, index=[0.0, 0.5])
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(frame)
+    assert str(error.value) == (
+        "a pandas frame has a column that may hold the timestamps: 'index'; choose one with time=, or on the command "
+        "line --time-column ('' for none)"
+    )
+    assert rtamt.read(frame, time="index")["x"].times.tolist() == [0.0, 0.5]
+    assert rtamt.read(frame, time="")["x"].times.tolist() == [0, 1]
+
+
+def test_a_column_called_time_comes_before_an_index_of_dates_as_in_an_evaluation():
+    frame = pd.DataFrame({"time": [0.0, 0.5], "x": [1, -1]}, index=pd.DatetimeIndex(DATES[:2]))
+    assert rtamt.read(frame)["x"].times.tolist() == [0.0, 0.5]
+
+
+def test_an_index_of_several_levels_and_one_of_periods_are_read():
+    assert rtamt.read(pd.DataFrame({"x": [1.0, 2.0]}, index=LEVELS))["x"].times.tolist() == [0.0, 0.5]
+    periods = pd.DataFrame({"x": [1.0, 2.0]}, index=pd.period_range("2024-01-01", periods=2, freq="min"))
+    assert str(rtamt.read(periods).end) == "2024-01-01T00:01:00.000000000"
+
+
+@pytest.mark.parametrize("name", ["collect", "column_names"])
+def test_a_column_may_have_the_name_of_a_method(name):
+    frame = pd.DataFrame({"time": [0.0, 1.0], "x": [1.0, -2.0], name: [0, 0]})
+    for time in ("discrete", "dense"):
+        assert rtamt.parse("always(x >= 0)", time=time).evaluate(frame).robustness == -2
+
+
+def test_integers_of_128_bits_are_evaluated_as_they_are_read():
+    frame = pl.DataFrame({"time": [0, 1], "x": pl.Series([1, -2]).cast(pl.Int128)})
+    spec = rtamt.parse("always(x >= 0)")
+    assert spec.evaluate(frame).robustness == spec.evaluate(rtamt.read(frame)).robustness == -2
+
+
+def test_a_record_batch_is_read_as_a_table():
+    batch = pa.RecordBatch.from_pydict({"time": [0.0, 0.5], "x": [1.0, 2.0]})
+    assert rtamt.read(batch)["x"].times.tolist() == [0.0, 0.5]
+
+
+def test_a_value_of_several_lines_is_shown_in_one():
+    frame = pl.DataFrame({"time": [0.0], "x": [[1.0]]})
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("x >= 0").evaluate(frame)
+    assert "\n" not in str(error.value)

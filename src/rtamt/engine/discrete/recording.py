@@ -80,7 +80,10 @@ def frame_columns(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
         rows = data.values.T  # a frame takes longer to return a column than an evaluation of it takes
         return {name: rows[place] for name, place in seen.wanted.items()}
     column = data.__getitem__ if library == "pandas" else data.get_column
-    return {name: column(name).to_numpy() for name in seen.wanted}
+    try:
+        return {name: column(name).to_numpy() for name in seen.wanted}
+    except Exception:  # noqa: BLE001 - a library's own: polars has integers of 128 bits
+        return None
 
 
 @lru_cache(16)
