@@ -112,16 +112,17 @@ template <class Function>
 }
 
 [[nodiscard]] inline Bounds extension(functions::Pow /*f*/, Bounds a, Bounds b) noexcept {
+    if (b.lower == 0 && b.upper == 0) return {1.0, 1.0};
     if (a.lower < 0) {
         if (b.lower != b.upper) return anything; // whole exponents between others
-        if (b.lower == 0) return {1.0, 1.0};
         if (std::isinf(b.lower)) return {0.0, infinity};
         if (std::trunc(b.lower) == b.lower) return power(a, b.lower);
         if (std::isinf(a.lower)) return {0.0, infinity}; // (-inf)^y is defined for every y
         if (a.upper < 0) return nothing;
         a.lower = 0.0;
     }
-    if (a.lower == 0 && b.lower < 0) return anything; // a pole
+    const bool odd = b.lower != b.upper || std::fabs(std::fmod(b.lower, 2.0)) == 1;
+    if (a.lower == 0 && b.lower < 0 && odd) return anything; // a pole: odd powers of -0.0 are -inf
     // x^y = exp(y ln x) is bilinear in y and ln x, so its extrema are at corners.
     return not_negative(widened(corners(functions::Pow::of, a, b, 1.0)));
 }

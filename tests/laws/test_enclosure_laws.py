@@ -108,5 +108,11 @@ def test_corners_without_a_value():
     assert bounds(ops["sqrt"], [(-4, 4)]) == (0, 2)
     assert math.isnan(bounds(ops["sqrt"], [(-4, -1)])[0])
     assert bounds(ops["pow"], [(-2, 1), (2, 2)]) == (0.0, 4.0000000000000036)
+    # Only odd powers have two limits at 0, and a narrower base may not widen the bounds.
+    low, high = bounds(ops["pow"], [(-2, 4), (-0.5, -0.5)])
+    assert low == pytest.approx(0.5)
+    assert high == inf
+    assert bounds(ops["pow"], [(0, 4), (-3, -3)]) == (-inf, inf)
+    assert bounds(ops["pow"], [(-2, 4), (0, 0)]) == bounds(ops["pow"], [(0, 4), (0, 0)]) == (1, 1)
     assert bounds(ops["holds_eq"], [(1, 2), (2, 3)]) == (-inf, inf)
     assert bounds(ops["holds_gt"], [(3, 4), (1, 2)]) == (inf, inf)

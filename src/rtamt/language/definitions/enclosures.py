@@ -204,11 +204,11 @@ def _power(a: tuple[float, float], n: float) -> tuple[float, float]:
 
 
 def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
+    if b[0] == b[1] == 0:
+        return 1.0, 1.0
     if a[0] < 0:
         if b[0] != b[1]:
             return -inf, inf  # integer exponents lie between other exponents
-        if b[0] == 0:
-            return 1.0, 1.0
         if math.isinf(b[0]):
             return 0.0, inf
         if math.trunc(b[0]) == b[0]:
@@ -218,8 +218,8 @@ def _pow(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float]:
         if a[1] < 0:
             return nan, nan
         a = 0.0, a[1]
-    if a[0] == 0 and b[0] < 0:
-        return -inf, inf  # a pole
+    if a[0] == 0 and b[0] < 0 and (b[0] != b[1] or b[0] % 2.0 == 1.0):
+        return -inf, inf  # a pole: odd powers of -0.0 are -inf
     # x^y = exp(y ln x) is bilinear in y and ln x, so that its extrema are at corners.
     ends = [one(p.pow_, x, y) for x in a for y in b]
     low, high = hull([1.0 if math.isnan(end) else end for end in ends])
