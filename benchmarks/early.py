@@ -67,13 +67,19 @@ MODES: Mapping[str, dict[str, str]] = {
 }
 
 
-def cost(formula: str, settings: Mapping[str, str], samples: int) -> float:
-    """Return the microseconds of an update, the least of three runs."""
+#: Seconds by which a late sample comes at most after the newest one, and the lateness of its monitor.
+LATE = 8.0, "10s"
+
+
+def cost(formula: str, settings: Mapping[str, str], samples: int, *, late: float = 0.0) -> float:
+    """Return the microseconds of an update, the least of three runs; ``late``: by how many seconds samples come."""
     random = np.random.default_rng(1)
     spec = rtamt.parse(formula)
     names = spec.input_names
     columns = [random.normal(size=samples).tolist() for _ in names]
-    times = [float(t) for t in range(samples)]
+    order = (np.arange(samples) + random.uniform(0, late, size=samples)).argsort(kind="stable").tolist()
+    columns = [[column[i] for i in order] for column in columns]
+    times = [float(t) for t in order]
     best = float("inf")
     for _ in range(3):
         update = spec.monitor(**settings).update
@@ -86,6 +92,17 @@ def cost(formula: str, settings: Mapping[str, str], samples: int) -> float:
                 update(t, x=x, y=y)
         best = min(best, time.process_time() - begin)
     return best / samples * 1e6
+
+
+def late_costs(samples: int, domain: Mapping[str, str]) -> list[tuple[str, list[float]]]:
+    """Return the cost of bounds at every sample of samples in order, without and with a lateness, and of late ones."""
+    costs = []
+    for formula in FORMULAS:
+        text, settings = formula.format(k=LENGTHS[2]), {**MODES["every"], **domain}
+        within = {**settings, "lateness": LATE[1]}
+        runs = (settings, 0.0), (within, 0.0), (within, LATE[0])
+        costs.append((text, [cost(text, each, samples, late=late) for each, late in runs]))
+    return costs
 
 
 def mstlo_cost(formula: str, k: int, semantics: str, samples: int) -> float:
@@ -135,6 +152,12 @@ def section(samples: int) -> str:
     begin, load = time.perf_counter(), os.getloadavg()[0]
     rows = list(_rows(samples))
     unbounded = [f"{each:.2f} µs for `{formula}`" for formula, each in at_start(samples, {})]
+    late = [
+        f"| `{text}` | {' | '.join(f'{a:.2f} / {b:.2f}' for a, b in zip(steps, dense, strict=True))} |"
+        for (text, steps), (_, dense) in zip(
+            late_costs(samples, {}), late_costs(samples // 2, {"time": "dense"}), strict=True
+        )
+    ]
     spent = time.perf_counter() - begin
     peers = [f"{name} {version(package)}" for name, package in PEERS.items() if find_spec(MODULES[name])]
     return "\n".join(
@@ -160,6 +183,14 @@ def section(samples: int) -> str:
             *rows,
             "",
             f"Bounds at the start with unbounded future, in discrete time: {', '.join(unbounded)}.",
+            "",
+            f"Bounds at every instant of samples that may be late, with a lateness of {LATE[1]}, beside those of a "
+            f"monitor without one;",
+            f"late samples come up to {LATE[0]:g} s after the newest:",
+            "",
+            "| formula | in order, no lateness | in order | late |",
+            "|---|---:|---:|---:|",
+            *late,
         ]
     )
 
@@ -210,6 +241,9 @@ def table(samples: int, domain: Mapping[str, str]) -> None:
             print(f"{formula:<52} {k:>7}", *cells, flush=True)
     for formula, each in at_start(samples, domain):
         print(f"{formula:<52} {'':>7} {'':>8} {'':>8} {each:8.2f}")
+    print("at every sample: in order without a lateness, in order, late")
+    for formula, costs in late_costs(samples, domain):
+        print(f"{formula:<52} {'':>7}", *(f"{each:8.2f}" for each in costs), flush=True)
 
 
 def main() -> None:

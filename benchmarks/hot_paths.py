@@ -89,12 +89,17 @@ def paper_update() -> Callable[[int], None]:
     return run
 
 
-def watched_update(**settings: str) -> Callable[[], Callable[[int], None]]:
-    """``update(t, x=v)`` of a mode or time domain, over noise."""
+def watched_update(*, shuffled: bool = False, **settings: str) -> Callable[[], Callable[[int], None]]:
+    """``update(t, x=v)`` of a mode or time domain, over noise; ``shuffled``: samples up to 8 s late."""
 
     def prepare() -> Callable[[int], None]:
         update = rtamt.parse("always[0:100](x >= 2 -> eventually[0:100](x >= 1))").monitor(**settings).update
-        samples = enumerate(np.tile(noise(2000, "x")["x"], 10).tolist())
+        values = np.tile(noise(2000, "x")["x"], 10).tolist()
+        delays = (
+            np.random.default_rng(1).uniform(0, 8, size=len(values)) if shuffled else np.zeros(len(values))
+        )
+        order = (np.arange(len(values)) + delays).argsort(kind="stable").tolist()
+        samples = iter([(t, values[t]) for t in order])
 
         def run(n: int) -> None:
             for _ in range(n):
@@ -295,6 +300,14 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     "update(t, x=v), eager": (400, watched_update(verdict="eager")),
     "update(t, x=v), interval at start": (400, watched_update(verdict="interval", at="start")),
     "update(t, x=v), interval at every sample": (400, watched_update(verdict="interval", at="every")),
+    "update(t, x=v), interval at every sample, lateness": (
+        400,
+        watched_update(verdict="interval", at="every", lateness="10s"),
+    ),
+    "update(t, x=v), interval at every sample, late": (
+        400,
+        watched_update(verdict="interval", at="every", lateness="10s", shuffled=True),
+    ),
     "update_many, 100 samples": (20, update_many),
     "evaluate, 100 samples": (20, evaluate(100)),
     "evaluate, 100 samples with timestamps": (20, evaluate(100, timed=True)),

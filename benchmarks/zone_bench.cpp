@@ -57,7 +57,7 @@ double best_of(std::size_t samples, Work&& work) {
 
 double delta(Tick k, bool nested, std::span<const double> samples) {
     return best_of(samples.size(), [&] {
-        BoundsEngine engine(graph(k, nested), {}, false);
+        BoundsEngine engine(graph(k, nested), {}, BoundsEngine::Arrival::rows);
         std::vector<Tick> wanted(engine.size(), rtamt::early::forever);
         const Tick horizon = nested ? 2 * k : k;
         for (std::size_t i = 0; i < samples.size(); ++i) {

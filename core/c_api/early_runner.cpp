@@ -135,8 +135,9 @@ void EarlyGraph::take_constants(const Program& program) {
 
 EarlyRunner::EarlyRunner(Program program, double period, EarlyGraph graph)
     : program_(std::move(program)), period_(period), graph_(std::move(graph)),
-      engine_(graph_.graph, graph_.ranges, false), robustness_(graph_.robustness, engine_),
-      truth_(graph_.truth, engine_), wanted_(engine_.size()), bounds_(robustness_.value()) {
+      engine_(graph_.graph, graph_.ranges, early::BoundsEngine::Arrival::rows),
+      robustness_(graph_.robustness, engine_), truth_(graph_.truth, engine_),
+      wanted_(engine_.size()), bounds_(robustness_.value()) {
     std::uint32_t before = program_.inputs;
     for (const early::Node& node : graph_.graph.nodes) {
         steps_before_.push_back(before);
@@ -240,7 +241,7 @@ void EarlyRunner::finish() {
 }
 
 void EarlyRunner::reset() {
-    early::BoundsEngine engine(graph_.graph, graph_.ranges, false);
+    early::BoundsEngine engine(graph_.graph, graph_.ranges, early::BoundsEngine::Arrival::rows);
     robustness_ = early::BoundsAtStart(graph_.robustness, engine);
     truth_ = early::BoundsAtStart(graph_.truth, engine);
     engine_ = std::move(engine);

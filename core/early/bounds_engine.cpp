@@ -8,9 +8,9 @@
 
 namespace rtamt::early {
 
-BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late)
-    : graph_(std::move(graph)), ranges_(std::move(ranges)), late_(late),
-      nodes_(graph_.nodes.size()), readers_(graph_.inputs), results_(graph_.nodes.size()),
+BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arrival)
+    : graph_(std::move(graph)), ranges_(std::move(ranges)), nodes_(graph_.nodes.size()),
+      readers_(graph_.inputs), results_(graph_.nodes.size()), numbers_(graph_.inputs),
       row_(graph_.inputs) {
     graph_.check();
     truths_ = graph_.truths();
@@ -29,7 +29,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late)
     }
     exact_.resize(steps);
     bounds_.resize(steps);
-    if (late_) {
+    if (arrival == Arrival::pieces) {
         for (const Bounds& range : ranges_)
             inputs_.emplace_back(0, range);
     }
@@ -39,7 +39,6 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late)
 }
 
 Bounds BoundsEngine::known(std::uint32_t input, Tick t) const noexcept {
-    if (!late_) return ranges_[input];
     return inputs_[input].at(t).value;
 }
 
@@ -101,12 +100,12 @@ void BoundsEngine::revert() {
 // -----------------------------------------------------------------
 
 // An operation that may have no value is followed wherever it is, needed or not: whether a sample
-// is an error must not depend on what is already decided. Atoms of samples that are never late fail
-// when their row comes, followed or not.
+// is an error must not depend on what is already decided. Atoms of rows are computed when these
+// come, followed or not.
 bool BoundsEngine::may_fail(const Node& node) const noexcept {
     const auto partial = [](const Step& step) { return info(step.opcode).partial; };
     return (node.kind == Kind::map || node.kind == Kind::sum ||
-            (node.kind == Kind::atom && late_)) &&
+            (node.kind == Kind::atom && !inputs_.empty())) &&
            std::ranges::any_of(node.steps, partial);
 }
 
@@ -168,7 +167,6 @@ void BoundsEngine::settle(Tick closed, std::span<const Tick> wanted) {
         for (Runs& runs : state.own)
             runs.drop_before(state.keep);
     }
-    if (!late_) return;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         inputs_[i].drop_before(std::min(input[i], plus(closed, 1)));
     }

@@ -43,14 +43,21 @@ class BoundsEngine {
         Tick tick;
     };
 
-    // `ranges`: what is known of each input before it is seen. `late`: knowledge may come in any
-    // order; otherwise by row() alone.
-    BoundsEngine(Graph graph, std::vector<Bounds> ranges, bool late);
+    // How knowledge comes: by row() alone, by late_row() alone, or by learn() alone.
+    enum class Arrival : std::uint8_t { rows, late_rows, pieces };
+
+    // `ranges`: what is known of each input before it is seen.
+    BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arrival);
 
     // The values of all inputs at a tick later than all before, of which nothing more will come.
     // What fails changes nothing.
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const double> values);
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
+
+    // All that is known of all inputs at a tick in any order, within what was known before, where
+    // it has changed for some inputs.
+    [[nodiscard]] std::optional<Failure> late_row(Tick t, std::span<const Bounds> values,
+                                                  std::span<const std::uint32_t> changed);
 
     // `last`: by node, the last tick that others than nodes will ever ask for, -1 for none. What
     // nothing reads is not followed.
@@ -100,7 +107,7 @@ class BoundsEngine {
     [[nodiscard]] std::optional<Failure> suppose(std::span<const Observation> observations);
     void revert();
 
-    // What is known of an input; the run of equal knowledge ends at `end`.
+    // What was learned of an input.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick t) const noexcept;
 
     // Bounds of what a reference points to, at a tick that is wanted.
@@ -175,13 +182,12 @@ class BoundsEngine {
 
     Graph graph_;
     std::vector<Bounds> ranges_;
-    bool late_;
     std::vector<bool> truths_; // by node
     bool partial_ = false;     // an operation may have no value
     bool awaited_ = false;     // one has none somewhere, or had: see State::undefined
     std::vector<State> nodes_;
     std::vector<std::uint32_t> atoms_;
-    std::vector<StepMap<Bounds>> inputs_;             // where knowledge may be late
+    std::vector<StepMap<Bounds>> inputs_;             // what was learned of them
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
     std::vector<Undo> journal_;                       // of a change that may fail
     std::vector<UndoInput> input_journal_;            // the same of inputs
@@ -190,6 +196,8 @@ class BoundsEngine {
     std::vector<double> exact_;                // results of steps
     std::vector<Bounds> bounds_;               // results of steps
     std::vector<Bounds> results_;              // of atoms in a row
+    std::vector<double> numbers_;              // a row of numbers
+    std::vector<std::uint32_t> touched_;       // the atoms of a row
     std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
     Tick seen_ = -1;                           // the newest tick of which samples came
     Tick seen_before_ = -1;                    // the last change
@@ -209,6 +217,10 @@ class BoundsEngine {
     // inputs.cpp
     template <class Value>
     [[nodiscard]] std::optional<Failure> take(Tick t, std::span<const Value> values);
+    template <class Value>
+    [[nodiscard]] std::optional<Failure> put(Tick t, std::span<const Value> values,
+                                             std::span<const std::uint32_t> atoms);
+    [[nodiscard]] std::optional<Failure> assess(std::uint32_t index, Tick l, Tick r, bool supposed);
     [[nodiscard]] std::optional<Failure> relearn(std::span<const Observation> observations,
                                                  bool supposed);
     [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r,

@@ -22,7 +22,7 @@ constexpr std::int64_t pause = 64;
 } // namespace
 
 DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
-    : engine_(std::move(graph), settings.ranges, true),
+    : engine_(std::move(graph), settings.ranges, BoundsEngine::Arrival::pieces),
       samples_(of_every(std::move(settings.ranges), engine_.inputs()), settings.lateness,
                settings.waits),
       wanted_(engine_.size()) {

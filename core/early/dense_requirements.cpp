@@ -72,7 +72,7 @@ DenseRequirements::DenseRequirements(std::vector<Group> groups, std::size_t requ
             const DenseMonitor& monitor = monitors_[place.group];
             horizons.push_back(monitor.engine().horizon(monitor.ref(place.output)));
         }
-        BoundsEngine engine(minimum_of(horizons), {}, true);
+        BoundsEngine engine(minimum_of(horizons), {}, BoundsEngine::Arrival::pieces);
         const auto last = static_cast<std::uint32_t>(engine.size() - 1);
         DenseOutput output(2 * last, decides, engine);
         std::vector<Tick> wanted(engine.size());

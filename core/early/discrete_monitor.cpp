@@ -17,10 +17,14 @@ constexpr std::int64_t pause = 64;
     return BoundsAtStart(std::move(items), engine, follows);
 }
 
+[[nodiscard]] BoundsEngine::Arrival arrival(bool late) {
+    return late ? BoundsEngine::Arrival::late_rows : BoundsEngine::Arrival::rows;
+}
+
 } // namespace
 
 DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
-    : engine_(graph, settings.ranges, settings.lateness.has_value()),
+    : engine_(graph, settings.ranges, arrival(settings.lateness.has_value())),
       outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
       at_start_(at_start_of(settings.at_start, engine_, settings.causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(settings.ranges)),
@@ -28,6 +32,7 @@ DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
       changes_(outputs_.size()), open_(outputs_.size(), 0), kept_(outputs_.size(), 0),
       wanted_(engine_.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
+    if (late()) late_rows_.emplace(ranges_);
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
@@ -71,8 +76,16 @@ template std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index
 
 std::optional<DiscreteMonitor::Failure>
 DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> observations) {
+    const auto known = late_rows_.value().at(index);
+    row_.assign(known.begin(), known.end());
+    given_.clear();
+    for (const Observation& each : observations) {
+        row_[each.input] = each.bounds;
+        given_.push_back(each.input);
+    }
     engine_.settle_inputs(closed_after(index));
-    if (auto failure = engine_.learn(observations, index)) return failure;
+    if (auto failure = engine_.late_row(index, row_, given_)) return failure;
+    late_rows_->set(index, row_);
     advance(index, time);
     return std::nullopt;
 }
@@ -150,6 +163,7 @@ void DiscreteMonitor::settle() {
         oldest = std::min(oldest, wanted);
     }
     times_.drop_before(oldest);
+    if (late_rows_) late_rows_->drop_before(closed_ + 1);
     if (zone_) return;
     if (at_start_) at_start_->settle(engine_, closed, wanted_);
     if (causes_) causes_->settle(engine_, closed, wanted_);
@@ -262,6 +276,7 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
 
 std::size_t DiscreteMonitor::bytes() const noexcept {
     std::size_t sum = (zone_ ? zone_->bytes() : engine_.bytes()) + times_.bytes();
+    if (late_rows_) sum += late_rows_->bytes();
     for (const EagerVerdicts& waiting : waiting_)
         sum += waiting.bytes();
     return sum;
@@ -282,6 +297,7 @@ void DiscreteMonitor::transfer(Snapshot& snapshot) {
     for (BoundChanges& changes : changes_)
         changes.transfer(snapshot);
     times_.transfer(snapshot);
+    if (late_rows_) late_rows_->transfer(snapshot);
     for (std::vector<Decision>& news : news_) {
         early::transfer(snapshot, news);
         for (const Decision& decision : news)

@@ -12,6 +12,7 @@
 #include "bounds_engine.hpp"
 #include "causation.hpp"
 #include "eager_verdicts.hpp"
+#include "late_rows.hpp"
 #include "sample_times.hpp"
 #include "zone_engine.hpp"
 
@@ -56,7 +57,7 @@ class DiscreteMonitor {
     // nothing.
     template <class Value>
     [[nodiscard]] std::optional<Failure> row(Tick index, double time, std::span<const Value> row);
-    // Those of some inputs at any sample after `closed`.
+    // Those of some inputs at any sample after `closed`, within what is known of them.
     [[nodiscard]] std::optional<Failure> learn(Tick index, double time,
                                                std::span<const Observation> observations);
     // Nothing at or before a time will come.
@@ -99,7 +100,7 @@ class DiscreteMonitor {
                                                          std::span<const Supposition> suppositions);
 
     [[nodiscard]] Bounds known(std::uint32_t input, Tick sample) const noexcept {
-        return sample < 0 ? ranges_[input] : engine_.known(input, sample);
+        return late_rows_ ? late_rows_->at(sample)[input] : ranges_[input];
     }
     [[nodiscard]] double time(Tick sample) const noexcept { return times_.at(sample); }
     // The first tick of an output that is held.
@@ -132,6 +133,9 @@ class DiscreteMonitor {
     SampleTimes times_;
     std::vector<Bounds> ranges_;
     std::optional<Tick> lateness_;
+    std::optional<LateRows> late_rows_; // with a lateness
+    std::vector<Bounds> row_;           // of a sample that may be late
+    std::vector<std::uint32_t> given_;  // its inputs
     bool decides_;
     std::vector<std::vector<Decision>> news_; // by output
     std::vector<BoundChanges> changes_;       // by output

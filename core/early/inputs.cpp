@@ -6,11 +6,19 @@
 
 namespace rtamt::early {
 
-// Every atom is computed before anything changes.
 template <class Value>
 std::optional<BoundsEngine::Failure> BoundsEngine::take(Tick t, std::span<const Value> values) {
     settle_inputs(t);
     begin(t);
+    journaling_ = partial_;
+    if (const auto failure = put(t, values, atoms_)) return attempt(failure);
+    return attempt(propagate(false));
+}
+
+// Every atom is computed before anything changes.
+template <class Value>
+std::optional<BoundsEngine::Failure> BoundsEngine::put(Tick t, std::span<const Value> values,
+                                                       std::span<const std::uint32_t> atoms) {
     const auto scratch = [&] {
         if constexpr (std::is_same_v<Value, double>) {
             return std::span(exact_);
@@ -18,20 +26,48 @@ std::optional<BoundsEngine::Failure> BoundsEngine::take(Tick t, std::span<const 
             return std::span(bounds_);
         }
     }();
-    for (const std::uint32_t i : atoms_) {
+    for (const std::uint32_t i : atoms) {
         const auto& steps = node(i).steps;
         const std::uint32_t wrong = run<Value>(steps, values, scratch);
-        if (wrong != none) return attempt(Failure{i, wrong, t});
+        if (wrong != none) return Failure{i, wrong, t};
         if constexpr (std::is_same_v<Value, double>) {
             results_[i] = Interval::of(scratch[steps.size() - 1]);
         } else {
             results_[i] = scratch[steps.size() - 1];
         }
     }
-    journaling_ = partial_;
-    for (const std::uint32_t i : atoms_) {
+    for (const std::uint32_t i : atoms) {
         lift(nodes_[i], 0, t, t, results_[i].lower);
         lift(nodes_[i], 1, t, t, -results_[i].upper);
+    }
+    return std::nullopt;
+}
+
+std::optional<BoundsEngine::Failure>
+BoundsEngine::late_row(Tick t, std::span<const Bounds> values,
+                       std::span<const std::uint32_t> changed) {
+    begin(t);
+    journaling_ = partial_;
+    std::span<const std::uint32_t> atoms(atoms_);
+    if (changed.size() < values.size()) {
+        touched_.clear();
+        for (const std::uint32_t input : changed)
+            touched_.insert(touched_.end(), readers_[input].begin(), readers_[input].end());
+        std::ranges::sort(touched_);
+        touched_.erase(std::ranges::unique(touched_).begin(), touched_.end());
+        atoms = touched_;
+    }
+    bool exact = true;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        numbers_[i] = values[i].lower;
+        exact = exact && values[i].lower == values[i].upper;
+    }
+    const auto failure = exact ? put<double>(t, numbers_, atoms) : put<Bounds>(t, values, atoms);
+    if (failure) { // whether that is an error depends on what may still come
+        std::ranges::copy(values, row_.begin());
+        for (const std::uint32_t i : atoms) {
+            if (const auto error = assess(i, t, t, false)) return attempt(error);
+        }
     }
     return attempt(propagate(false));
 }
@@ -129,13 +165,11 @@ std::optional<BoundsEngine::Failure> BoundsEngine::wrong_constant() {
 // Computes an atom again wherever its inputs may have changed.
 std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, Tick l, Tick r,
                                                            bool supposed) {
-    State& state = nodes_[index];
-    const auto& steps = node(index).steps;
-    for (Tick t = std::max(l, state.from); t <= r;) {
+    for (Tick t = std::max(l, nodes_[index].from); t <= r;) {
         Tick end = r;
-        for (const Step& step : steps) {
+        for (const Step& step : node(index).steps) {
             if (step.opcode != Opcode::input) continue;
-            if (!late_) {
+            if (inputs_.empty()) {
                 row_[step.a] = ranges_[step.a];
                 continue;
             }
@@ -143,18 +177,26 @@ std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, 
             row_[step.a] = known.value;
             end = std::min(end, known.end);
         }
-        const Wrong wrong = enclose(steps, row_, bounds_);
-        if (wrong.any != none && !supposed) {
-            const bool exact = wrong.exact != none;
-            const std::uint32_t step = exact ? wrong.exact : wrong.any;
-            if (auto failure = fails(index, step, t, exact)) return failure;
-        }
-        const Bounds result = bounds_[steps.size() - 1];
-        lift(state, 0, t, end, result.lower);
-        lift(state, 1, t, end, -result.upper);
+        if (auto failure = assess(index, t, end, supposed)) return failure;
         if (end >= forever) break;
         t = end + 1;
     }
+    return std::nullopt;
+}
+
+// Computes an atom where a row of inputs holds.
+std::optional<BoundsEngine::Failure> BoundsEngine::assess(std::uint32_t index, Tick l, Tick r,
+                                                          bool supposed) {
+    const auto& steps = node(index).steps;
+    const Wrong wrong = enclose(steps, row_, bounds_);
+    if (wrong.any != none && !supposed) {
+        const bool exact = wrong.exact != none;
+        const std::uint32_t step = exact ? wrong.exact : wrong.any;
+        if (auto failure = fails(index, step, l, exact)) return failure;
+    }
+    const Bounds result = bounds_[steps.size() - 1];
+    lift(nodes_[index], 0, l, r, result.lower);
+    lift(nodes_[index], 1, l, r, -result.upper);
     return std::nullopt;
 }
 

@@ -42,7 +42,7 @@ Bounds narrowed(const Bounds& a, const Bounds& b) {
 // Pieces that nodes hand on for each row: what an update costs.
 double pieces_of(const Graph& graph) {
     constexpr Tick rows = 20'000;
-    BoundsEngine engine(graph, {}, false);
+    BoundsEngine engine(graph, {}, BoundsEngine::Arrival::rows);
     Random random(1);
     std::vector<Tick> wanted(graph.nodes.size(), forever);
     std::size_t pieces = 0;
@@ -65,7 +65,7 @@ TEST_CASE("bounds after every row of samples are those of the definition") {
         Random random(seed);
         const Graph graph = random_graph(random, 5, true);
         const Bounds range = random.chance(50) ? Bounds{-12, 12} : rtamt::bounds::anything;
-        BoundsEngine engine(graph, {range, range}, false);
+        BoundsEngine engine(graph, {range, range}, BoundsEngine::Arrival::rows);
         Knowledge known(2, {range});
         check_all(engine, graph, known, 0);
         for (Tick t = 0; t < end_of_test; ++t) {
@@ -86,7 +86,7 @@ TEST_CASE("what is required up to a tick alone has the bounds of the definition 
         CAPTURE(seed);
         Random random(seed);
         const Graph graph = random_graph(random, 5, true);
-        BoundsEngine engine(graph, {}, false);
+        BoundsEngine engine(graph, {}, BoundsEngine::Arrival::rows);
         const auto root = static_cast<std::uint32_t>(graph.nodes.size() - 1);
         std::vector<Tick> last(graph.nodes.size(), -1);
         last[root] = random.between(0, 4);
@@ -109,7 +109,7 @@ TEST_CASE("knowledge in any order gives the bounds of the definition") {
         CAPTURE(seed);
         Random random(seed);
         const Graph graph = random_graph(random, 5, true);
-        BoundsEngine engine(graph, {}, true);
+        BoundsEngine engine(graph, {}, BoundsEngine::Arrival::pieces);
         Knowledge known(2, std::vector<Bounds>(span_of_test + 1, rtamt::bounds::anything));
         for (int i = 0; i < 12; ++i) {
             const auto input = static_cast<std::uint32_t>(random.between(0, 1));
@@ -134,12 +134,59 @@ TEST_CASE("knowledge in any order gives the bounds of the definition") {
     }
 }
 
+TEST_CASE("rows in any order give the bounds of the definition") {
+    for (std::uint32_t seed = 0; seed < 400; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        const Graph graph = random_graph(random, 5, true);
+        BoundsEngine engine(graph, {}, BoundsEngine::Arrival::late_rows);
+        Knowledge known(2, std::vector<Bounds>(span_of_test + 1, rtamt::bounds::anything));
+        for (int i = 0; i < 20; ++i) {
+            const auto place = static_cast<std::size_t>(random.between(0, end_of_test - 1));
+            std::vector<std::uint32_t> changed;
+            std::array<Bounds, 2> row{known[0][place], known[1][place]};
+            for (std::uint32_t input = 0; input < 2; ++input) {
+                const Bounds both = narrowed(row[input], random_bounds(random));
+                if (both.lower > both.upper || random.chance(30)) continue;
+                known[input][place] = row[input] = both;
+                changed.push_back(input);
+            }
+            REQUIRE(!engine.late_row(static_cast<Tick>(place), row, changed));
+            check_all(engine, graph, known, 0);
+        }
+    }
+}
+
+TEST_CASE("an operation of a late row without a value is an error where no better row can come") {
+    Graph graph;
+    graph.inputs = 1;
+    graph.nodes.emplace_back().steps = {{Opcode::input, 0}, {Opcode::sqrt, 0}};
+    BoundsEngine engine(graph, {}, BoundsEngine::Arrival::late_rows);
+    const std::array<std::uint32_t, 1> all{0};
+    engine.settle_inputs(2);
+    const std::array<Bounds, 1> open{{{-3, -2}}};
+    REQUIRE(!engine.late_row(3, open, all));
+    CHECK(engine.at(0, 3) == Bounds{0, rtamt::infinity}); // what was known before
+    const auto closed = engine.close_inputs(3);
+    REQUIRE(closed);
+    CHECK(closed->tick == 3);
+    const std::array<Bounds, 1> exact{{{-1, -1}}};
+    const auto failure = engine.late_row(4, exact, all);
+    REQUIRE(failure);
+    CHECK(failure->node == 0);
+    CHECK(failure->step == 1);
+    CHECK(failure->tick == 4);
+    const std::array<Bounds, 1> fine{{{4, 4}}};
+    REQUIRE(!engine.late_row(4, fine, all));
+    CHECK(engine.at(0, 4) == Bounds{2, 2});
+}
+
 TEST_CASE("what is final is dropped and the rest stays right, also in a restored engine") {
     for (std::uint32_t seed = 0; seed < 200; ++seed) {
         CAPTURE(seed);
         Random random(seed);
         const Graph graph = random_graph(random, 5, false);
-        BoundsEngine engine(graph, {}, false);
+        BoundsEngine engine(graph, {}, BoundsEngine::Arrival::rows);
         Knowledge known(2, {rtamt::bounds::anything});
         const auto root = static_cast<std::uint32_t>(graph.nodes.size() - 1);
         for (Tick t = 0; t < end_of_test; ++t) {
@@ -154,7 +201,7 @@ TEST_CASE("what is final is dropped and the rest stays right, also in a restored
             if (random.chance(30)) {
                 rtamt::Snapshot written;
                 engine.transfer(written);
-                BoundsEngine other(graph, {}, false);
+                BoundsEngine other(graph, {}, BoundsEngine::Arrival::rows);
                 rtamt::Snapshot read(written.bytes());
                 other.transfer(read);
                 read.end();
@@ -172,7 +219,7 @@ TEST_CASE("the pieces of new_data are exactly what has changed") {
         CAPTURE(seed);
         Random random(seed);
         const Graph graph = random_graph(random, 5, true);
-        BoundsEngine engine(graph, {}, false);
+        BoundsEngine engine(graph, {}, BoundsEngine::Arrival::rows);
         Knowledge known(2, {rtamt::bounds::anything});
         for (Tick t = 0; t < end_of_test; ++t) {
             const auto before = bounds(graph, known, span_of_test);
@@ -212,7 +259,7 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     window.a = 0;
     window.low = -2;
     graph.nodes = {root, window};
-    BoundsEngine engine(graph, {}, true);
+    BoundsEngine engine(graph, {}, BoundsEngine::Arrival::pieces);
     const Observation fine{0, 0, 3, Interval::of(4)};
     REQUIRE(!engine.learn(std::span(&fine, 1), 0));
     const std::array<Observation, 2> wrong{
