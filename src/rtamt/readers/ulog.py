@@ -50,7 +50,7 @@ def open_ulog(path: str) -> Source:
             raise TraceError(
                 f"'{path}' cannot be read as PX4 ULog: the topic '{topic.name}' has no field '{_TIMESTAMP}'"
             )
-    return Source(path, tuple(map(_table, topics)), notes=_dropouts(log), losses=losses)
+    return Source(path, tuple(map(_table, topics)), losses=(*_dropouts(log), *losses))
 
 
 def _limited(core: Any, path: str) -> Any:
@@ -117,6 +117,8 @@ def _dropouts(log: Any) -> tuple[str, ...]:
     if not log.dropouts:
         return ()
     lost = sum(dropout.duration for dropout in log.dropouts) / 1000  # durations are in milliseconds
+    if len(log.dropouts) == 1:
+        return (f"a dropout of the logger, {lost:g} s: nothing was recorded in it",)
     return (f"{len(log.dropouts)} dropouts of the logger, {lost:g} s in all: nothing was recorded in them",)
 
 

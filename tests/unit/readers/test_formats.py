@@ -127,6 +127,10 @@ def test_ulog(tmp_path):
     trace = rtamt.read(path)
     assert trace.names == ("attitude.q[0]", "attitude.q[1]", "battery.x", "battery[1].x")
     assert trace.notes == ("2 dropouts of the logger, 0.119 s in all: nothing was recorded in them",)
+    assert trace.losses == trace.notes
+    assert rtamt.read(ulog(tmp_path / "once.ulg", topics, dropouts=[7])).losses == (
+        "a dropout of the logger, 0.007 s: nothing was recorded in it",
+    )
     assert trace["attitude.q[0]"].times.tolist() == [1.000001]
     named = rtamt.read(path, columns=["battery.x", "v"], names={"v": "battery[1].x"})
     spec = rtamt.parse("always(battery.x >= v)")
