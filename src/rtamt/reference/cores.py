@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rtamt.language.formula import Apply, Const, Var, postorder
+from rtamt.language.operators import Pointwise
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import desugar
@@ -63,3 +65,25 @@ def _core(same: _Identity, step: Fraction, continuous: bool) -> Core:
         part: None if depth is None else int(depth / step) for part, depth in horizons(core, step).items()
     }
     return Core(core, depths)
+
+
+def inside_predicates(formula: Formula) -> set[int]:
+    """Return the identities of the operands within the parts of a core formula that read variables at one instant.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> core = core_of(parse_formula("once[0:2](x >= 3)"), Fraction(1)).formula
+    >>> len(inside_predicates(core))  # x and 3, but not x - 3
+    2
+    """
+    local: dict[int, bool] = {}
+    inside: set[int] = set()
+    for node in postorder(formula):
+        local[id(node)] = isinstance(node, Const | Var) or (
+            isinstance(node, Apply)
+            and isinstance(node.op.kernel, Pointwise)
+            and all(local[id(operand)] for operand in node.args)
+        )
+        if local[id(node)] and isinstance(node, Apply):
+            inside.update(map(id, node.args))
+    return inside

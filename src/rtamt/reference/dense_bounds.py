@@ -18,7 +18,7 @@ from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.reference.cores import core_of
+from rtamt.reference.cores import core_of, inside_predicates
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense_robustness import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
@@ -86,11 +86,31 @@ class DenseKnowledge:
         return DenseKnowledge(samples, self.ranges, self.finished, self.closed, self.later)
 
 
-def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBounds:
+class _Signal(NamedTuple):
+    lower: Steps
+    upper: Steps
+
+
+class Parts(NamedTuple):
+    """The bounds of all parts of a formula, in quarters of a tick, over a trace that starts at ``origin``."""
+
+    origin: int = 0
+    bounds: tuple[_Signal, ...] = ()
+
+
+def bounds(
+    formula: Formula,
+    known: DenseKnowledge,
+    tick: Fraction,
+    *,
+    earlier: Parts | None = None,
+    report: Callable[[Parts], None] | None = None,
+) -> StepBounds:
     """Return [L, U] of a formula from the start of the trace on; ``tick`` is seconds.
 
-    Before the trace has started nothing but the ranges is known, and time counts from tick 0. Raises
-    what :func:`rtamt.reference.discrete_bounds.bounds` raises.
+    Before the trace has started nothing but the ranges is known, and time counts from tick 0. ``report`` receives
+    the bounds of all parts; ``earlier`` are those of less knowledge, which hold where an operation that has no value
+    yet is no error. Raises what :func:`rtamt.reference.discrete_bounds.bounds` raises.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parsing.parser import parse_formula
@@ -99,6 +119,8 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
     StepBounds(times=(0, 3, 4, 6), lower=(-2.0, 1.0, 1.0, -3.0), upper=(-2.0, 1.0, 2.0, 2.0))
     """
     core, ahead = core_of(formula, tick, continuous=True)
+    own: list[_Signal] = []
+    inside: set[int] | None = None  # once an operation has no value
     start = known.start
     origin = (0 if start is None else start) * QUARTERS
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
@@ -116,6 +138,7 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
         return min(last, (complete - depth) * QUARTERS)
 
     def step(node: Formula, below: tuple[_Signal, ...]) -> _Signal:
+        nonlocal inside
         value = _apply(node, below, signals, origin, tick)
 
         def certain(t: int) -> bool:
@@ -123,10 +146,18 @@ def bounds(formula: Formula, known: DenseKnowledge, tick: Fraction) -> StepBound
             exact = start is not None and t <= last and all(x.lower.at(t) == x.upper.at(t) for x in below)
             return exact or t <= final(node)
 
-        return _defined(value, node, formula, certain, tick)
+        defined = _defined(value, node, formula, certain, tick)
+        if defined is not value and inside is None and earlier is not None:
+            inside = inside_predicates(core)
+        if inside is not None and earlier is not None and id(node) not in inside:
+            defined = _narrower(defined, earlier.bounds[len(own)], origin - earlier.origin)
+        own.append(defined)
+        return defined
 
     with np.errstate(all="ignore"):
         lower, upper = fold(core, step)
+    if report is not None:
+        report(Parts(origin, tuple(own)))
     times = sorted({*lower.times, *upper.times})
     return StepBounds(
         tuple(t // QUARTERS for t in times),
@@ -151,9 +182,14 @@ def least(parts: Sequence[StepBounds]) -> StepBounds:
     return StepBounds(times, lower, upper)
 
 
-class _Signal(NamedTuple):
-    lower: Steps
-    upper: Steps
+def _narrower(x: _Signal, y: _Signal, shift: int) -> _Signal:
+    """Return what two bounds of the same numbers imply, of which the second are later by so much."""
+    ends = []
+    for one, other, choose in zip(x, y, (max, min), strict=True):
+        moved = Steps(tuple(t + shift for t in other.times), other.values)
+        times = sorted({*one.times, *(t for t in moved.times if t >= one.times[0])})
+        ends.append(merged(times, [choose(one.at(t), moved.at(t)) for t in times]))
+    return _Signal(*ends)
 
 
 def _signal(name: str, known: DenseKnowledge, origin: int, *, started: bool) -> _Signal:

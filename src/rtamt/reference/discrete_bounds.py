@@ -21,12 +21,12 @@ from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, 
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
-from rtamt.reference.cores import core_of
+from rtamt.reference.cores import core_of, inside_predicates
 from rtamt.reference.definition_adapter import arguments_of
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -57,10 +57,20 @@ class Knowledge:
         return Knowledge(columns, n, self.ranges)
 
 
-def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 0.0) -> Enclosure:
+def bounds(
+    formula: Formula,
+    known: Knowledge,
+    period: Fraction,
+    start: float = 0.0,
+    *,
+    earlier: Sequence[Enclosure] = (),
+    parts: list[Enclosure] | None = None,
+) -> Enclosure:
     """Return [L, U] of a formula at sample 0, 1, …: the last entry is that of all later samples.
 
-    Of a finished trace there are n entries. ``period`` and ``start``, the time of sample 0, are seconds.
+    Of a finished trace there are n entries. ``period`` and ``start``, the time of sample 0, are seconds. ``parts``
+    receives the bounds of all parts; ``earlier`` are those of less knowledge, which hold where an operation that has
+    no value yet is no error.
 
     Raises :class:`EvaluationError` where an operation has no value whatever the trace is that agrees
     with what is known, at a sample from which on no better knowledge comes; and
@@ -75,9 +85,12 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
     Enclosure(lower=array([ 1., -2., -3.]), upper=array([2., 2., 2.]))
     """
     core, ahead = core_of(formula, period)
+    own: list[Enclosure] = [] if parts is None else parts
+    inside: set[int] | None = None  # once an operation has no value
     closed = known.n if known.closed is None else known.closed
 
     def step(node: Formula, below: tuple[Enclosure, ...]) -> Enclosure:
+        nonlocal inside
         value = _apply(node, below, known, period)
         wrong = np.isnan(value.lower) | np.isnan(value.upper)
         if wrong.any():
@@ -91,10 +104,22 @@ def bounds(formula: Formula, known: Knowledge, period: Fraction, start: float = 
                 culprit = written(node, [formula])
                 raise undefined(culprit, at_sample(i, start + float(i * period)))
             value = Enclosure(np.where(wrong, -inf, value.lower), np.where(wrong, inf, value.upper))
+            if inside is None and earlier:
+                inside = inside_predicates(core)
+        if inside is not None and id(node) not in inside:
+            value = _narrower(value, earlier[len(own)])
+        own.append(value)
         return value
 
     with np.errstate(all="ignore"):
         return _merged(fold(core, step), known)
+
+
+def _narrower(x: Enclosure, y: Enclosure) -> Enclosure:
+    """Return what two bounds of the same numbers imply."""
+    n = _longest((x, y))
+    (x_lower, x_upper), (y_lower, y_upper) = _padded(x, n), _padded(y, n)
+    return Enclosure(np.maximum(x_lower, y_lower), np.minimum(x_upper, y_upper))
 
 
 def _exact(node: Formula, below: tuple[Enclosure, ...], n: int) -> NDArray[np.bool_]:

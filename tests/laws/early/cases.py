@@ -72,14 +72,15 @@ def formula(
 def _reading(rng: Random, **kinds: bool) -> Formula:
     """Draw a formula that reads a variable; ``partial``: with a function that has no value of some delayed numbers."""
     if kinds.pop("partial", False):
-        return _partial(rng)
+        return partial(rng)
     while True:
         drawn = formula(rng, ("x", "y"), depth=rng.randint(1, 3), **kinds)
         if variables(drawn):
             return drawn
 
 
-def _partial(rng: Random) -> Formula:
+def partial(rng: Random) -> Formula:
+    """Draw a formula with a function that has no value of some delayed numbers."""
     delay = f"delay[{rng.randint(1, 3)}](x, {rng.choice((0, 1, -1))})"
     other = rng.choice(("y", f"ahead[{rng.randint(1, 2)}](y)", "delay[1](y, 1)"))
     number = rng.choice((f"sqrt({delay})", f"1 / {delay}", f"{other} / {delay}", f"sqrt({delay} + {other})"))

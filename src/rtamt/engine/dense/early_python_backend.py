@@ -7,13 +7,14 @@ Times are ticks; runs are half-open, from ``begin`` up to and without ``end``.
 from __future__ import annotations
 
 import pickle
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
 from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.reference.dense_bounds import DenseKnowledge, StepBounds, bounds, least
+from rtamt.reference.dense_bounds import DenseKnowledge, Parts, StepBounds, bounds, least
 from rtamt.reference.dense_causation import causation
 from rtamt.reference.dense_causation import least as least_caused
 from rtamt.signals.runs import clipped, compared, merged, without
@@ -94,6 +95,10 @@ class PythonDenseEarlyMonitor:
         self._came = _Came(({},) * len(self._names), (0,) * len(self._names))
         self._reports = (_Report(),) * (len(outputs) - hidden)
         self._found: list[StepBounds | None] | None = None  # of all formulas, for all that came
+        # The bounds of all parts of each of them, which are kept where an operation has no value yet.
+        self._earlier: tuple[tuple[Parts, ...], ...] = tuple(
+            tuple(self._unseen(each, names) for each, names in output) for output in outputs
+        )
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -122,12 +127,24 @@ class PythonDenseEarlyMonitor:
 
     def _take(self, came: _Came, now: int) -> None:
         """Go on with all that came; an operation without a value leaves everything as it was."""
-        found = [self._bounds(formula, came) for formula in self._formulas]
+        found, earlier = [], []
+        for place in range(len(self._formulas)):
+            parts = list(self._earlier[place])
+            found.append(self._bounds(place, came, parts=parts))
+            earlier.append(tuple(parts))
         self._reports = tuple(
             before if each is None else self._reported(before, each, came.newest, now)
             for before, each in zip(self._reports, found[self._hidden :], strict=True)
         )
         self._before, self._came, self._found, self._causes = self._came, came, found, {}
+        self._earlier = tuple(earlier)
+
+    def _unseen(self, formula: Formula, names: tuple[str, ...]) -> Parts:
+        """Return the bounds of the parts of a formula before any sample."""
+        known = DenseKnowledge(dict.fromkeys(names, ((), (), ())), self._ranges)
+        found: list[Parts] = []
+        bounds(formula, known, self._tick, report=found.append)
+        return found[0]
 
     def _knowledge(self, came: _Came) -> DenseKnowledge:
         samples, closed = {}, {}
@@ -139,16 +156,28 @@ class PythonDenseEarlyMonitor:
         return DenseKnowledge(samples, self._ranges, came.finished, closed)
 
     def _bounds(
-        self, output: Output, came: _Came, later: Mapping[str, Samples] | None = None
+        self,
+        output: int,
+        came: _Came,
+        later: Mapping[str, Samples] | None = None,
+        parts: list[Parts] | None = None,
     ) -> StepBounds | None:
-        """Return the bounds of an output; None while the trace has not started. ``later``: see DenseKnowledge."""
+        """Return the bounds of an output; None while the trace has not started.
+
+        ``later``: see DenseKnowledge. ``parts``: of each formula of the output, what becomes known of its parts.
+        """
         knowledge = replace(self._knowledge(came), later=later or {})
-        parts = [(formula, knowledge.of(names)) for formula, names in output]
         if self._waits and knowledge.start is None:
             return None
-        # What has no value is an error once its own trace reaches it, also before the others have started.
-        begun = [bounds(formula, known, self._tick) for formula, known in parts if known.start is not None]
-        return least(begun) if len(begun) == len(parts) else None
+        begun, formulas = [], self._formulas[output]
+        for place, (formula, names) in enumerate(formulas):
+            known = knowledge.of(names)
+            if known.start is None:
+                continue  # what has no value elsewhere is an error before this trace has started, too
+            report = None if parts is None else partial(parts.__setitem__, place)
+            earlier = self._earlier[output][place]
+            begun.append(bounds(formula, known, self._tick, earlier=earlier, report=report))
+        return least(begun) if len(begun) == len(formulas) else None
 
     def _parts(
         self, formula: int, came: _Came, later: Mapping[str, Samples] | None = None
@@ -157,14 +186,15 @@ class PythonDenseEarlyMonitor:
         knowledge = replace(self._knowledge(came), later=later or {})
         unseen = DenseKnowledge(dict.fromkeys(self._names, ((), (), ())), self._ranges)
         parts = []
-        for each, names in self._formulas[formula]:
+        for (each, names), earlier in zip(self._formulas[formula], self._earlier[formula], strict=True):
             known = knowledge.of(names)
-            parts.append(bounds(each, unseen.of(names) if known.start is None else known, self._tick))
+            known = unseen.of(names) if known.start is None else known
+            parts.append(bounds(each, known, self._tick, earlier=earlier))
         return parts
 
     def _now(self, formula: int) -> StepBounds | None:
         if self._found is None:
-            self._found = [self._bounds(each, self._came) for each in self._formulas]
+            self._found = [self._bounds(place, self._came) for place in range(len(self._formulas))]
         return self._found[formula]
 
     def _reported(self, before: _Report, found: StepBounds, newest: int, now: int) -> _Report:
@@ -261,7 +291,7 @@ class PythonDenseEarlyMonitor:
         supposed = {name: tuple(zip(*each, strict=True)) for name, each in rows.items() if each}
         if output is None:
             return _at_starts(self._parts(0, self._came, supposed))
-        found = self._bounds(self._formulas[self._hidden + output], self._came, supposed)
+        found = self._bounds(self._hidden + output, self._came, supposed)
         return None if found is None else found.at(tick)
 
     def held(self, output: int) -> int | None:
@@ -329,11 +359,12 @@ class PythonDenseEarlyMonitor:
 
     def state(self) -> bytes:
         """The state after the samples so far."""
-        return pickle.dumps((self._before, self._came, self._reports))
+        return pickle.dumps((self._before, self._came, self._reports, self._earlier))
 
     def restore(self, state: bytes) -> None:
         """Restore the state of a monitor that was made with the same arguments."""
-        self._before, self._came, self._reports = pickle.loads(state)  # noqa: S301 - its own
+        kept = pickle.loads(state)  # noqa: S301 - its own
+        self._before, self._came, self._reports, self._earlier = kept
         self._found, self._causes = None, {}
 
 

@@ -61,7 +61,9 @@ class PythonEarlyMonitor:
         # (first, last, satisfied, decided at) of samples that are not reached, in the order of decision.
         self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
         self._reports: list[list[Any]] = [[] for _ in self._outputs]
-        self._answer_anew()
+        #: The bounds of all parts of each formula, which are kept where an operation has no value yet.
+        self._earlier: list[list[Enclosure]] = [[] for _ in (self._start, *self._outputs)]
+        self._narrow()
 
     @property
     def state_bytes(self) -> int:
@@ -109,20 +111,35 @@ class PythonEarlyMonitor:
     def _answer_anew(self) -> None:
         """Forget the answers, which what came makes obsolete: of each formula by its identity."""
         self._found: dict[int, Enclosure] = {}
+        self._parts: dict[int, list[Enclosure]] = {}
         self._causation: dict[int, list[Causation]] = {}
 
     def _bounds(self, formula: Formula) -> Enclosure:
         if id(formula) not in self._found:
             start = self._anchors.get(0, 0.0)
             known = self._knowledge(finished=self.finished and self.newest >= 0)
-            self._found[id(formula)] = bounds(formula, known, self._period, start)
+            # The end of the trace cuts windows, which does not narrow bounds.
+            earlier = [] if known.finished else self._earlier_of(formula)
+            parts = self._parts[id(formula)] = []
+            self._found[id(formula)] = bounds(
+                formula, known, self._period, start, earlier=earlier, parts=parts
+            )
         return self._found[id(formula)]
 
-    def _compute(self) -> None:
-        """Compute what the last sample made known of each output, up to the newest sample."""
+    def _earlier_of(self, formula: Formula) -> list[Enclosure]:
+        place = next(i for i, each in enumerate((self._start, *self._outputs)) if each is formula)
+        return self._earlier[place]
+
+    def _narrow(self) -> None:
+        """Compute the bounds of all that came, and keep them."""
         self._answer_anew()
         for formula in (*self._outputs, self._start):
             self._bounds(formula)  # which fails where an operation has no value
+        self._earlier = [self._parts[id(formula)] for formula in (self._start, *self._outputs)]
+
+    def _compute(self) -> None:
+        """Compute what the last sample made known of each output, up to the newest sample."""
+        self._narrow()
         self._reports = [
             self._verdicts(i) if self._verdict else self._changes(i) for i in range(len(self._outputs))
         ]
@@ -213,10 +230,8 @@ class PythonEarlyMonitor:
         if self.newest >= 0:
             steps = floor((time - self._last) / float(self._period) + self._tolerance)
             before, self.closed = self.closed, max(self.closed, self.newest + steps)
-            self._answer_anew()
             try:
-                for formula in (*self._outputs, self._start):
-                    self._bounds(formula)  # which fails where an operation turns out to have no value
+                self._narrow()
             except BaseException:
                 self.closed = before
                 self._answer_anew()
@@ -272,7 +287,8 @@ class PythonEarlyMonitor:
         formula = self._start if output is None else self._outputs[output]
         supposed = Knowledge(columns, n, ranges, closed=known.closed)
         start = self._anchors.get(0, 0.0)
-        return self._pair(bounds(formula, supposed, self._period, start), sample)
+        earlier = self._earlier_of(formula)
+        return self._pair(bounds(formula, supposed, self._period, start, earlier=earlier), sample)
 
     def bounds(self, output: int, sample: int) -> Pair | None:
         """The bounds of an output at a sample, None where the core has forgotten them."""
@@ -335,6 +351,7 @@ class PythonEarlyMonitor:
             "_reported",
             "_decided",
             "_reports",
+            "_earlier",
         )
         return pickle.dumps({name: getattr(self, name) for name in kept})
 

@@ -159,3 +159,20 @@ def test_a_late_sample_has_the_time_that_follows_from_the_samples_before_it(back
     for k in (0, 1, 2, 3, 4, 5, 12, 6):
         monitor.update(k / 10, x=k)
     assert [(each.begin, each.end) for each in monitor.changes()] == [(6 * 0.1, 6 * 0.1)]  # not 0.6
+
+
+@times
+@backends
+@pytest.mark.parametrize("formula", ["min(sqrt(x), y) >= 1", "eventually[0:1](sqrt(delay[1](x, 0)) + y >= 1)"])
+def test_bounds_do_not_widen_where_an_operation_will_have_no_value(formula, time, backend):
+    ranges = {"x": (-1, 4), "y": (0, 9)}
+    monitor = monitor_of(formula, time, backend, verdict="interval", ranges=ranges, lateness=3)
+    for t, sample in [(0, {"x": 1, "y": 1}), (1, {"y": 2}), (4, {"x": 1, "y": 1})]:
+        monitor.update(t, **sample)
+    assert monitor.interval(2) == rtamt.Interval(-1.0, 1.0 if "min" in formula else 10.0)
+    before = [monitor.interval(t) for t in (1, 2, 3)]
+    monitor.update(2, x=(-1, -0.5))  # an error once nothing better can come
+    assert [monitor.interval(t) for t in (1, 2, 3)] == before
+    with pytest.raises(rtamt.EvaluationError):
+        monitor.watermark(3)
+    assert [monitor.interval(t) for t in (1, 2, 3)] == before
