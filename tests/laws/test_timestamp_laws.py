@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
-from rtamt.signals.counting import quotients
+from rtamt.signals.counting import counted, quotients
 from rtamt.signals.ticks import NANOSECOND, TimeScale
 from tests.support import c_api
 
@@ -362,11 +362,19 @@ TICKS = st.sampled_from(
 
 
 @given(st.lists(st.integers(-(2**61), 2**61), min_size=1, max_size=20), TICKS)
-def test_ticks_are_told_as_the_nearest_double(ticks: list[int], tick: Fraction) -> None:
+def test_ticks_are_told_as_the_nearest_double_that_is_not_read_as_an_earlier_tick(
+    ticks: list[int], tick: Fraction
+) -> None:
     scale = TimeScale(tick, "seconds")
-    exact = [t * tick.numerator / tick.denominator for t in ticks]
-    assert scale.times(np.array(ticks)).tolist() == exact
-    assert [scale.time(t) for t in ticks] == exact
+    told = scale.times(np.array(ticks)).tolist()
+    for t, time in zip(ticks, told, strict=True):
+        nearest = t * tick.numerator / tick.denominator
+        if counted(np.array([nearest]), 1 / tick)[0] < t:
+            assert time == np.nextafter(nearest, np.inf)
+            assert counted(np.array([time]), 1 / tick)[0] >= t
+        else:
+            assert time == nearest
+    assert [scale.time(t) for t in ticks] == told
 
 
 @given(st.lists(st.floats(-(2.0**31), 2.0**31), min_size=1, max_size=20), TICKS)

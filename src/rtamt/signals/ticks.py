@@ -253,7 +253,7 @@ class TimeScale:
     def times(self, ticks: TickArray) -> NDArray[Any]:
         """Convert ticks to the caller's time format, with the type given in the module's table."""
         if self.kind in ("seconds", "numbers"):
-            return quotients(ticks, *self._ratio)
+            return self._doubles(ticks)
         if self.kind == "whole":
             return self._whole(ticks)
         if self.kind == "units":
@@ -268,11 +268,30 @@ class TimeScale:
         """Return ticks as integers, unless there are instants between two of them."""
         numerator, denominator = self._ratio
         if self.tick < self.unit and (ticks % denominator).any():
-            return quotients(ticks, numerator, denominator)
+            return self._doubles(ticks)
         try:
             return rescaled(ticks, Fraction(numerator, denominator), 2**63)
         except OverflowError:
-            return quotients(ticks, numerator, denominator)
+            return self._doubles(ticks)
+
+    def _doubles(self, ticks: TickArray) -> FloatArray:
+        """Return the nearest doubles; where these are instants before the ticks, the next ones.
+
+        Far from 0 doubles are further apart than ticks. A value that begins a tick after a sample then begins at the
+        next double: a run that holds at a time of a sample, and one that begins behind it, have different times.
+        """
+        times = quotients(ticks, *self._ratio)
+        if not len(ticks) or max(abs(int(ticks.min())), abs(int(ticks.max()))) < NEAR:
+            return times
+        numerator, denominator = self._ratio
+        doubtful = np.abs(ticks) < FARTHEST // 2
+        if numerator == 1 and denominator % 1000 == 0:  # what prints with three digits less is its own tick
+            doubtful &= ticks % 1000 != 0
+        places = np.flatnonzero(doubtful)
+        if len(places):
+            before = places[counted(times[places], self.unit / self.tick) < ticks[places]]
+            times[before] = np.nextafter(times[before], np.inf)
+        return times
 
     def _in_units(self, tick: int) -> int | float:
         time = tick * self.tick / self.unit

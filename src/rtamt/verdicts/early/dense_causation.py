@@ -137,7 +137,9 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         ends = self._times([row[1] for row in rows if row[1] < FOREVER])
         ends += [None] * (len(begins) - len(ends))
         return [
-            CausationRun(begin, end, *row[2:]) for begin, end, row in zip(begins, ends, rows, strict=True)
+            CausationRun(begin, end, *row[2:])
+            for begin, end, row in zip(begins, ends, rows, strict=True)
+            if begin != end  # else no time is in it
         ]
 
     def __getitem__(self, name: str | Formula) -> Causation:

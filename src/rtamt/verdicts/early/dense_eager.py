@@ -100,6 +100,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         return [
             VerdictRun(begin, end, run[2], at)
             for begin, end, at, run in zip(begins, ends, decided, runs, strict=True)
+            if begin != end  # else no time is in it
         ]
 
 

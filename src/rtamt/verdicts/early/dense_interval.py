@@ -173,8 +173,10 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
 
     def _changes(self, output: int) -> list[Change]:
         if self._finished:
-            return [self._change(*run, output=output) for run in self._ended[output]]
-        return super()._changes(output)
+            found = [self._change(*run, output=output) for run in self._ended[output]]
+        else:
+            found = super()._changes(output)
+        return [each for each in found if each.begin != each.end]  # else no time is in it
 
     def _change(
         self, begin: int, end: int, lower: float, upper: float, *, output: int = 0, retracted: bool = False

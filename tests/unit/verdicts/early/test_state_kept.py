@@ -163,7 +163,9 @@ def test_a_late_sample_has_the_time_that_follows_from_the_samples_before_it(back
 
 @times
 @backends
-@pytest.mark.parametrize("formula", ["min(sqrt(x), y) >= 1", "eventually[0:1](sqrt(delay[1](x, 0)) + y >= 1)"])
+@pytest.mark.parametrize(
+    "formula", ["min(sqrt(x), y) >= 1", "eventually[0:1](sqrt(delay[1](x, 0)) + y >= 1)"]
+)
 def test_bounds_do_not_widen_where_an_operation_will_have_no_value(formula, time, backend):
     ranges = {"x": (-1, 4), "y": (0, 9)}
     monitor = monitor_of(formula, time, backend, verdict="interval", ranges=ranges, lateness=3)
