@@ -21,7 +21,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 import rtamt
-from rtamt.scale.engines import ENGINES, checked
+from rtamt.scale.engines import ENGINES, check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 
@@ -96,7 +96,7 @@ def run(engine: str, job: Job, recordings: list[Recording], jobs: int | None) ->
     """Check all recordings, and print how long that took."""
     begin, before = time.perf_counter(), _children()
     own = time.process_time()
-    tables = list(checked(job, recordings, engine=engine, jobs=jobs))
+    tables = list(check_recordings(job, recordings, engine=engine, jobs=jobs))
     own = time.process_time() - own
     cores = own + _children() - before
     label = engine if jobs is None else f"{engine}, {jobs} process{'es' * (jobs > 1)}"

@@ -90,10 +90,10 @@ def cpu() -> str:
 
 def groups(running: list[Tool]) -> list[str]:
     """Return the names of the groups of cases, in order."""
-    return list(dict.fromkeys(case.group for case in asked(running)))
+    return list(dict.fromkeys(case.group for case in cases_of(running)))
 
 
-def asked(running: list[Tool]) -> list[Case]:
+def cases_of(running: list[Tool]) -> list[Case]:
     """Return every case that some tool ran, in order."""
     return list(dict.fromkeys(case for tool in running for case in (*tool.figures, *tool.refusals)))
 
@@ -111,7 +111,7 @@ def ratios(running: list[Tool]) -> dict[tuple[Case, str], float]:
 
 def table(group: str, running: list[Tool], drawn: list[str]) -> str:
     """Return the table of one group, below its plot if it has one."""
-    rows = [case for case in asked(running) if case.group == group]
+    rows = [case for case in cases_of(running) if case.group == group]
     shown = [tool for tool in running if any(case in tool.figures for case in rows)]
     refused = {
         f"{tool.label}: {reason}"

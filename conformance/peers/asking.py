@@ -195,17 +195,19 @@ def ask(talk: Talk, question: Question) -> Asked:
     if time == "discrete":
         got = [[i, v] for i, v in enumerate(said["values"])]
         return Asked(
-            _judged(expected, got, len(got) >= end, end), _cut(expected, question), _cut(got, question)
+            _compare(expected, got, len(got) >= end, end), _cut(expected, question), _cut(got, question)
         )
     got = said["points"] if "points" in said else said["values"]
-    told, whole = _told(expected, got, said, end)
-    kind = _judged(expected, told, whole, end)
+    told, whole = _reported_steps(expected, got, said, end)
+    kind = _compare(expected, told, whole, end)
     until = said.get("until", end)
     shown = _cut(got, question)
     return Asked(kind, _cut(expected, question), shown if until >= end else f"{shown}, told up to {until}")
 
 
-def _told(expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int) -> tuple[list[Any], bool]:
+def _reported_steps(
+    expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int
+) -> tuple[list[Any], bool]:
     """Return what a dense answer says wherever it or the expected one changes, and whether that is all."""
     if "points" in said:
         return got, {t for t, _ in got} >= set(range(end))
@@ -216,7 +218,7 @@ def _told(expected: list[Any], got: list[Any], said: Mapping[str, Any], end: int
     return [[t, _at(got, t)] for t in sorted(instants)], first == 0 and until >= end
 
 
-def _judged(expected: list[Any], told: list[Any], whole: bool, end: int) -> str:
+def _compare(expected: list[Any], told: list[Any], whole: bool, end: int) -> str:
     """Return what an answer is worth: every value told counts, and an answer that stops early is incomplete."""
     if not all(_same(_at(expected, t), v) for t, v in told if t < end):
         return "disagrees"

@@ -83,11 +83,11 @@ def serve(declaration, answer, prepare=None, reading=None):
     lines = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
 
-    def say(what):
+    def send(what):
         lines.write(json.dumps(what) + "\n")
         lines.flush()
 
-    say(declaration)
+    send(declaration)
     for line in sys.stdin:
         question = json.loads(line)
         try:
@@ -101,4 +101,4 @@ def serve(declaration, answer, prepare=None, reading=None):
             said = {"unsupported": str(reason)}
         except Exception as error:  # noqa: BLE001 - whatever a peer raises is its answer
             said = {"error": f"{type(error).__name__}: {error}"}
-        say(said)
+        send(said)

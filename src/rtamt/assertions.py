@@ -98,7 +98,7 @@ def _message(result: Result, failures: dict[str, Result], margin: float) -> str:
     several = len(result.requirements) > 1
     lines = [f"{len(failures)} of {len(result.requirements)} requirements failed"] if several else []
     for name, part in failures.items():
-        text = _explained(part)
+        text = _explain(part)
         if part.satisfied:
             text = f"the robustness is {_robustness(part, 6)}, less than the margin of {margin:.6g}\n{text}"
         lines.append(f"{name}: {text}" if several else text)
@@ -116,7 +116,7 @@ def _robustness(part: Result, digits: int) -> str:
     return f"{lower:.{digits}g}" if lower == upper else f"{lower:.{digits}g} to {upper:.{digits}g}"
 
 
-def _explained(part: Result) -> str:
+def _explain(part: Result) -> str:
     if not is_partly_known(part):
         return str(part.explain())
     verdict = "satisfied" if part.satisfied else "violated"

@@ -145,7 +145,7 @@ def evaluate_all(
     >>> [result.robustness for result in rtamt.evaluate_all(specs, {"x": [5, 2], "y": [0, 2]})]
     [-1.0, 1.0]
     """
-    groups, apart = _grouped(specs, {"tolerance": tolerance, **reading})
+    groups, apart = _group(specs, {"tolerance": tolerance, **reading})
     results: dict[int, Result] = {}
     for number in apart:
         results[number] = specs[number].evaluate(data, tolerance=tolerance, **reading)
@@ -161,7 +161,7 @@ def evaluate_all(
     return [results[number] for number in range(len(specs))]
 
 
-def _grouped(specs: Sequence[Specification], reading: dict[str, Any]) -> tuple[list[Group], Iterable[int]]:
+def _group(specs: Sequence[Specification], reading: dict[str, Any]) -> tuple[list[Group], Iterable[int]]:
     """Return the groups of specifications, and which have to be evaluated by themselves; kept for other data."""
     try:
         return _kept_groups(tuple(specs), tuple(reading.items()))
@@ -196,7 +196,7 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
         over, bound = spec._over_data(query, data)
         return evaluate_requirements(over, bound)
     recording = spec._with_units(
-        query.record(spec._sampled(query, spec.binding.applied(data)), spec.input_names, spec.types)
+        query.record(spec._sample(query, spec.binding.applied(data)), spec.input_names, spec.types)
     )
     if spec.resolved is not None:
         recording = recording.ended_by(spec.resolved[0].input_names)

@@ -42,7 +42,7 @@ _LISTED = 16
 _PAGES = lazy_pattern(r"\S{600,}")
 
 
-def _abbreviated(word: re.Match[str]) -> str:
+def _abbreviate(word: re.Match[str]) -> str:
     text = word.group()
     return f"{text[:_SHOWN]}… (abbreviated: {len(text)} characters) …{text[-_SHOWN:]}"
 
@@ -54,7 +54,7 @@ class StlError(Exception):
     """
 
     def __init__(self, message: object = "", *more: object) -> None:
-        super().__init__(_PAGES.sub(_abbreviated, message) if isinstance(message, str) else message, *more)
+        super().__init__(_PAGES.sub(_abbreviate, message) if isinstance(message, str) else message, *more)
 
 
 class SpecificationError(StlError):
@@ -270,7 +270,7 @@ def escaped(text: str) -> str:
     >>> print(escaped("log\x1b[2J\x07.csv"), escaped("a\u202eb"), escaped("caf\udce9.csv"))
     log\x1b[2J\x07.csv a\u202eb caf\xe9.csv
     """
-    return _UNPRINTABLE.sub(lambda match: _written(ord(match[0])), text)
+    return _UNPRINTABLE.sub(lambda match: _format_code(ord(match[0])), text)
 
 
 #: Control characters (C0, DEL, C1), line separators, bidirectional marks, and surrogates.
@@ -285,13 +285,13 @@ def readable(text: str) -> str:
     >>> print(readable("caf\udce9.csv"))
     caf\xe9.csv
     """
-    return _SURROGATES.sub(lambda match: _written(ord(match[0])), text)
+    return _SURROGATES.sub(lambda match: _format_code(ord(match[0])), text)
 
 
 _SURROGATES = lazy_pattern("[\ud800-\udfff]")
 
 
-def _written(code: int) -> str:
+def _format_code(code: int) -> str:
     if 0xDC80 <= code <= 0xDCFF:
         code -= 0xDC00
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

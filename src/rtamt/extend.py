@@ -50,14 +50,14 @@ __all__ = [
 
 def get_include() -> str:
     """Return the folder of the header ``rtamt/kernel.hpp``, for a compiler's ``-I``."""
-    return str(_installed("include"))
+    return str(_find_installed("include"))
 
 
 def get_cmake_dir() -> str:
     """Return the folder of ``rtamt-config.cmake``, for CMake's ``-Drtamt_DIR=``."""
-    return str(_installed("cmake"))
+    return str(_find_installed("cmake"))
 
 
-def _installed(folder: str) -> Path:
+def _find_installed(folder: str) -> Path:
     # Next to the compiled core, which an editable install keeps apart from the Python files.
     return Path(str(core().__file__)).parents[1] / folder

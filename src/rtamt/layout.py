@@ -62,7 +62,7 @@ def formatted(text: str, parse: Callable[[str], Document], language: Language) -
     return text
 
 
-def laid_out(text: str, folder: str | None, language: Language) -> str:
+def layout_text(text: str, folder: str | None, language: Language) -> str:
     """Return the text of a file in the common layout; also of one that only declares what others import.
 
     ``folder``: that of the file. Raises :class:`SpecificationError` if the text is wrong.
@@ -140,9 +140,9 @@ class _Layout:
 
     def text(self) -> str:
         """Return the text in the common layout."""
-        return "".join(self._written()) + (self.end if self.pieces else "")
+        return "".join(self._write()) + (self.end if self.pieces else "")
 
-    def _written(self) -> Iterator[str]:
+    def _write(self) -> Iterator[str]:
         before: _Piece | None = None  # the token before
         depth, brackets, broken = 0, 0, False
         last: _Piece | None = None  # the piece before

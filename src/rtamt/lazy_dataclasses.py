@@ -27,7 +27,7 @@ else:
 
     def dataclass(cls: type | None = None, /, **options: bool) -> Any:
         """Generate the methods of a class, as :func:`dataclasses.dataclass` with these options does."""
-        return _processed(cls) if cls is not None else lambda cls: _processed(cls, **options)
+        return _process(cls) if cls is not None else lambda cls: _process(cls, **options)
 
     def field(**options: Any) -> Any:
         """Return the description of a field, as :func:`dataclasses.field` does."""
@@ -99,7 +99,7 @@ class _StandardFields:
         return fields
 
 
-def _processed(
+def _process(
     cls: Any,
     *,
     frozen: bool = False,
@@ -170,13 +170,13 @@ def _first_init(*, frozen: bool) -> Callable[..., None]:
 
     def first(self: Any, *args: Any, **given: Any) -> None:
         owner: Any = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
-        owner.__init__ = made = _compiled_init(owner, frozen=frozen)
+        owner.__init__ = made = _compile_init(owner, frozen=frozen)
         made(self, *args, **given)
 
     return first
 
 
-def _compiled_init(cls: Any, *, frozen: bool) -> Any:
+def _compile_init(cls: Any, *, frozen: bool) -> Any:
     """Return the ``__init__`` of a class."""
     names: dict[str, Any] = {"_missing": _MISSING, "_store": object.__setattr__}
     head, body = ["self"], []

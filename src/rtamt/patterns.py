@@ -82,7 +82,7 @@ def patterns() -> Mapping[str, Pattern]:
     return {pattern.name: pattern for file in _FILES for pattern in _patterns_in(file)}
 
 
-def pattern_named(name: str) -> Pattern:
+def find_pattern(name: str) -> Pattern:
     """Return the pattern of this name. Raises :class:`UsageError` where there is none."""
     if name not in patterns():
         raise UsageError(f"there is no pattern '{name}'{choices(name, patterns(), 'patterns')}")
@@ -103,7 +103,7 @@ def _patterns_in(file: str) -> Iterator[Pattern]:
         elif defined:
             name, parameters = defined[1], tuple(defined[2].split(", "))
             helper = bool(own) and len(re.findall(rf"\b{name}\(", text)) > 1
-            sentence = own.rstrip(".") or _scoped(name, parameters, section, scopes)
+            sentence = own.rstrip(".") or _apply_scope(name, parameters, section, scopes)
             if not helper:
                 yield Pattern(name, file, parameters, sentence)
             own = ""
@@ -118,7 +118,7 @@ def _scopes_in(text: str) -> list[str]:
     return re.split(r", (?:or )?(?=before|from|between)", listed)
 
 
-def _scoped(name: str, parameters: tuple[str, ...], sentence: str, scopes: list[str]) -> str:
+def _apply_scope(name: str, parameters: tuple[str, ...], sentence: str, scopes: list[str]) -> str:
     """Return what a pattern requires within its scope, which follows from its last parameters and its name."""
     ends = {each for each in ("q", "r") if each in parameters}
     fitting = [scope for scope in scopes if set(_PARAMETER.findall(scope)) == ends]

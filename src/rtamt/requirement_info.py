@@ -43,20 +43,20 @@ def info_of(spec: Specification) -> RequirementInfo:
     facts = RequirementInfo(spec, step)
     try:
         check_online(spec.formula, spec.text)
-        pastified = None if spec.groups else _pastified(spec)
+        pastified = None if spec.groups else _pastify(spec)
         facts = replace(facts, horizon=depth(spec, spec.formula), pastified=pastified)
         domain.check(spec.formula, spec.text)
     except BoundError as error:
         return replace(facts, offline_only=error.message)
     if spec.groups:  # a program for each quantifier, which runs for each member
         return facts
-    applied = desugar(_grounded(spec, _applied(spec)))
+    applied = desugar(_ground(spec, _apply_semantics(spec)))
     program = compile_program((applied,), step, spec.input_names, domain=type(spec.domain))
     memory = state_bytes(program, domain, spec.backend)
     return replace(facts, program=program, memory=memory)
 
 
-def _grounded(spec: Specification, formula: Formula) -> Formula:
+def _ground(spec: Specification, formula: Formula) -> Formula:
     """Return the formula as it is monitored, with closed bounds."""
     return spec.domain.online.ground(formula)[0]
 
@@ -65,10 +65,10 @@ def depth(spec: Specification, formula: Formula) -> Fraction | None:
     """Return the horizon of a formula."""
     step = spec.domain.online.step
     assert step is not None
-    return horizon(_grounded(spec, formula), step)
+    return horizon(_ground(spec, formula), step)
 
 
-def _pastified(spec: Specification) -> Formula | None:
+def _pastify(spec: Specification) -> Formula | None:
     """Return the pastified formula, None where there is none: of shared sub-formulas it may be too large."""
     try:
         return spec.pastified()
@@ -78,17 +78,17 @@ def _pastified(spec: Specification) -> Formula | None:
         return None
 
 
-def _applied(spec: Specification) -> Formula:
+def _apply_semantics(spec: Specification) -> Formula:
     """Return the formula under its semantics."""
     return apply_semantics(spec.formula, spec.semantics, spec.roles)
 
 
 def loose_variable(facts: RequirementInfo) -> str | None:
     """Return a variable that may make intervals wider than necessary."""
-    return loose(_grounded(facts.spec, _applied(facts.spec)), facts.spec.domain.online.period)
+    return loose(_ground(facts.spec, _apply_semantics(facts.spec)), facts.spec.domain.online.period)
 
 
 def cut_operator(facts: RequirementInfo) -> str | None:
     """Return an operator whose windows may lose at the end of a discrete trace what was decided before."""
-    found = ends_differently(_grounded(facts.spec, boolean(facts.spec.formula)), facts.spec.ranges)
+    found = ends_differently(_ground(facts.spec, boolean(facts.spec.formula)), facts.spec.ranges)
     return None if found is None else found.op.name

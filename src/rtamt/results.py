@@ -97,7 +97,7 @@ class Result:
         of = self.specification.name or self.specification.formula
         start = self.signal.times[0]
         at = show_time(start) if isinstance(start, np.timedelta64) else start
-        return f"<result of {of}: robustness {_shown(self.interval)} at {at}>"
+        return f"<result of {of}: robustness {_format_robustness(self.interval)} at {at}>"
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -106,7 +106,8 @@ class Result:
         for name, part in self.requirements.items():
             formula = escape(excerpt(part.specification.formula))
             rows.append(
-                f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td><td>{_shown(part.interval, '.6g')}</td>"
+                f"<tr><td>{escape(name)}</td><td><code>{formula}</code></td>"
+                f"<td>{_format_robustness(part.interval, '.6g')}</td>"
                 f"<td>{escape(part._verdict)}</td></tr>"
             )
         head = "<tr><th>requirement</th><th>formula</th><th>robustness</th><th>verdict</th></tr>"
@@ -407,7 +408,7 @@ def requirements_of(
     )
 
 
-def _shown(bounds: Interval, form: str = "") -> str:
+def _format_robustness(bounds: Interval, form: str = "") -> str:
     """Return the robustness, or its bounds where samples are missing or uncertain."""
     lower, upper = format(bounds.lower, form), format(bounds.upper, form)
     return lower if bounds.lower == bounds.upper else f"from {lower} to {upper}"

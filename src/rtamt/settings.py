@@ -188,7 +188,9 @@ def _code(name: str, given: Any, type_: Enumeration) -> float:
         member = member.removeprefix(f"{type_.name}.")
         code = type_.code(member)
         if code is None:
-            raise UsageError(f"the parameter '{name}' is {shown(member)}, which is {type_.stranger(member)}")
+            raise UsageError(
+                f"the parameter '{name}' is {shown(member)}, which is {type_.unknown_member(member)}"
+            )
         return float(code)
     if not is_number(given) or is_truth(given) or type_.member(given) is None:
         raise UsageError(

@@ -114,13 +114,13 @@ class Specification(OnlineSpecification):
                 )
         query = self._query(time, period, tolerance, resolution, semantics, time_unit)
         if not self._reads_as_given:
-            data = self._sampled(query, self.binding.applied(data))
+            data = self._sample(query, self.binding.applied(data))
             plain = False
         recording = None
         if uncertainty is None and ranges is None:
             recording = query.read(data, self.input_names, self.types)
         if recording is None:
-            recording = self._recorded(query, data, uncertainty, ranges)
+            recording = self._record_inexact(query, data, uncertainty, ranges)
             # With time bases of their own, data are converted even if they are plain: that is found out only once.
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
@@ -194,7 +194,7 @@ class Specification(OnlineSpecification):
         )
         return self.over(found.members), found.data
 
-    def _sampled(self, query: Query, data: Any) -> Any:
+    def _sample(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
         if self.sampling is None:
             return data
@@ -226,19 +226,19 @@ class Specification(OnlineSpecification):
             self, recording, self._evaluators.signals(query.formulas, recording)[0], query.semantics
         )
 
-    def _recorded(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
+    def _record_inexact(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
         """Return a recording that may have missing and uncertain samples."""
         from rtamt.signals.inexact import Uncertainty
 
         declared = Uncertainty.of(uncertainty, ranges, self.input_names)
-        recording, missing = self._normalised(query, data)
+        recording, missing = self._record(query, data)
         if self.resolved is not None:
             recording = recording.ended_by(self.resolved[0].input_names)
         if missing or uncertainty is not None:  # exact recordings are not checked
             declared = declared.within(self.ranges)
         return declared.applied(recording, missing)
 
-    def _normalised(self, query: Query, data: Any) -> tuple[DomainTrace, dict[str, Any]]:
+    def _record(self, query: Query, data: Any) -> tuple[DomainTrace, dict[str, Any]]:
         """Return a recording, and which samples of its variables are missing."""
         try:
             return query.record(data, self.input_names, self.types), {}

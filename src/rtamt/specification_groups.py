@@ -76,7 +76,7 @@ class QuantifiedText(RecordedSpecification):
         key = tuple(members.names.items()), members.throughout
         made = self._over.get(key)
         if made is None:
-            made = self._over[key] = self._resolved_over(members)
+            made = self._over[key] = self._resolve_over(members)
         return made
 
     @cached_property

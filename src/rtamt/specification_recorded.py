@@ -46,7 +46,7 @@ class Optional(NamedTuple):
     def unchecked(self, names: Collection[str] | Trace) -> str:
         """Return why a requirement that reads all of them cannot be checked; empty if it can."""
         lacking = self.lacking(names)
-        return _listed(list(lacking.values())) if lacking else ""
+        return _format_missing(list(lacking.values())) if lacking else ""
 
 
 class RecordedSpecification(SpecificationText):
@@ -133,7 +133,7 @@ class RecordedSpecification(SpecificationText):
         """
         lacking = self._optional.lacking(names)
         return {
-            name: _listed([lacking[each] for each in one.input_names if each in lacking])
+            name: _format_missing([lacking[each] for each in one.input_names if each in lacking])
             for name, one in self.requirements.items()
             if not lacking.keys().isdisjoint(one.input_names)
         }
@@ -161,7 +161,7 @@ class RecordedSpecification(SpecificationText):
         return Declared(names, tuple(self.document.groups.values()) if self.resolved is None else ())
 
 
-def _listed(missing: list[str]) -> str:
+def _format_missing(missing: list[str]) -> str:
     """Return what is missing as part of a sentence."""
     more = len(missing) - _NAMED
     return f"no {', '.join(missing[:_NAMED])}{f' and {more} more' if more > 0 else ''}"

@@ -63,7 +63,7 @@ def same(case: Case, got: list[Any], wanted: list[Any]) -> bool:
     return bool(names & ROUNDED) and np.allclose(got, wanted, rtol=1e-12, atol=0)
 
 
-def told(case: Case, what: list[Any]) -> str:
+def mismatch(case: Case, what: list[Any]) -> str:
     return f"{case.id}: '{case.formula}' gave {what} instead of {case.values}"
 
 
@@ -137,13 +137,13 @@ def test_an_evaluator_of_its_own_gives_every_answer(part: int) -> None:
         if case.time == "discrete":
             n = len(next(iter(case.signals.values())))
             values = meaning.discrete(formula, case.signals, n, case.seconds, *roles)
-            assert same(case, values, case.values), told(case, values)
+            assert same(case, values, case.values), mismatch(case, values)
             late = None if horizon is None else [k + horizon for k in range(n)]
             assert case.known == (late and [k if k < n else None for k in late]), case.id
             continue
         signals = {name: [tuple(pair) for pair in samples] for name, samples in case.signals.items()}
         start, cells = meaning.dense(formula, signals, case.seconds, *roles)
-        assert agree(case, list(range(start, start + len(cells))), cells), told(case, cells)
+        assert agree(case, list(range(start, start + len(cells))), cells), mismatch(case, cells)
         assert case.end == start + len(cells) - 1
         if horizon is None:
             assert case.known is None
@@ -164,10 +164,10 @@ def test_offline(part: int, backend: str) -> None:
     for case in CORPUS[part::PARTS]:
         signal = specification(case, backend).evaluate(data_of(case)).signal
         if case.time == "discrete":
-            assert same(case, signal.values.tolist(), case.values), told(case, signal.values.tolist())
+            assert same(case, signal.values.tolist(), case.values), mismatch(case, signal.values.tolist())
         else:
             ticks = ticks_of(signal.times, case.seconds)
-            assert agree(case, ticks, signal.values.tolist()), told(case, signal.values.tolist())
+            assert agree(case, ticks, signal.values.tolist()), mismatch(case, signal.values.tolist())
             assert ticks[-1] == case.end
 
 
@@ -189,7 +189,7 @@ def one_after_another(case: Case, monitor: Any, data: dict[str, Any]) -> None:
         assert (value is not None) == (i in case.known), f"{case.id}: sample {i}"
         values += [] if value is None else [value]
     values += monitor.finish().values.tolist()
-    assert same(case, values, case.values), told(case, values)
+    assert same(case, values, case.values), mismatch(case, values)
 
 
 def instant_by_instant(case: Case, monitor: Any, data: dict[str, Any]) -> None:
@@ -209,7 +209,7 @@ def instant_by_instant(case: Case, monitor: Any, data: dict[str, Any]) -> None:
     rest = monitor.finish()
     ticks += ticks_of(rest.times, case.seconds)
     values += rest.values.tolist()
-    assert agree(case, ticks, values), told(case, values)
+    assert agree(case, ticks, values), mismatch(case, values)
     assert ticks[-1] == case.end
 
 
@@ -230,10 +230,10 @@ def test_online_in_chunks(part: int) -> None:
         parts.append(monitor.finish())
         values = [v for signal in parts for v in signal.values.tolist()]
         if case.time == "discrete":
-            assert same(case, values, case.values), told(case, values)
+            assert same(case, values, case.values), mismatch(case, values)
         else:
             ticks = [t for signal in parts for t in ticks_of(signal.times, case.seconds)]
-            assert agree(case, ticks, values), told(case, values)
+            assert agree(case, ticks, values), mismatch(case, values)
 
 
 @pytest.mark.parametrize("name", cases.FILES)

@@ -16,10 +16,10 @@ from tests.conformance.test_conformance import (
     agree,
     formula_of,
     instant_by_instant,
+    mismatch,
     one_after_another,
     same,
     specification,
-    told,
 )
 from tests.oracle import agents
 
@@ -92,9 +92,9 @@ def test_an_oracle_gives_every_answer(part: int) -> None:
         world, reported = world_of(case)
         found = agents.evaluate(world, node_of(case.tree), truth=case.semantics == "boolean")[:reported]
         if case.time == "discrete":
-            assert same(case, found, case.values), told(case, found)
+            assert same(case, found, case.values), mismatch(case, found)
         else:
-            assert agree(case, list(range(reported)), found), told(case, found)
+            assert agree(case, list(range(reported)), found), mismatch(case, found)
             assert case.end == reported - 1
 
 
@@ -105,10 +105,10 @@ def test_offline(part: int, backend: str) -> None:
         signal = specification(case, backend).evaluate(data_of(case)).signal
         values = signal.values.tolist()
         if case.time == "discrete":
-            assert same(case, values, case.values), told(case, values)
+            assert same(case, values, case.values), mismatch(case, values)
         else:
             ticks = ticks_of(signal.times, case.seconds)
-            assert agree(case, ticks, values), told(case, values)
+            assert agree(case, ticks, values), mismatch(case, values)
             assert ticks[-1] == case.end
 
 

@@ -44,7 +44,7 @@ def fresh(text=None, names="x y"):
     return spec
 
 
-def said(call, kind=rtamt.RTAMTException):
+def message_of(call, kind=rtamt.RTAMTException):
     with pytest.raises(rtamt.RTAMTException) as info:
         call()
     assert type(info.value) is kind

@@ -13,7 +13,7 @@ NAN = float("nan")
 INF = float("inf")
 
 
-def said(error: type[Exception], call: Any, *args: Any, **kwargs: Any) -> str:
+def check_message(error: type[Exception], call: Any, *args: Any, **kwargs: Any) -> str:
     with pytest.raises(error) as info:
         call(*args, **kwargs)
     return str(info.value)
@@ -60,12 +60,12 @@ OFFLINE = [
 @pytest.mark.parametrize(("data", "message"), OFFLINE)
 def test_wrong_recording(data: Any, message: str) -> None:
     spec = rtamt.parse("x >= 3 and y >= 3")
-    assert said(rtamt.TraceError, spec.evaluate, data) == message
+    assert check_message(rtamt.TraceError, spec.evaluate, data) == message
 
 
 def test_a_field_that_is_not_there() -> None:
     spec = rtamt.parse("x.value >= 3")
-    assert said(rtamt.TraceError, spec.evaluate, {"x": [1.0]}) == (
+    assert check_message(rtamt.TraceError, spec.evaluate, {"x": [1.0]}) == (
         "'x' has no field 'value' at sample 0: it is a float"
     )
 
@@ -106,10 +106,12 @@ def test_wrong_sample_leaves_the_monitor_as_it_was(sample: Any, message: str, ba
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 def test_wrong_step(backend: str) -> None:
     monitor = rtamt.parse("x + y >= 3", backend=backend).monitor()
-    assert said(rtamt.TraceError, monitor.step, 1.0) == (
+    assert check_message(rtamt.TraceError, monitor.step, 1.0) == (
         "sample 0 has the wrong number of values: expected 2 (x, y), got 1"
     )
-    assert said(rtamt.TraceError, monitor.step, 1.0, "a") == "'y' is 'a' at sample 0, expected a number"
+    assert (
+        check_message(rtamt.TraceError, monitor.step, 1.0, "a") == "'y' is 'a' at sample 0, expected a number"
+    )
     assert monitor.step(1.0, 2.0) == 0
 
 
@@ -117,13 +119,13 @@ def test_wrong_step(backend: str) -> None:
 def test_wrong_chunk_leaves_the_monitor_as_it_was(backend: str) -> None:
     monitor = rtamt.parse("once(x >= 3)", backend=backend).monitor()
     monitor.update_many({"x": [5.0, 1.0]})
-    assert said(rtamt.TraceError, monitor.update_many, {"time": [2, 3], "x": [9, NAN]}) == (
+    assert check_message(rtamt.TraceError, monitor.update_many, {"time": [2, 3], "x": [9, NAN]}) == (
         "'x' is NaN at sample 3, time 3 s: fill the gap or leave the sample out"
     )
-    assert said(rtamt.TraceError, monitor.update_many, {"time": [1, 2], "x": [9, 9]}) == (
+    assert check_message(rtamt.TraceError, monitor.update_many, {"time": [1, 2], "x": [9, 9]}) == (
         "time does not increase at sample 2: 1 s comes after 1 s; sort the samples and drop repeated timestamps"
     )
-    assert said(rtamt.TraceError, monitor.update_many, {"time": [2, 4], "x": [9, 9]}) == (
+    assert check_message(rtamt.TraceError, monitor.update_many, {"time": [2, 4], "x": [9, 9]}) == (
         "sample 3 at 4 s is 2 s after the one before, expected 1 s (within 10%): "
         "give the right period, or resample the trace"
     )
@@ -139,9 +141,9 @@ def test_a_finished_monitor_takes_no_sample(backend: str) -> None:
     monitor.update(0.0, x=1)
     monitor.finish()
     message = "the monitor has finished its trace; call reset() before the next sample"
-    assert said(rtamt.UsageError, monitor.update, 1.0, x=1) == message
-    assert said(rtamt.UsageError, monitor.step, 1) == message
-    assert said(rtamt.UsageError, monitor.update_many, {"x": [1]}) == message
+    assert check_message(rtamt.UsageError, monitor.update, 1.0, x=1) == message
+    assert check_message(rtamt.UsageError, monitor.step, 1) == message
+    assert check_message(rtamt.UsageError, monitor.update_many, {"x": [1]}) == message
     assert len(monitor.finish()) == 0
     monitor.reset()
     assert monitor.update(0.0, x=1) == -2
@@ -149,7 +151,7 @@ def test_a_finished_monitor_takes_no_sample(backend: str) -> None:
 
 def test_a_value_that_does_not_exist_is_named_offline() -> None:
     spec = rtamt.parse("always(sqrt(x) >= 1)")
-    assert said(rtamt.EvaluationError, spec.evaluate, {"time": [5, 6, 7], "x": [1, 4, -1]}) == (
+    assert check_message(rtamt.EvaluationError, spec.evaluate, {"time": [5, 6, 7], "x": [1, 4, -1]}) == (
         "'sqrt(x)' has no value at sample 2, time 7 s: it is 0/0, inf - inf, 0 * inf, "
         "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
@@ -158,11 +160,11 @@ def test_a_value_that_does_not_exist_is_named_offline() -> None:
 def test_a_value_that_does_not_exist_is_named_online() -> None:
     monitor = rtamt.parse("eventually[0:1](x / y >= 1)").monitor(period=0.5)
     assert monitor.update(3.0, x=1, y=1) is None
-    assert said(rtamt.EvaluationError, monitor.update, 3.5, x=0, y=0) == (
+    assert check_message(rtamt.EvaluationError, monitor.update, 3.5, x=0, y=0) == (
         "'x / y' has no value at sample 1, time 3.5 s: it is 0/0, inf - inf, 0 * inf, "
         "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
-    assert said(rtamt.EvaluationError, monitor.update_many, {"x": [1, 0], "y": [1, 0]}) == (
+    assert check_message(rtamt.EvaluationError, monitor.update_many, {"x": [1, 0], "y": [1, 0]}) == (
         "'x / y' has no value at sample 2, time 4 s: it is 0/0, inf - inf, 0 * inf, "
         "or a function outside its domain; change the formula or the data so that this cannot happen"
     )
@@ -198,13 +200,13 @@ def test_the_callers_time_stamps_are_never_changed() -> None:
 
 
 def test_wrong_settings() -> None:
-    assert said(rtamt.UsageError, rtamt.parse, "x", backend="c++") == (
+    assert check_message(rtamt.UsageError, rtamt.parse, "x", backend="c++") == (
         "unknown backend 'c++'; back ends: cpp, python"
     )
-    assert said(rtamt.UsageError, rtamt.parse, "x", period=0) == (
+    assert check_message(rtamt.UsageError, rtamt.parse, "x", period=0) == (
         "the sampling period is 0; it must be positive"
     )
-    assert said(rtamt.UsageError, rtamt.load, "nowhere.stl") == (
+    assert check_message(rtamt.UsageError, rtamt.load, "nowhere.stl") == (
         "cannot read the specification 'nowhere.stl': No such file or directory"
     )
 

@@ -4,7 +4,7 @@ import pytest
 
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, SpecificationError
 from rtamt.language.parsing.specfile import parse_document
-from tests.errors.carets import shown
+from tests.errors.carets import with_carets
 
 # Text, what stands under the line in which the error is, class, sentence.
 DOCUMENTS = [
@@ -302,4 +302,4 @@ def test_document(text, marks, kind, sentence):
     with pytest.raises(SpecificationError) as info:
         parse_document(text)
     assert type(info.value) is kind
-    assert str(info.value) == shown(text, marks, sentence)
+    assert str(info.value) == with_carets(text, marks, sentence)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import rtamt
-from tests.errors.rtamt_classes import Sensor, fresh, provide, said
+from tests.errors.rtamt_classes import Sensor, fresh, message_of, provide
 
 NAN = float("nan")
 
@@ -48,13 +48,13 @@ OFFLINE = {
 def test_wrong_data_offline(case):
     data, message = OFFLINE[case]
     spec = fresh("x >= 1")
-    assert said(lambda: spec.evaluate(data)) == message
+    assert message_of(lambda: spec.evaluate(data)) == message
 
 
 def test_an_object_without_the_field_offline():
     spec = fresh("sensor.value")
     data = {"time": [0, 1], "sensor": [Sensor(), SimpleNamespace(speed=1.0)]}
-    assert said(lambda: spec.evaluate(data)) == (
+    assert message_of(lambda: spec.evaluate(data)) == (
         "'sensor' has no field 'value' at sample 1: it is a SimpleNamespace"
     )
 
@@ -96,12 +96,12 @@ def test_wrong_data_online(case):
     time, pairs, message = ONLINE[case]
     spec = fresh("once(0 / x >= 0)")
     spec.update(0, [("x", 1.0)])
-    assert said(lambda: spec.update(time, pairs)) == message
+    assert message_of(lambda: spec.update(time, pairs)) == message
 
 
 def test_the_first_update_needs_every_variable():
     spec = fresh("x + y")
-    assert said(lambda: spec.update(0, [("x", 1.0)])) == (
+    assert message_of(lambda: spec.update(0, [("x", 1.0)])) == (
         "'y' has no value yet at sample 0: give every variable in the first update; "
         "later ones may leave it out"
     )
@@ -110,7 +110,7 @@ def test_the_first_update_needs_every_variable():
 
 def test_an_object_without_the_field_online():
     spec = fresh("sensor.value")
-    assert said(lambda: spec.update(0, [("sensor", 3.0)])) == (
+    assert message_of(lambda: spec.update(0, [("sensor", 3.0)])) == (
         "'sensor' has no field 'value' at sample 0: it is a float"
     )
 
@@ -119,10 +119,10 @@ def test_times_in_messages_are_seconds_whatever_the_unit():
     spec = fresh("x")
     spec.unit = "ms"
     spec.update(0, [("x", 1.0)])
-    assert said(lambda: spec.update(1500, [("x", NAN)])) == (
+    assert message_of(lambda: spec.update(1500, [("x", NAN)])) == (
         "'x' is NaN at sample 1, time 1.5 s: fill the gap or leave the sample out"
     )
-    assert said(lambda: spec.evaluate({"time": [0, 1500], "x": [1, NAN]})) == (
+    assert message_of(lambda: spec.evaluate({"time": [0, 1500], "x": [1, NAN]})) == (
         "'x' is NaN at sample 1, time 1.5 s: fill the gap or leave the sample out"
     )
 
@@ -130,13 +130,13 @@ def test_times_in_messages_are_seconds_whatever_the_unit():
 def test_values_that_do_not_exist():
     spec = fresh("once(x >= 1)")
     spec.update(0, [("x", 3), ("y", 1)])
-    assert said(lambda: spec.get_value("y")) == (
+    assert message_of(lambda: spec.get_value("y")) == (
         "the specification does not read 'y', so that its values are not kept"
     )
-    assert said(lambda: spec.get_value("x >= 2")) == (
+    assert message_of(lambda: spec.get_value("x >= 2")) == (
         "'x >= 2' is no part of the specification once((x)>=(1.0))"
     )
-    assert said(lambda: spec.get_value("xx"), rtamt.STLParseException) == (
+    assert message_of(lambda: spec.get_value("xx"), rtamt.STLParseException) == (
         "'xx' is not declared; did you mean 'x'?\n  line 1, column 1:\n    xx\n    ^^"
     )
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import rtamt
-from tests.errors.rtamt_classes import fresh, provide, said
+from tests.errors.rtamt_classes import fresh, message_of, provide
 
 
 @pytest.fixture(autouse=True)
@@ -115,26 +115,30 @@ SETTINGS = {
 def test_a_wrong_setting_or_call(case):
     call, message = SETTINGS[case]
     spec = fresh()
-    assert said(lambda: call(spec)) == message
+    assert message_of(lambda: call(spec)) == message
 
 
 def test_a_file_that_is_no_text(tmp_path):
     path = tmp_path / "binary.stl"
     path.write_bytes(b"x >= \xff")
-    assert said(lambda: fresh().get_spec_from_file(path)) == f"The file {path} is not UTF-8 text (byte 5)."
-    assert said(lambda: fresh().get_spec_from_file(tmp_path)) == (
+    assert (
+        message_of(lambda: fresh().get_spec_from_file(path)) == f"The file {path} is not UTF-8 text (byte 5)."
+    )
+    assert message_of(lambda: fresh().get_spec_from_file(tmp_path)) == (
         f"The file {tmp_path} cannot be read: Is a directory."
     )
 
 
 def test_wrong_options_of_the_combined_class():
     cls = rtamt.StlDiscreteTimeSpecification
-    assert said(lambda: cls(language="C")) == "the language is 'C'; choose Language.PYTHON or Language.CPP"
+    assert (
+        message_of(lambda: cls(language="C")) == "the language is 'C'; choose Language.PYTHON or Language.CPP"
+    )
     names = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
-    assert said(lambda: cls("output")) == (
+    assert message_of(lambda: cls("output")) == (
         f"unknown semantics 'output'; did you mean 'output_vacuity'?; choose from {names}"
     )
-    assert said(lambda: setattr(cls(), "semantics", rtamt.Language.CPP)) == (
+    assert message_of(lambda: setattr(cls(), "semantics", rtamt.Language.CPP)) == (
         f"unknown semantics <Language.CPP: 'C++'>; choose from {names}"
     )
 
@@ -162,7 +166,7 @@ def test_wrong_options_of_the_combined_class():
 def test_what_names_the_core_says_that_it_is_not_there(monkeypatch, make, what, instead):
     monkeypatch.setitem(sys.modules, "rtamt.engine._core", None)
     monkeypatch.delattr("rtamt.engine._core", raising=False)
-    assert said(make) == (
+    assert message_of(make) == (
         f"{what} needs the compiled core, which cannot be loaded; install the package with a C++ compiler at "
         f"hand, or use {instead}, which gives the same results more slowly"
     )
@@ -170,7 +174,7 @@ def test_what_names_the_core_says_that_it_is_not_there(monkeypatch, make, what, 
 
 def test_a_monitor_that_does_not_fit_into_memory():
     spec = fresh("once[0:10000000000000](x)")
-    assert said(lambda: spec.update(0, [("x", 1)])) == (
+    assert message_of(lambda: spec.update(0, [("x", 1)])) == (
         "the monitor needs 7.45e+04 GiB of memory, which this machine does not give; shorten the longest bound "
         "or lengthen the period"
     )
@@ -221,7 +225,7 @@ TEXTS = {
 @pytest.mark.parametrize("case", TEXTS)
 def test_a_text_that_is_wrong(case):
     text, message = TEXTS[case]
-    assert said(lambda: fresh(text), rtamt.STLParseException) == message
+    assert message_of(lambda: fresh(text), rtamt.STLParseException) == message
 
 
 @pytest.mark.parametrize(
@@ -237,7 +241,7 @@ def test_a_text_that_is_wrong(case):
     ],
 )
 def test_a_result_that_has_no_place(text, message):
-    assert said(lambda: fresh(text)) == message
+    assert message_of(lambda: fresh(text)) == message
 
 
 def test_the_caret_points_into_the_subspecification_that_is_wrong():
@@ -245,7 +249,7 @@ def test_the_caret_points_into_the_subspecification_that_is_wrong():
     spec.add_sub_spec("low = x <= 3")
     spec.add_sub_spec("late = once[0:0.5](low);")
     spec.spec = "always(late)"
-    assert said(spec.parse, rtamt.STLParseException) == (
+    assert message_of(spec.parse, rtamt.STLParseException) == (
         "The operator bound must be a multiple of the sampling period: 500 ms is not a whole number of "
         "periods of 1 s; change the bound or the period\n"
         "  line 2, column 12:\n    late = once[0:0.5](low);\n               ^^^^^^^"
@@ -263,7 +267,7 @@ def test_the_caret_points_into_the_subspecification_that_is_wrong():
 )
 def test_future_online_is_refused_before_the_data_is_looked_at(text, operator, place):
     spec = fresh(text)
-    assert said(lambda: spec.update("nonsense", None)) == (
+    assert message_of(lambda: spec.update("nonsense", None)) == (
         f"{operator} operator is not implemented in the STL online monitor. "
         f"Call pastify() after parse(), or evaluate the finished trace offline\n  {place}"
     )
@@ -272,7 +276,7 @@ def test_future_online_is_refused_before_the_data_is_looked_at(text, operator, p
 @pytest.mark.parametrize("operator", ["always", "eventually"])
 def test_unbounded_future_cannot_be_pastified(operator):
     spec = fresh(f"{operator}(x)")
-    assert said(spec.pastify, rtamt.STLParseException) == (
+    assert message_of(spec.pastify, rtamt.STLParseException) == (
         f"Cannot pastify an unbounded {operator}. Give it an upper bound, such as {operator}[0:10]\n"
         f"  line 1, column 1:\n    {operator}(x)\n    {'^' * (len(operator) + 3)}"
     )

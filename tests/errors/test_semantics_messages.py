@@ -9,7 +9,7 @@ from rtamt.rewrite.semantics import SEMANTICS
 NAMES = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
 
 
-def said(call):
+def message_of(call):
     with pytest.raises(rtamt.UsageError) as info:
         call()
     return str(info.value)
@@ -25,20 +25,20 @@ def said(call):
     ],
 )
 def test_an_unknown_semantics(call):
-    assert said(lambda: call("output_robustnes")) == (
+    assert message_of(lambda: call("output_robustnes")) == (
         f"unknown semantics 'output_robustnes'; did you mean 'output_robustness'?; choose from {NAMES}"
     )
-    assert said(lambda: call(3)) == f"unknown semantics 3; choose from {NAMES}"
-    assert said(lambda: call(rtamt.Semantics)) == (
+    assert message_of(lambda: call(3)) == f"unknown semantics 3; choose from {NAMES}"
+    assert message_of(lambda: call(rtamt.Semantics)) == (
         f"unknown semantics <enum 'Semantics'>; choose from {NAMES}"
     )
 
 
 def test_wrong_roles():
-    assert said(lambda: rtamt.parse("req >= 3", roles={"rec": "input"})) == (
+    assert message_of(lambda: rtamt.parse("req >= 3", roles={"rec": "input"})) == (
         "roles has 'rec', which the specification neither reads nor declares; did you mean 'req'?"
     )
-    assert said(lambda: rtamt.parse("req >= 3", roles={"req": "in"})) == (
+    assert message_of(lambda: rtamt.parse("req >= 3", roles={"req": "in"})) == (
         "the role of 'req' is 'in'; choose 'input' or 'output'"
     )
 
@@ -67,7 +67,7 @@ def another_variable(_predicate, _roles):
 )
 def test_a_function_that_returns_something_else(judge, sentence):
     spec = rtamt.parse("always(x >= 3)")
-    assert said(lambda: spec.evaluate({"x": [1]}, semantics=judge)) == sentence
+    assert message_of(lambda: spec.evaluate({"x": [1]}, semantics=judge)) == sentence
 
 
 @pytest.mark.parametrize("semantics", SEMANTICS)

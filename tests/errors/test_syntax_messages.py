@@ -7,7 +7,7 @@ import pytest
 from rtamt.errors import BoundError, NameInFormulaError, ParseError, SpecificationError, UsageError
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
-from tests.errors.carets import shown
+from tests.errors.carets import with_carets
 
 # Text, what stands under the line in which the error is, class, sentence.
 FORMULAS = [
@@ -287,7 +287,7 @@ def test_formula(text, marks, kind, sentence):
     with pytest.raises(SpecificationError) as info:
         parse_formula(text)
     assert type(info.value) is kind
-    assert str(info.value) == shown(text, marks, sentence)
+    assert str(info.value) == with_carets(text, marks, sentence)
     assert info.value.message == sentence
     assert info.value.text == text
 
@@ -313,7 +313,7 @@ def test_a_name_that_is_not_declared(name, sentence):
     text = f"req >= 3 -> {name} >= 3"
     with pytest.raises(NameInFormulaError) as info:
         parse_formula(text, variables=["req", "gnt"])
-    assert str(info.value) == shown(text, " " * 12 + "^" * len(name), sentence)
+    assert str(info.value) == with_carets(text, " " * 12 + "^" * len(name), sentence)
 
 
 @pytest.mark.parametrize("text", ["x >= 1 and and y", "x and and >= y"])

@@ -26,7 +26,7 @@ from rtamt.errors import StlError
 from rtamt.language.printing.latex import to_latex
 from rtamt.language.printing.printer import to_text
 from rtamt.readers.formats import FORMATS
-from rtamt.readers.source import raised_by_us
+from rtamt.readers.source import is_our_error
 from rtamt.search.config import load_search
 from rtamt.search.fmu import FmuPlant
 from tests.unit.readers.bags import Bag
@@ -236,7 +236,7 @@ def outcome(target: Target, data: bytes, folder: str) -> str:
     except StlError as error:
         # What our own code did not expect is not to be hidden behind a sentence on the file.
         cause: Any = error.__cause__
-        if cause is not None and not isinstance(cause, StlError) and raised_by_us(cause):
+        if cause is not None and not isinstance(cause, StlError) and is_our_error(cause):
             raise cause from None
         return str(error)
     return "read"

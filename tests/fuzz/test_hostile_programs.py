@@ -52,14 +52,14 @@ LONGEST_TAIL = 10_000  # slots that the end of a trace takes
 REFUSED = "This is not a program that can be run: "
 
 
-def compiled(text: str, domain: type[TimeDomain]) -> bytes:
+def compile_text(text: str, domain: type[TimeDomain]) -> bytes:
     return compile_program((desugar(parse_formula(text)),), Fraction(1), domain=domain).to_bytes()
 
 
-PROGRAMS = [compiled(text, domain) for text in FORMULAS for domain in DOMAINS.values()]
+PROGRAMS = [compile_text(text, domain) for text in FORMULAS for domain in DOMAINS.values()]
 
 
-def sealed(body: bytes) -> bytes:
+def seal(body: bytes) -> bytes:
     return body + struct.pack("<I", zlib.crc32(body))
 
 
@@ -90,7 +90,7 @@ def damaged(draw: DrawFn) -> bytes:
     if draw(st.integers(0, 9)) == 0:
         at = draw(st.integers(0, len(body)))
         body = body[:at] if draw(st.booleans()) else body + draw(st.binary(max_size=50))
-    return sealed(bytes(body))
+    return seal(bytes(body))
 
 
 def run(program: bytes) -> None:
@@ -132,7 +132,7 @@ def longest_lag(program: bytes) -> int:
     return max(lags, default=0)
 
 
-def refused_or_run(program: bytes) -> None:
+def reject_or_run(program: bytes) -> None:
     try:
         run(program)
     except ValueError as error:
@@ -145,12 +145,12 @@ def refused_or_run(program: bytes) -> None:
 
 @given(damaged())
 def test_a_damaged_program_is_refused_in_a_sentence_or_runs(program: bytes) -> None:
-    refused_or_run(program)
+    reject_or_run(program)
 
 
 @pytest.mark.parametrize("path", sorted(CORPUS.iterdir()), ids=lambda path: path.name)
 def test_what_fuzzing_tried_is_refused_in_a_sentence_or_runs(path: Path) -> None:
-    refused_or_run(sealed(path.read_bytes()[1:-CHECKSUM]))  # the first byte is the fuzzer's own
+    reject_or_run(seal(path.read_bytes()[1:-CHECKSUM]))  # the first byte is the fuzzer's own
 
 
 @pytest.mark.parametrize("program", PROGRAMS[:2])
@@ -160,18 +160,18 @@ def test_inputs_that_nothing_stands_behind_are_refused_before_memory_is_taken_fo
     body = bytearray(program[:-CHECKSUM])
     struct.pack_into("<I", body, 16, 2**32 - 1)
     with pytest.raises(ValueError, match="^" + REFUSED) as info:
-        run(sealed(bytes(body)))
+        run(seal(bytes(body)))
     assert str(info.value) == (
         f"{REFUSED}it promises 4294967295 inputs, more than the 65536 that are possible for one of its size."
     )
 
 
 def test_a_value_before_its_operands_are_known_is_refused() -> None:
-    program = compiled("always[0:1] eventually[0:3] x", Discrete)
+    program = compile_text("always[0:1] eventually[0:3] x", Discrete)
     body = bytearray(program[:-CHECKSUM])
     struct.pack_into("<q", body, HEADER + RECORD * (records(program) - 1) + 32, 2)
     with pytest.raises(ValueError, match="^" + REFUSED) as info:
-        run(sealed(bytes(body)))
+        run(seal(bytes(body)))
     assert str(info.value) == (
         f"{REFUSED}instruction 2 (slide_min) has the lag 2, before its operands are known at 3."
     )

@@ -42,7 +42,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def linked(program: Path) -> bool:
+def link(program: Path) -> bool:
     return "librtamt.so.1 " in run("readelf", "--dynamic", program).replace("]", " ")
 
 
@@ -52,7 +52,7 @@ def test_programs_in_c_and_cpp_find_the_library_by_cmake(place: Path) -> None:
     runs = (("watch", "spec.rtamt", "expected.txt"), ("watch_dense", "dense.rtamt", "expected_dense.txt"))
     for name, compiled, expected in runs:
         program = place / "build" / name
-        assert linked(program)
+        assert link(program)
         assert run(program, place / compiled) == (place / expected).read_text("utf-8")
 
 
@@ -108,7 +108,7 @@ def test_a_c_program_finds_the_library_by_pkg_config(place: Path) -> None:
     (moved,) = (place / "prefix").rename(place / "moved").glob("lib*")  # the file names no absolute path
     flags = run("pkg-config", "--cflags", "--libs", "rtamt", PKG_CONFIG_PATH=str(moved / "pkgconfig"))
     run("cc", "-std=c99", "-Wall", "-Werror", place / "watch.c", "-o", place / "watch", *flags.split())
-    assert linked(place / "watch")
+    assert link(place / "watch")
     said = run(place / "watch", place / "spec.rtamt", LD_LIBRARY_PATH=str(moved))
     assert said == (place / "expected.txt").read_text("utf-8")
     assert run("pkg-config", "--modversion", "rtamt", PKG_CONFIG_PATH=str(moved / "pkgconfig")) == "1.0.0\n"

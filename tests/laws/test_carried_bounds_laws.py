@@ -57,9 +57,9 @@ def test_a_program_of_bounds_gives_the_bits_of_the_monitor(formula, columns, dat
         return
     there.finish()
     at_end = here.interval()
-    assert [there.told(k)[1].tolist() for k in (0, 1)] == [[at_end.lower], [at_end.upper]]
+    assert [there.last_output(k)[1].tolist() for k in (0, 1)] == [[at_end.lower], [at_end.upper]]
     expected = {None: [], True: [float("inf")], False: [-float("inf")]}[here.satisfied]
-    assert there.told(2)[1].tolist() == expected
+    assert there.last_output(2)[1].tolist() == expected
 
 
 @settings(max_examples=30)

@@ -31,11 +31,11 @@ ONE = Fraction(1)
 SAMPLES, TICKS = Discrete(ONE), Dense(ONE)
 
 
-def carried(formula: Formula, domain: TimeDomain = SAMPLES, applied: Formula | None = None) -> bytes:
+def compile_requirement(formula: Formula, domain: TimeDomain = SAMPLES, applied: Formula | None = None) -> bytes:
     return carried_program(formula, domain, applied=applied).to_bytes()
 
 
-def draw_judged(data: st.DataObject, formula: Formula) -> Formula:
+def draw_with_semantics(data: st.DataObject, formula: Formula) -> Formula:
     """Return the formula under any semantics, any of its variables being inputs."""
     inputs = data.draw(st.sets(st.sampled_from(("x", "y"))))
     roles = {name: "input" for name in variables(formula) if name in inputs}
@@ -62,8 +62,8 @@ def rows_of(formula: Formula, columns: dict[str, Any]) -> list[tuple[float, ...]
 def test_samples_in_the_same_bits_out(data: st.DataObject) -> None:
     formula, columns = data.draw(formulas()), data.draw(traces(infinite=True))
     rows = rows_of(formula, columns)
-    judged = draw_judged(data, formula)
-    code = carried(formula, applied=judged)
+    judged = draw_with_semantics(data, formula)
+    code = compile_requirement(formula, applied=judged)
     here, there, truth = Monitor(judged), c_api.Monitor(code), Monitor(boolean(formula))
     cut = data.draw(st.integers(0, len(rows)))
     for i, row in enumerate(rows):
@@ -101,8 +101,8 @@ def test_events_in_the_same_events_out(data: st.DataObject) -> None:
     assume(names)
     trace = {name: column for name, column in data.draw(dense_traces()).items() if name in names}
     updates = data.draw(dense_chunkings(trace))
-    judged = draw_judged(data, formula)
-    code = carried(formula, TICKS, judged)
+    judged = draw_with_semantics(data, formula)
+    code = compile_requirement(formula, TICKS, judged)
     here, there = DenseMonitor(judged, TICKS), c_api.Monitor(code)
     cut = data.draw(st.integers(0, len(updates)))
     try:
@@ -183,7 +183,7 @@ def name_finite_numbers(node: Formula, args: tuple[Formula, ...]) -> Formula:
 def test_a_part_of_an_operator_without_a_value_is_called_by_the_name_of_the_operator() -> None:
     """The sum below an integral was "Instruction 1"."""
     formula = parse_formula("integral[0:1](x) >= 0")
-    monitor = c_api.Monitor(carried(formula))
+    monitor = c_api.Monitor(compile_requirement(formula))
     monitor.step((-np.inf,))
     with pytest.raises(c_api.RefusedError, match=r"'integral\[0:1\]\(x\)' has no value at sample 1"):
         monitor.step((np.inf,))

@@ -116,7 +116,7 @@ def test_in_dense_time_too_what_is_watched_is_what_an_offline_evaluation_says(
     monitor = DenseMonitor(formula, Dense(ONE), backend=backend, watch=watch)
     told: list[list[tuple[float, float]]] = [[] for _ in every]
 
-    def tell(result: Signal) -> None:
+    def points_of(result: Signal) -> None:
         for output, known in enumerate(signals_of(monitor, watch, result)):
             told[output].extend(zip(known.times.tolist(), known.values.tolist(), strict=True))
 
@@ -124,8 +124,8 @@ def test_in_dense_time_too_what_is_watched_is_what_an_offline_evaluation_says(
         # A part without variables lives as long as they do.
         expected = [dense_reference.evaluate(part, whole, ONE) for part in every]
         for update in data.draw(dense_chunkings(trace)):
-            tell(monitor.update_many(seconds(update, names)))
-        tell(monitor.finish())
+            points_of(monitor.update_many(seconds(update, names)))
+        points_of(monitor.finish())
     except EvaluationError:
         assume(False)
     for values, right in zip(told, expected, strict=True):

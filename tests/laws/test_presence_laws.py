@@ -27,7 +27,7 @@ def cases(draw):
     return text, columns, draw(st.sampled_from(["cpp", "python"]))
 
 
-def asked(text, backend):
+def specifications_of(text, backend):
     """Return the formula, and the same with recorded Booleans in place of valid(x) and valid(y)."""
     plain = text.replace("valid(x)", "vx").replace("valid(y)", "vy")
     declared = f"float x float y bool vx bool vy {plain}"
@@ -48,7 +48,7 @@ def bounds(spec, data, **settings):
 @given(cases())
 def test_offline_presence_is_a_recorded_boolean(case):
     text, columns, backend = case
-    spec, recorded = asked(text, backend)
+    spec, recorded = specifications_of(text, backend)
     data = {**columns, **beside(columns, recorded)}
     assert bounds(spec, data) == bounds(recorded, data)
 
@@ -56,14 +56,14 @@ def test_offline_presence_is_a_recorded_boolean(case):
 @given(cases())
 def test_offline_presence_in_dense_time_is_that_of_the_last_sample(case):
     text, columns, backend = case
-    spec, recorded = asked(text, backend)
+    spec, recorded = specifications_of(text, backend)
     times = list(range(len(columns["x"])))
     data = {**columns, **beside(columns, recorded)}
     data = {name: (times, values) for name, values in data.items()}
     assert bounds(spec, data, time="dense") == bounds(recorded, data, time="dense")
 
 
-def told_by(changes):
+def bounds_by_instant(changes):
     return {t: each.interval for each in changes for t in range(int(each.begin), int(each.end) + 1)}
 
 
@@ -71,7 +71,7 @@ def told_by(changes):
 @given(cases(), st.data())
 def test_online_bounds_are_those_of_a_recorded_boolean_in_any_order_of_arrival(case, data):
     text, columns, backend = case
-    spec, recorded = asked(text, backend)
+    spec, recorded = specifications_of(text, backend)
     names = spec.input_names
     rows = [{name: columns[name][t] for name in names} for t in range(len(columns["x"]))]
     there = beside(columns, recorded)
@@ -80,10 +80,10 @@ def test_online_bounds_are_those_of_a_recorded_boolean_in_any_order_of_arrival(c
     for t, row in enumerate(rows):
         ordered.update(t, **row)
         told.update(t, **{name: there[name][t] for name in recorded.input_names})
-        every |= told_by(ordered.changes())
-        all_told |= told_by(told.changes())
-    every |= told_by(ordered.finish())
-    all_told |= told_by(told.finish())
+        every |= bounds_by_instant(ordered.changes())
+        all_told |= bounds_by_instant(told.changes())
+    every |= bounds_by_instant(ordered.finish())
+    all_told |= bounds_by_instant(told.finish())
     assert every == all_told
     late = spec.monitor(verdict="interval", lateness=2)
     # Each sample is late by at most two: sort by the time plus up to two.
@@ -91,8 +91,8 @@ def test_online_bounds_are_those_of_a_recorded_boolean_in_any_order_of_arrival(c
     lately = {}
     for t in order:
         late.update(t, **{name: value for name, value in rows[t].items() if value is not None})
-        lately |= told_by(late.changes())
-    lately |= told_by(late.finish())
+        lately |= bounds_by_instant(late.changes())
+    lately |= bounds_by_instant(late.finish())
     assert late.samples == len(rows)
     # What was known before the trace had begun is told by the monitor itself.
     lately |= {t: late.interval(t) for t in range(len(rows)) if t not in lately}

@@ -194,7 +194,7 @@ def test_program(drawn: tuple[str, list[Formula]], columns: dict[str, Any]) -> N
     except c_api.RefusedError:
         return
     for output, values in enumerate(known):
-        values.extend(monitor.told(output)[1].tolist())
+        values.extend(monitor.last_output(output)[1].tolist())
         assert len(values) == len(rows)
     for which in (0, 1):
         np.testing.assert_array_equal(known[which], np.minimum.reduce(known[2 + which :: 2]))

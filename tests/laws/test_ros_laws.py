@@ -146,7 +146,7 @@ def checked(folder, text, sent, *options):
     }
 
 
-def told(records, topic):
+def values_on(records, topic):
     """Return robustness and truth of an output: (stamp, value) pairs."""
     mine = [record for record in records if record.output.topic == topic]
     numbers = [(r.stamp, r.value) for r in mine if isinstance(r, Robustness)]
@@ -182,7 +182,7 @@ def test_a_node_in_discrete_time_gives_what_check_finds_in_a_bag_bit_for_bit(fol
     for group, standing in outputs_of(monitor):
         expected, truth = found[standing.topic]
         last = max(one.at for one in sent if one.topic in group.topics)
-        numbers, verdicts = told([r for r in records if r.stamp <= last], standing.topic)
+        numbers, verdicts = values_on([r for r in records if r.stamp <= last], standing.topic)
         assert [stamp for stamp, _ in numbers] == [stamp for stamp, _ in expected]
         known = max(0, len(expected) - standing.lag)
         assert [value for _, value in numbers[standing.lag :]] == [value for _, value in expected[:known]]
@@ -208,7 +208,7 @@ def test_a_node_in_dense_time_gives_what_check_finds_in_a_bag_bit_for_bit(folder
     for group, standing in outputs_of(monitor):
         expected = found[standing.topic]
         ends = [max(one.at for one in sent if one.topic == topic) for topic in group.topics]
-        for node, bag in zip(told(records, standing.topic), expected, strict=True):
+        for node, bag in zip(values_on(records, standing.topic), expected, strict=True):
             begin, end = bag[0][0] + standing.lag, min(ends)
             assert (not node and end < bag[0][0]) or node[-1][0] == end
             for stamp in {stamp for stamp, _ in node} | {stamp + standing.lag for stamp, _ in bag}:

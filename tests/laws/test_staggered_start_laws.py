@@ -53,11 +53,11 @@ def value_at(signal: Any, times: Any) -> Any:
     return np.where(times < signal.times[0], np.inf, values)
 
 
-def pickled(monitor: Any) -> Any:
+def pickle_round_trip(monitor: Any) -> Any:
     return pickle.loads(pickle.dumps(monitor))
 
 
-def told(result: Any) -> tuple[float, bool, Any]:
+def outcome_of(result: Any) -> tuple[float, bool, Any]:
     when = result.first_violation if hasattr(result, "first_violation") else first_violation(result)
     return result.robustness, result.satisfied, when
 
@@ -70,14 +70,14 @@ def test_evaluate_judge_streams_and_each_requirement_alone(drawn: Any, data: st.
     parts = result.requirements
     for name, alone in spec.requirements.items():
         whole = alone.evaluate(seconds(trace)) if alone.input_names else parts[name]
-        assert told(parts[name]) == told(whole)
+        assert outcome_of(parts[name]) == outcome_of(whole)
         inside = whole.signal.times
         np.testing.assert_array_equal(value_at(parts[name].signal, inside), whole.signal.values)
-    assert {name: told(part) for name, part in evaluate_requirements(spec, seconds(trace)).items()} == {
-        name: told(part) for name, part in parts.items()
+    assert {name: outcome_of(part) for name, part in evaluate_requirements(spec, seconds(trace)).items()} == {
+        name: outcome_of(part) for name, part in parts.items()
     }
     violations = [first_violation(part) for part in parts.values() if not part.satisfied]
-    assert told(result) == (
+    assert outcome_of(result) == (
         min(part.robustness for part in parts.values()),
         not violations,
         min(violations, default=None),
@@ -91,9 +91,9 @@ def test_evaluate_judge_streams_and_each_requirement_alone(drawn: Any, data: st.
         streamed = rtamt.check_stream(spec, chunks)
     except rtamt.BoundError:  # unbounded future below another operator needs the whole recording
         return
-    assert told(streamed) == told(result)
-    assert {name: told(part) for name, part in streamed.requirements.items()} == {
-        name: told(part) for name, part in parts.items()
+    assert outcome_of(streamed) == outcome_of(result)
+    assert {name: outcome_of(part) for name, part in streamed.requirements.items()} == {
+        name: outcome_of(part) for name, part in parts.items()
     }
 
 
@@ -120,7 +120,7 @@ def test_a_monitor_gives_what_the_evaluation_gives(drawn: Any, data: st.DataObje
     try:
         for i, update in enumerate(updates):
             if i == branch:  # a copy goes on where the monitor stood
-                monitor = data.draw(st.sampled_from((copy.copy, pickled)))(monitor)
+                monitor = data.draw(st.sampled_from((copy.copy, pickle_round_trip)))(monitor)
             take(monitor.update_many(update))
         take(monitor.finish())
     except EvaluationError:  # of an instant that no value of the evaluation depends on
@@ -159,7 +159,7 @@ def test_the_commands_give_what_the_evaluation_gives(drawn: Any, large: bool) ->
         ]
         lines = [json.loads(line) for line in command(patch, ["monitor", "spec.stl", *options], table)]
     assert [(float(row["robustness"]), row["satisfied"], row["first_violation"]) for row in rows] == [
-        told(part) for part in result.requirements.values()
+        outcome_of(part) for part in result.requirements.values()
     ]
     at = np.array([line["time"] for line in lines])
     np.testing.assert_array_equal([float(line["robustness"]) for line in lines], value_at(result.signal, at))
@@ -220,6 +220,6 @@ def test_many_specifications_over_one_recording_start_as_each_alone() -> None:
     data = {"x": ([0.0, 1.0, 5.0], [5, 2, 1]), "y": ([2.0, 3.0], [4, 3])}
     alone = [spec.evaluate({name: data[name] for name in spec.input_names}) for spec in specs]
     found = rtamt.evaluate_all(specs, data)
-    assert [told(result) for result in found] == [told(result) for result in alone]
+    assert [outcome_of(result) for result in found] == [outcome_of(result) for result in alone]
     assert found[0].robustness == -2.0
     assert [str(result.signal) for result in found] == [str(result.signal) for result in alone]

@@ -134,7 +134,7 @@ def on_grid(
             return [ATOMS[name]] * size
         return [v > 0 for v in _in_time(node, below, tick)]
 
-    def judged(node: Formula, below: tuple[Gapped, ...]) -> Gapped:
+    def apply_semantics(node: Formula, below: tuple[Gapped, ...]) -> Gapped:
         assert case is not None
         if is_predicate(node):
             which = case(node)
@@ -148,7 +148,7 @@ def on_grid(
     if truth:
         value = fold(formula, holds)
     if case is not None:
-        value = fold(formula, judged)
+        value = fold(formula, apply_semantics)
     return start, value[: 2 * (last - start) + 1]
 
 

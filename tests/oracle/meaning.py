@@ -292,9 +292,9 @@ def _evaluate(
     def computed(node: Formula) -> tuple[Values, Values]:
         if isinstance(node, Const):
             number = [node.value] * size
-            return number, _judged(node, [], number, semantics, inputs)
+            return number, _apply_semantics(node, [], number, semantics, inputs)
         if isinstance(node, Var):
-            return signals[node.name], _judged(node, [], signals[node.name], semantics, inputs)
+            return signals[node.name], _apply_semantics(node, [], signals[node.name], semantics, inputs)
         assert isinstance(node, Apply)
         name = node.op.name
         # A condition may have a truth where its robustness has no value, inf - inf.
@@ -313,7 +313,7 @@ def _evaluate(
             number = [pointwise(*values) for values in zip(*operands, strict=True)]
         if name in NUMBERS:
             _defined(node, number)
-        return number, _judged(node, operands, number, semantics, inputs)
+        return number, _apply_semantics(node, operands, number, semantics, inputs)
 
     return evaluate(formula)[1]
 
@@ -324,7 +324,7 @@ def _defined(node: Formula, values: Values) -> Values:
     return values
 
 
-def _judged(
+def _apply_semantics(
     node: Formula, operands: list[Values], number: Values, semantics: str, inputs: Collection[str]
 ) -> Values:
     """Return what a predicate, a comparison or a number that stands for a formula, is worth."""

@@ -82,14 +82,14 @@ class Monitor:
         """Take (input, tick, value) triples; return the new events of the first output."""
         array = (Sample * len(samples))(*(Sample(tick, value, name) for name, tick, value in samples))
         self._check(LIBRARY.rtamt_push(self._handle, array, len(samples)))
-        return self.told(0)
+        return self.last_output(0)
 
     def finish(self):
         """Return the rest of the first output."""
         self._check(LIBRARY.rtamt_finish(self._handle))
-        return self.told(0)
+        return self.last_output(0)
 
-    def told(self, output):
+    def last_output(self, output):
         """Return steps and values that the last call made known."""
         steps, values = POINTER(c_int64)(), POINTER(c_double)()
         count = LIBRARY.rtamt_last_output(self._handle, output, byref(steps), byref(values))

@@ -21,7 +21,7 @@ require GAP: x >= -gap
 DATA = {"x": [1, 2, 3, 1]}
 
 
-def pickled(one):
+def pickle_round_trip(one):
     return pickle.loads(pickle.dumps(one))
 
 
@@ -105,14 +105,14 @@ def test_a_specification_without_parameters_says_so():
 
 def test_copies_and_pickles_keep_the_values(spec):
     assigned = spec.with_parameters(limit=3, **{"reaction time": 1})
-    again = pickled(assigned)
+    again = pickle_round_trip(assigned)
     assert again.parameters == assigned.parameters
     assert str(again.select("LOW")) == "always[0:1](x <= 3)"
     assert str(again.with_parameters(limit=2).requirements["LOW"]) == "always[0:1](x <= 2)"
 
 
 def test_a_pickled_replaced_formula_still_has_its_parameters(spec):
-    past = pickled(spec.with_formula(spec.pastified()))
+    past = pickle_round_trip(spec.with_formula(spec.pastified()))
     assert str(past.with_parameters(limit=1)).startswith("historically[0:2](x <= 1)")
     with pytest.raises(UsageError, match="set it before with_formula"):
         past.with_parameters(**{"reaction time": 1})
@@ -120,21 +120,21 @@ def test_a_pickled_replaced_formula_still_has_its_parameters(spec):
 
 @pytest.mark.parametrize("verdict", ["delayed", "eager", "interval", "causation"])
 def test_a_monitor_is_reset_to_other_values(spec, verdict):
-    def told(monitor):
+    def replay_values(monitor):
         return [str(monitor.update(t, x=x)) for t, x in enumerate(DATA["x"])]
 
     monitor = spec.monitor(verdict=verdict)
-    before = told(monitor)
+    before = replay_values(monitor)
     monitor.reset(limit=1, **{"reaction time": 1})
     expected = spec.with_parameters(limit=1, **{"reaction time": 1}).monitor(verdict=verdict)
-    assert told(monitor) == told(expected)
-    twins = copy.copy(monitor), pickled(monitor)
+    assert replay_values(monitor) == replay_values(expected)
+    twins = copy.copy(monitor), pickle_round_trip(monitor)
     for twin in (*twins, monitor):
         twin.reset()  # the values stay
         expected.reset()
-        assert told(twin) == told(expected)
+        assert replay_values(twin) == replay_values(expected)
     monitor.reset(limit=4, **{"reaction time": 2})
-    assert told(monitor) == before
+    assert replay_values(monitor) == before
 
 
 def test_a_watched_formula_has_the_values_of_its_monitor(spec):
@@ -239,7 +239,7 @@ def test_a_parameter_is_a_boolean():
     assert r"\top \to" in strict.requirements["A"].formula.latex()
     assert spec.evaluate({"x": [3.5]}).robustness == 0.5
     assert strict.evaluate({"x": [3.5]}).robustness == -0.5
-    assert pickled(strict).evaluate({"x": [3.5]}).robustness == -0.5
+    assert pickle_round_trip(strict).evaluate({"x": [3.5]}).robustness == -0.5
     monitor = spec.monitor(watch=["strict -> x <= 2"])
     monitor.reset(strict=True)
     assert (monitor.update(0, x=3.5), monitor["strict -> x <= 2"]) == (-0.5, -1.5)

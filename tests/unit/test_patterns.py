@@ -6,7 +6,7 @@ import pytest
 
 import rtamt
 from rtamt.errors import ParseError, UsageError
-from rtamt.patterns import pattern_named, patterns, specification_of
+from rtamt.patterns import find_pattern, patterns, specification_of
 
 #: An argument for each parameter: durations, times and numbers by their names.
 DURATIONS = ("duration", "window", "width", "within", "after", "shortest", "longest")
@@ -47,22 +47,22 @@ def test_the_patterns_are_those_of_the_library_without_their_helpers():
 
 def test_sentences_have_scopes():
     texts = {"p": "open", "q": "speed > 2", "r": "speed < 1"}
-    assert pattern_named("absence_between").described(texts) == (
+    assert find_pattern("absence_between").described(texts) == (
         "Between each (speed is more than 2) and the next (speed is less than 1), open never holds."
     )
-    assert pattern_named("absence_until").sentence.startswith(
+    assert find_pattern("absence_until").sentence.startswith(
         "from each `q` until the next `r`, which may never come, "
     )
     assert (
-        pattern_named("stays").described({"x": "v", "low": "0", "high": "50"}) == "v stays between 0 and 50."
+        find_pattern("stays").described({"x": "v", "low": "0", "high": "50"}) == "v stays between 0 and 50."
     )
 
 
 def test_what_is_wrong_is_said():
     with pytest.raises(UsageError) as failure:
-        pattern_named("respons")
+        find_pattern("respons")
     assert str(failure.value).startswith("there is no pattern 'respons'; did you mean 'response'?")
-    response = pattern_named("response")
+    response = find_pattern("response")
     with pytest.raises(UsageError) as failure:
         specification_of(response, {"p": "x > 1"})
     assert str(failure.value) == "response(p, s) needs s: give s=..."

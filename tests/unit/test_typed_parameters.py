@@ -91,19 +91,19 @@ def test_a_value_of_another_type_is_one_sentence(spec, values, message):
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize("verdict", ["delayed", "eager", "interval"])
 def test_a_monitor_is_reset_to_another_member(verdict, backend):
-    def told(monitor):
+    def replay_values(monitor):
         known = getattr(monitor, "changes", list)
         return [str((monitor.update(t, mode=mode), known())) for t, mode in enumerate(DATA["mode"])]
 
     spec = rtamt.parse(TEXT, backend=backend).select("MODE")
     monitor = spec.monitor(verdict=verdict)
-    before = told(monitor)
+    before = replay_values(monitor)
     monitor.reset(start="MANUAL")
-    expected = told(spec.with_parameters(start="MANUAL").monitor(verdict=verdict))
-    assert told(monitor) == expected != before
+    expected = replay_values(spec.with_parameters(start="MANUAL").monitor(verdict=verdict))
+    assert replay_values(monitor) == expected != before
     for twin in (copy.copy(monitor), pickle.loads(pickle.dumps(monitor))):
         twin.reset()
-        assert told(twin) == expected
+        assert replay_values(twin) == expected
 
 
 def test_a_compiled_program_has_typed_parameters(spec):

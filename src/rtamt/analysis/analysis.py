@@ -76,7 +76,7 @@ def analyze(
     R2: it is vacuous, because 'speed > 70' is never true: no trace up to 20 samples makes it true
     """
     checker = BoundedChecker([spec], samples, limit)
-    parts, notes = _covered(spec, checker)
+    parts, notes = _split_covered(spec, checker)
     found: list[Conclusion] = []
     for part in parts:
         first = checker.satisfiable(part)
@@ -99,7 +99,7 @@ def _is(conclusion: Conclusion, question: str, part: Part) -> bool:
     return conclusion.finding and conclusion.question == question and conclusion.names == (part.name,)
 
 
-def _covered(spec: Specification, checker: BoundedChecker) -> tuple[list[Part], list[str]]:
+def _split_covered(spec: Specification, checker: BoundedChecker) -> tuple[list[Part], list[str]]:
     """Return the requirements that the analysis covers, and what it does not."""
     parts: list[Part] = []
     notes: list[str] = []
@@ -116,16 +116,16 @@ def _covered(spec: Specification, checker: BoundedChecker) -> tuple[list[Part], 
     whole = [
         name for name in _whole_numbers(spec) if name in variables(*(part.spec.formula for part in parts))
     ]
-    return parts, [*notes, *about_unbounded(endless, checker.samples), *about_whole(whole)]
+    return parts, [*notes, *unbounded_note(endless, checker.samples), *about_whole(whole)]
 
 
-def about_unbounded(names: Sequence[str], samples: int) -> list[str]:
+def unbounded_note(names: Sequence[str], samples: int) -> list[str]:
     """Return the note that requirements have unbounded operators, if some have."""
     if not names:
         return []
     have = "have" if len(names) > 1 else "has"
     return [
-        f"{_listed(names)} {have} unbounded operators: traces longer than {samples} samples are not covered"
+        f"{_join_names(names)} {have} unbounded operators: traces longer than {samples} samples are not covered"
     ]
 
 
@@ -134,14 +134,14 @@ def about_whole(names: Sequence[str]) -> list[str]:
     if not names:
         return []
     are = "are whole numbers" if len(names) > 1 else "is a whole number"
-    return [f"{_listed(names)} {are}: traces have any number there, as recordings may"]
+    return [f"{_join_names(names)} {are}: traces have any number there, as recordings may"]
 
 
 def _whole_numbers(spec: Specification) -> list[str]:
     return [each.name for each in spec.document.declarations if each.kind == "var" and each.type in WHOLE]
 
 
-def _listed(names: Sequence[str]) -> str:
+def _join_names(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 

@@ -60,7 +60,7 @@ def _at_least(of: Values, a: Value, b: Value) -> Value:
     return a
 
 
-def _scaled(factor: float) -> Encoding:
+def _scale(factor: float) -> Encoding:
     return lambda of, a: of.times(_constant(Fraction(factor)), a)
 
 
@@ -80,8 +80,8 @@ ENCODED: Mapping[str, Encoding] = MappingProxyType(
         "round": _round,
         "mod": _mod,
         "at_least": _at_least,
-        "degrees": _scaled(180 / math.pi),
-        "radians": _scaled(math.pi / 180),
+        "degrees": _scale(180 / math.pi),
+        "radians": _scale(math.pi / 180),
         "holds_gt": lambda of, a, b: of.verdict(of.exceeds(a, b)),
         "holds_ge": lambda of, a, b: of.verdict(of.reaches(a, b)),
         "holds_eq": lambda of, a, b: of.verdict(of.equals(a, b)),

@@ -7,7 +7,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from rtamt.analysis.declared import common_limits, last_limits, require_covered, require_same_signals
-from rtamt.analysis.problem import Answer, Problem, related
+from rtamt.analysis.problem import Answer, Problem, group_related
 from rtamt.analysis.witness import Goal, Witness
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, postorder
@@ -244,7 +244,7 @@ class BoundedChecker:
             # Those that share no signals with it, directly or through others, do not imply it.
             near = next(
                 group
-                for group in related([violated, *(other.goal() for other in others)])
+                for group in group_related([violated, *(other.goal() for other in others)])
                 if violated in group
             )
             others = [other for other in others if other.goal() in near]

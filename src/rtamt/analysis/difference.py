@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.analysis.analysis import Analysis, about_unbounded
+from rtamt.analysis.analysis import Analysis, unbounded_note
 from rtamt.analysis.bounded_checker import (
     LIMIT,
     SAMPLES,
@@ -56,14 +56,14 @@ def diff(old: Specification, new: Specification, *, samples: int = SAMPLES, limi
             for part in (before, after):
                 checker.require_covered(part.spec.formula, part.spec)
         except NotCoveredError as error:
-            found.append(_uncovered(before, after, error))
+            found.append(_compare_uncovered(before, after, error))
             continue
-        found.append(_compared(checker, before, after))
+        found.append(_compare(checker, before, after))
         if unbounded(before.spec.formula) or unbounded(after.spec.formula):
             endless.append(name)
     removed = [name for name in old.requirements if name not in new.requirements]
     found += [Conclusion("same", (name,), False, "it is only in the old version", True) for name in removed]
-    notes = [*about_unbounded(endless, checker.samples), *_about_limits(old, new)]
+    notes = [*unbounded_note(endless, checker.samples), *_about_limits(old, new)]
     return Analysis(checker.samples, checker.period, tuple(found), tuple(notes))
 
 
@@ -72,7 +72,7 @@ def _about_data(old: Specification, new: Specification) -> Iterator[str]:
     rules = [_rule(spec.document.sampling) for spec in (old, new)]
     if rules[0] != rules[1]:
         yield f"the sampling rule has changed from {rules[0]} to {rules[1]}"
-    for before, after in _both(old, new):
+    for before, after in _common_variables(old, new):
         if _columns(before) != _columns(after):
             yield f"the recorded name of '{after.name}' has changed from {_columns(before)} to {_columns(after)}"
         if before.optional != after.optional:
@@ -81,7 +81,7 @@ def _about_data(old: Specification, new: Specification) -> Iterator[str]:
 
 def _about_limits(old: Specification, new: Specification) -> Iterator[str]:
     """Yield a note for each variable whose range or rate has changed, which no evaluation of a recording reads."""
-    for before, after in _both(old, new):
+    for before, after in _common_variables(old, new):
         for what, earlier, later in (
             ("range", before.range, after.range),
             ("rate", before.rate, after.rate),
@@ -93,7 +93,7 @@ def _about_limits(old: Specification, new: Specification) -> Iterator[str]:
                 )
 
 
-def _both(old: Specification, new: Specification) -> Iterator[tuple[Declaration, Declaration]]:
+def _common_variables(old: Specification, new: Specification) -> Iterator[tuple[Declaration, Declaration]]:
     """Yield the variables that both versions declare."""
     before = {each.name: each for each in old.document.declarations if each.kind == "var"}
     for each in new.document.declarations:
@@ -113,7 +113,7 @@ def _ends(limits: tuple[float, float] | None) -> str:
     return "none" if limits is None else f"[{number(limits[0])}, {number(limits[1])}]"
 
 
-def _uncovered(before: Part, after: Part, error: NotCoveredError) -> Conclusion:
+def _compare_uncovered(before: Part, after: Part, error: NotCoveredError) -> Conclusion:
     """Return what is known of a requirement that the analysis does not cover: whether it was changed."""
     names = (after.name,)
     if before.spec.formula == after.spec.formula:
@@ -121,7 +121,7 @@ def _uncovered(before: Part, after: Part, error: NotCoveredError) -> Conclusion:
     return Conclusion("same", names, None, f"the formula was changed, and {error.message}")
 
 
-def _compared(checker: BoundedChecker, before: Part, after: Part) -> Conclusion:
+def _compare(checker: BoundedChecker, before: Part, after: Part) -> Conclusion:
     """Return whether two versions of a requirement agree, and which one is stricter."""
     names = (after.name,)
     weaker, stricter = checker.implies(before, after), checker.implies(after, before)

@@ -131,7 +131,7 @@ class Encoder:
             if node not in self._known:
                 below = node.args if isinstance(node, Apply) else ()
                 try:
-                    self._known[node] = self._encoded(node, [self._known[each] for each in below])
+                    self._known[node] = self._encode(node, [self._known[each] for each in below])
                 except NotLinear as reason:
                     raise NotCoveredError(
                         f"'{excerpt(node)}' is not covered by the analysis: {reason}", text, node.span
@@ -141,7 +141,7 @@ class Encoder:
                     self.values.defined.clear()
         return self._known[formula]
 
-    def _encoded(self, node: Formula, below: list[list[Value]]) -> list[Value]:
+    def _encode(self, node: Formula, below: list[list[Value]]) -> list[Value]:
         if isinstance(node, Var):
             return [*self.column(node)]
         if isinstance(node, Const):
@@ -151,14 +151,14 @@ class Encoder:
         if operator is _MARGIN:
             return [self._distant(value) for value in below[0]]
         if operator.source is not None:
-            return self._picked(operator.source, node, below)
+            return self._pick(operator.source, node, below)
         if operator.kernel is not None:
-            return self._computed(node, below)
+            return self._compute(node, below)
         if operator.expansion is None:
             raise NotLinear(f"the operator '{operator.name}' has no expansion")
-        return self._expanded(operator.expansion(*node.args, node.interval), node.args, below)
+        return self._expand(operator.expansion(*node.args, node.interval), node.args, below)
 
-    def _expanded(
+    def _expand(
         self, expansion: Formula, operands: Sequence[Formula], below: list[list[Value]]
     ) -> list[Value]:
         """Return the values of an expansion, from those of the operands."""
@@ -168,7 +168,7 @@ class Encoder:
             # Expansions are a few nodes deep, so plain recursion is safe here.
             if id(node) not in known:
                 args = node.args if isinstance(node, Apply) else ()
-                known[id(node)] = self._encoded(node, [encoded(each) for each in args])
+                known[id(node)] = self._encode(node, [encoded(each) for each in args])
             return known[id(node)]
 
         return encoded(expansion)
@@ -180,7 +180,7 @@ class Encoder:
         end = node.interval.end
         return int(node.interval.begin / self.period), None if end is None else int(end / self.period)
 
-    def _picked(self, source: Source, node: Apply, below: list[list[Value]]) -> list[Value]:
+    def _pick(self, source: Source, node: Apply, below: list[list[Value]]) -> list[Value]:
         choose = self.values.choose
         if source is Source.BRANCH:
             conditions, first, second = below
@@ -200,7 +200,7 @@ class Encoder:
             found = [choose(e, x, init) for e, x, init in zip(ever, found, rest[0], strict=True)]
         return found
 
-    def _computed(self, node: Apply, below: list[list[Value]]) -> list[Value]:
+    def _compute(self, node: Apply, below: list[list[Value]]) -> list[Value]:
         """Return the values of an operator with a kernel."""
         kernel, past, at = node.op.kernel, node.op.tense is Tense.PAST, self.sequences
         a, b = self._steps(node)

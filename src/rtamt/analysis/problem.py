@@ -70,7 +70,7 @@ class Problem:
             return self._find(goals, end)
         # Goals without common variables do not affect each other if the length is given.
         columns: dict[str, NDArray[np.float64]] = {}
-        for group in related(goals):
+        for group in group_related(goals):
             answer = self._find(group, end)
             if answer.witness is None:
                 return answer
@@ -167,7 +167,7 @@ def _numbers(solver: Solver, terms: Sequence[Real]) -> list[float]:
     return found
 
 
-def related(goals: Sequence[Goal]) -> list[list[Goal]]:
+def group_related(goals: Sequence[Goal]) -> list[list[Goal]]:
     """Return groups of goals, of which each shares no variables with the others."""
     groups: list[tuple[set[str], list[Goal]]] = []
     for goal in goals:

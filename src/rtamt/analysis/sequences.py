@@ -113,7 +113,7 @@ class Sequences:
         else:
             partial: list[Real] = [Fraction(0)]
             for x in numbers:
-                partial.append(self._named(solver.total((partial[-1], x.real))))
+                partial.append(self._name_number(solver.total((partial[-1], x.real))))
             found = [
                 solver.total((partial[t + 1], solver.times(Fraction(-1), partial[max(0, t + 1 - width)])))
                 for t in range(n)
@@ -125,7 +125,7 @@ class Sequences:
             for each in (solver.times(factor, real) for real in reals)
         ]
 
-    def _named(self, number: Real) -> Real:
+    def _name_number(self, number: Real) -> Real:
         """Return a new number that is equal to one: a sum of sums would be written out."""
         if isinstance(number, Fraction):
             return number

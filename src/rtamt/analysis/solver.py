@@ -112,13 +112,13 @@ class Solver:
 
     def every(self, parts: Iterable[Truth]) -> Truth:
         """Return whether all parts are true."""
-        return self._joined(parts, False, self._core.Z3_mk_and)
+        return self._join(parts, False, self._core.Z3_mk_and)
 
     def some(self, parts: Iterable[Truth]) -> Truth:
         """Return whether some part is true."""
-        return self._joined(parts, True, self._core.Z3_mk_or)
+        return self._join(parts, True, self._core.Z3_mk_or)
 
-    def _joined(self, parts: Iterable[Truth], deciding: bool, make: Any) -> Truth:
+    def _join(self, parts: Iterable[Truth], deciding: bool, make: Any) -> Truth:
         kept: dict[int, Term] = {}
         for part in parts:
             if isinstance(part, bool):
@@ -273,15 +273,15 @@ class Solver:
         """Return a truth value in the last answer."""
         if isinstance(a, bool):
             return a
-        return bool(self._core.Z3_get_bool_value(self._context, self._evaluated(a)) == 1)
+        return bool(self._core.Z3_get_bool_value(self._context, self._evaluate(a)) == 1)
 
     def value(self, a: Real) -> Fraction:
         """Return a number in the last answer."""
         if isinstance(a, Fraction):
             return a
-        return Fraction(self._core.Z3_get_numeral_string(self._context, self._evaluated(a)))
+        return Fraction(self._core.Z3_get_numeral_string(self._context, self._evaluate(a)))
 
-    def _evaluated(self, a: Term) -> Any:
+    def _evaluate(self, a: Term) -> Any:
         result = (self._ast * 1)()
         self._core.Z3_model_eval(self._context, self._model, a.ast, True, result)
         return result[0]

@@ -195,7 +195,7 @@ class Values:
             raise NotLinear("a product of two signals is nonlinear")
         if not b.finite:
             raise NotLinear("a factor may be infinite")
-        return self._by_cases(a, lambda factor: self._scaled(factor, b))
+        return self._by_cases(a, lambda factor: self._scale(factor, b))
 
     def over(self, a: Value, b: Value) -> Value:
         """Return the quotient, of which the divisor has few values and is never zero."""
@@ -204,9 +204,9 @@ class Values:
             raise NotLinear("a division by a signal is nonlinear")
         if not a.finite or any(value == 0 for value, _ in b.cases):
             raise NotLinear("it may divide by zero, or infinity")
-        return self._by_cases(b, lambda divisor: self._scaled(1 / divisor, a))
+        return self._by_cases(b, lambda divisor: self._scale(1 / divisor, a))
 
-    def _scaled(self, factor: Fraction, a: Number) -> Number:
+    def _scale(self, factor: Fraction, a: Number) -> Number:
         if a.cases:
             return self.of_cases([(factor * value, where) for value, where in a.cases])
         return Number(self.solver.times(factor, a.real))

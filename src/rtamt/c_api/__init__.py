@@ -14,15 +14,15 @@ def library() -> Path:
 
     Raises :class:`UsageError` where the package was installed without it.
     """
-    return _installed(_LIBRARIES)
+    return _find_installed(_LIBRARIES)
 
 
 def header() -> Path:
     """Return the C header of the library."""
-    return _installed(("rtamt.h",))
+    return _find_installed(("rtamt.h",))
 
 
-def _installed(names: tuple[str, ...]) -> Path:
+def _find_installed(names: tuple[str, ...]) -> Path:
     for folder in __path__:  # an editable install has two: the source, and what was built
         for name in names:
             path = Path(folder, name)

@@ -58,11 +58,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Analyse every specification."""
     recordings = {path: rtamt.read(path) for path in args.recordings}
-    codes = [_analyzed(name, args, recordings) for name in specification_paths([args.spec, *args.more])]
+    codes = [_analyze(name, args, recordings) for name in specification_paths([args.spec, *args.more])]
     return max(codes)
 
 
-def _analyzed(name: str, args: argparse.Namespace, recordings: Mapping[str, Any]) -> int:
+def _analyze(name: str, args: argparse.Namespace, recordings: Mapping[str, Any]) -> int:
     try:
         (spec,) = read_specifications(args, args.time, [name])
         found = analyze(spec, samples=args.samples, limit=args.limit, recordings=recordings)

@@ -63,12 +63,12 @@ def specification_and_traces(args: Namespace, command: str) -> tuple[Specificati
 def prepared_specs(args: Namespace, given: Sequence[str]) -> list[Specification]:
     """Read specifications, with the recorded names and the sampling of the command line."""
     return [
-        _resampled(_renamed(spec, names_of(args.name)), args)
+        _resample(_rename(spec, names_of(args.name)), args)
         for spec in read_specifications(args, args.time, given)
     ]
 
 
-def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
+def _rename(spec: Specification, names: Mapping[str, str]) -> Specification:
     """Return a specification whose variables have the recorded names of the command line, which replace its own."""
     for name, column in names.items():
         known = spec.recorded.get(name, column)
@@ -77,7 +77,7 @@ def _renamed(spec: Specification, names: Mapping[str, str]) -> Specification:
     return replace(spec, columns=names) if names else spec
 
 
-def _resampled(spec: Specification, args: Namespace) -> Specification:
+def _resample(spec: Specification, args: Namespace) -> Specification:
     """Return a specification that is sampled as the command line says, which replaces its own sampling rule."""
     rule = spec.domain.sampling(spec.sampling)
     if rule is None:

@@ -17,7 +17,7 @@ from rtamt.cli.command import (
     warnings_of,
     write_output,
 )
-from rtamt.cli.outcome import counted, exit_code
+from rtamt.cli.outcome import count_verdicts, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_input_options, reading_of
 from rtamt.cli.report_formats import REPORTS, write_report
@@ -315,7 +315,7 @@ def _as_table(requirements: Sequence[Requirement], found: Sequence[Outcome], col
     if len(notes) > _NOTES:
         text += f"\nnote: {len(notes) - _NOTES} more notes are in the output of --json"
     if len(found) > 1:
-        text += f"\n\n{counted([outcome.verdict for outcome in found])}"
+        text += f"\n\n{count_verdicts([outcome.verdict for outcome in found])}"
     return text
 
 

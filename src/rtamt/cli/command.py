@@ -257,7 +257,7 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
     options = settings_of(args, time, runs=runs)
     if is_trace(spec):
         raise CommandError(f"'{spec}' is a trace; the specification comes before the traces")
-    name = pack_named(spec)
+    name = find_pack(spec)
     if name is not None:
         try:
             return pack(name, **options)
@@ -288,7 +288,7 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
     return parse(spec, **options)
 
 
-def pack_named(spec: str) -> str | None:
+def find_pack(spec: str) -> str | None:
     """Return the pack that SPEC names, None if it names none; a file of the same name is an error."""
     if spec.startswith(PACK):
         return spec.removeprefix(PACK)

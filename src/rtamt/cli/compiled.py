@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-def compiled(path: str) -> Program | None:
+def load_compiled(path: str) -> Program | None:
     """Return the program in a file, if it is one."""
     if not os.path.isfile(path):
         return None

@@ -44,7 +44,7 @@ def add_analysis_options(parser: argparse.ArgumentParser) -> None:
 
 def show(name: str, analysis: Analysis, args: argparse.Namespace) -> int:
     """Print the answers about a specification, write their plots, and return the exit code."""
-    plots = {} if args.plot is None else _plotted(name, analysis, args.plot)
+    plots = {} if args.plot is None else _plot(name, analysis, args.plot)
     if args.json:
         for each in analysis.conclusions:
             say(json_text(_row(name, each, plots.get(each))))
@@ -59,7 +59,7 @@ def show(name: str, analysis: Analysis, args: argparse.Namespace) -> int:
 
 def _print(name: str, analysis: Analysis, plots: dict[Conclusion, str], color: bool) -> None:
     step = format_duration(analysis.period)
-    samples, answers = _counted(analysis.samples, "sample"), _counted(len(analysis.conclusions), "answer")
+    samples, answers = _count(analysis.samples, "sample"), _count(len(analysis.conclusions), "answer")
     say(f"{name}: traces up to {samples} of {step}, {answers}")
     for mark, kind, found in (
         ("finding", "violated", analysis.findings),
@@ -73,7 +73,7 @@ def _print(name: str, analysis: Analysis, plots: dict[Conclusion, str], color: b
         say(f"  note: {note}")
 
 
-def _counted(number: int, what: str) -> str:
+def _count(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
@@ -96,7 +96,7 @@ def _row(name: str, conclusion: Conclusion, plot: str | None) -> dict[str, objec
     return row
 
 
-def _plotted(name: str, analysis: Analysis, folder: str) -> dict[Conclusion, str]:
+def _plot(name: str, analysis: Analysis, folder: str) -> dict[Conclusion, str]:
     """Write the plots of the confirmed traces, and return their files."""
     found: dict[Conclusion, str] = {}
     stem = os.path.splitext(os.path.basename(name.rpartition(" -> ")[2]))[0]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import json_number, stamp_text
 from rtamt.cli.json_lines import STDIN
-from rtamt.cli.live_view import rounded
+from rtamt.cli.live_view import format_time
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.language.value_types import BOOLEAN, value_text
@@ -186,7 +186,7 @@ class IntervalFeed:
         if self._known:
             time, last = next(reversed(self._known.items()))
             satisfied = True if last.lower > 0 else False if last.upper < 0 else None
-            live.instants(list(self._known.values()), f"at {rounded(time)}", satisfied)
+            live.instants(list(self._known.values()), f"at {format_time(time)}", satisfied)
 
 
 class CausationFeed:

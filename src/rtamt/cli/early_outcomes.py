@@ -51,7 +51,7 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             if as_it_comes and source.in_chunks:
                 chunks = Chunks(spec, chunks_of(source, choice_for([spec], trace, reading)))
-                taken = _sampled(chunks, specs[0], period, reading) if resampled else chunks
+                taken = _sample(chunks, specs[0], period, reading) if resampled else chunks
             else:
                 whole = spec.binding.applied(trace_of(source, choice_for([spec], trace, reading)))
                 parts = in_parts(on_time_base(whole, spec, trace, reading))
@@ -84,7 +84,7 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
     ]
 
 
-def _sampled(
+def _sample(
     chunks: Iterable[Trace], spec: Specification, period: str | Fraction | None, reading: Reading
 ) -> Iterator[Mapping[str, Any]]:
     """Yield chunks on their own time base: the values of all signals every ``period``."""

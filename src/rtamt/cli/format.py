@@ -10,7 +10,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError
-from rtamt.layout import laid_out
+from rtamt.layout import layout_text
 
 if TYPE_CHECKING:
     import argparse
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     changed, wrong = 0, 0
     for file in args.files:
         try:
-            new = _changed(file, language)
+            new = _reformat(file, language)
         except StlError as error:
             complain(error)
             wrong += 1
@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     return VIOLATED if changed and args.check else OK
 
 
-def _changed(file: str, language: Language) -> str | None:
+def _reformat(file: str, language: Language) -> str | None:
     """Return the new text of a file; None if it has the layout."""
     try:
         with open(file, encoding="utf-8", newline="") as opened:
@@ -82,7 +82,7 @@ def _changed(file: str, language: Language) -> str | None:
     mark, body = (_MARK, text[1:]) if text.startswith(_MARK) else ("", text)
     folder = os.path.dirname(file) or os.curdir
     try:
-        new = laid_out(body, folder, language)
+        new = layout_text(body, folder, language)
     except StlError as error:
         raise CommandError(f"{file}: {error}") from error
     return None if new == body else mark + new

@@ -13,7 +13,7 @@ from rtamt.cli.command import (
     json_text,
     read_specification,
 )
-from rtamt.cli.compiled import after_passes, compiled, listing
+from rtamt.cli.compiled import after_passes, listing, load_compiled
 from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
@@ -91,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
             raise CommandError("--set is for requirements, and this is a recording")
         if args.sql is not None and args.spec is not None:
             args.signals.insert(0, args.spec)
-        say(str(_chosen(recording(args, args.sql or args.spec), args.signals)))
+        say(str(_select_signals(recording(args, args.sql or args.spec), args.signals)))
         return OK
     if args.spec is None:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
     if args.signals:
         raise CommandError(f"'{args.signals[0]}' chooses signals of a recording, and '{args.spec}' is none")
     _refuse_reading_options(args)
-    program = compiled(args.spec)
+    program = load_compiled(args.spec)
     if program is not None:
         if args.set:
             raise CommandError(f"'{args.spec}' is a program: --set is for requirements")
@@ -124,7 +124,7 @@ def run(args: argparse.Namespace) -> int:
     return OK
 
 
-def _chosen(trace: Trace, texts: Sequence[str]) -> Trace:
+def _select_signals(trace: Trace, texts: Sequence[str]) -> Trace:
     """Return the signals whose names contain one of some texts, in any case; all where there is no text."""
     if not texts:
         return trace
@@ -170,8 +170,8 @@ def _parameters(spec: Specification) -> list[dict[str, Any]]:
         {
             "name": declaration.name,
             "type": declaration.type,
-            "value": _named(spec, declaration, spec.parameters[declaration.name]),
-            "default": _named(spec, declaration, declaration.value),
+            "value": _parameter_value(spec, declaration, spec.parameters[declaration.name]),
+            "default": _parameter_value(spec, declaration, declaration.value),
             "unit": declaration.unit or None,
         }
         for declaration in spec.document.declarations
@@ -179,7 +179,9 @@ def _parameters(spec: Specification) -> list[dict[str, Any]]:
     ]
 
 
-def _named(spec: Specification, declaration: Declaration, value: float | None) -> float | str | bool | None:
+def _parameter_value(
+    spec: Specification, declaration: Declaration, value: float | None
+) -> float | str | bool | None:
     """Return the value of a parameter as JSON has it: a number, the name of a member, or a Boolean."""
     type_ = spec.document.types.get(declaration.name)
     if value is None or type_ is None:
@@ -187,7 +189,7 @@ def _named(spec: Specification, declaration: Declaration, value: float | None) -
     return bool(value) if type_ is BOOLEAN else value_text(value, type_)
 
 
-def _shown(value: float | str | bool) -> str:
+def _format_value(value: float | str | bool) -> str:
     """Return such a value as text."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -265,7 +267,7 @@ def _lines(facts: RequirementInfo) -> Iterator[str]:
     yield from _kinds(spec)
     for i, parameter in enumerate(_parameters(spec)):
         unit = f" [{parameter['unit']}]" if parameter["unit"] else ""
-        value, default = (_shown(parameter[each]) for each in ("value", "default"))
+        value, default = (_format_value(parameter[each]) for each in ("value", "default"))
         other = f"  (by default {default})" if value != default else ""
         yield f"{'' if i else 'parameters':<11}{parameter['name']} = {value}{unit}{other}"
     yield f"{spec.domain.setting:<11}{format_duration(facts.step)}{_about_step(spec)}"

@@ -41,12 +41,12 @@ def object_in(text: str, number: int) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         raise line_error(number, f"not JSON: {error.msg} at column {error.colno}") from None
     except _RepeatedKeyError as error:
-        raise line_error(number, f"the key {shown_value(str(error))} is given twice; give it once") from None
+        raise line_error(number, f"the key {format_value(str(error))} is given twice; give it once") from None
     except (ValueError, RecursionError):
         raise line_error(number, "not JSON to read: a number is too long, or nesting too deep") from None
     if not isinstance(data, dict):
         raise line_error(
-            number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {shown_value(data)}'
+            number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {format_value(data)}'
         )
     return data
 
@@ -77,11 +77,11 @@ def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
     """Return a timestamp as it would be written in a cell: a number, or a date."""
-    value = given_in(data, name, number)
+    value = value_in(data, name, number)
     if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
         if not is_date(value):
             problem = f"expected a number, or a date such as {EXAMPLE}"
-            raise line_error(number, f"'{name}' is {shown_value(value)}, {problem}")
+            raise line_error(number, f"'{name}' is {format_value(value)}, {problem}")
         return value
     seconds = number_in(data, name, number)
     return str(int(value)) if isinstance(value, int) else repr(seconds)  # an integer to its last digit
@@ -89,7 +89,7 @@ def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
 
 def number_in(data: dict[str, Any], name: str, number: int, type_: ValueType | None = None) -> float:
     """Return a number of the object, or the code of a member that is given by its name."""
-    return number_of(given_in(data, name, number), name, number, type_)
+    return number_of(value_in(data, name, number), name, number, type_)
 
 
 def number_of(value: Any, name: str, number: int, type_: ValueType | None = None) -> float:
@@ -106,18 +106,20 @@ def number_of(value: Any, name: str, number: int, type_: ValueType | None = None
         raise line_error(number, f"'{name}' is {text}, beyond the range of a double", name)
     if value in _INFINITIES:
         return float(value)
-    raise line_error(number, f"'{name}' is {shown_value(value)}, expected a number", name)
+    raise line_error(number, f"'{name}' is {format_value(value)}, expected a number", name)
 
 
 def code_of(text: str, name: str, type_: Enumeration, number: int) -> float:
     """Return the code of a member, which is given by its name."""
     code = type_.code(text)
     if code is None:
-        raise line_error(number, f"'{name}' is '{printable(text)}', which is {type_.stranger(text)}", name)
+        raise line_error(
+            number, f"'{name}' is '{printable(text)}', which is {type_.unknown_member(text)}", name
+        )
     return float(code)
 
 
-def given_in(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
+def value_in(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
     """Return the value that the object has under a name; raise :class:`TraceError` where it has none."""
     try:
         return _member(data, name)
@@ -148,7 +150,7 @@ def _member(data: dict[str, Any], name: str) -> Any:
     return value
 
 
-def shown_value(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value as a message shows it."""
     text = json.dumps(value)
     return text if len(text) <= 40 else f"{text[:40]}..."

@@ -111,14 +111,14 @@ def _codes(files: list[str], args: argparse.Namespace) -> Iterator[int]:
 
     plain = Namespace(**{name: value for name, value in vars(args).items() if not callable(value)})
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        for code, out, errors in pool.map(partial(_apart, args=plain), files, chunksize=_AT_ONCE):
+        for code, out, errors in pool.map(partial(_lint_in_process, args=plain), files, chunksize=_AT_ONCE):
             sys.stdout.write(out)
             sys.stdout.flush()
             sys.stderr.write(errors)
             yield code
 
 
-def _apart(file: str, args: Namespace) -> tuple[int, str, str]:
+def _lint_in_process(file: str, args: Namespace) -> tuple[int, str, str]:
     """Check a file in another process: return its code, and what is to be printed."""
     out, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
@@ -230,7 +230,7 @@ def _short_bounds(file: str, args: argparse.Namespace) -> list[LintWarning]:
     """Return the findings about bounds that no specification with this sampling period may have."""
     period = None if args.period is None else positive_period(args.period)
     try:
-        document = _parsed(_text_of(file), file, args)
+        document = _parse(_text_of(file), file, args)
     except SpecificationError:  # the bound is wrong whatever the period is
         return []
     found = findings(document, read_language(args.language), period)
@@ -241,8 +241,8 @@ def _mend(file: str, spec: Specification, args: argparse.Namespace, *, library: 
     """Rewrite a file without the findings that have a fix; return whether there were any."""
     text, ending = _text_of(file), "\ntrue" if library else ""
     found = with_fixes(
-        _parsed(text + ending, file, args),
-        lambda new: _parsed(new, file, args),
+        _parse(text + ending, file, args),
+        lambda new: _parse(new, file, args),
         spec.language,
         period=spec.period,
         ignored=args.ignore,
@@ -263,7 +263,7 @@ def _text_of(file: str) -> str:
         return opened.read()
 
 
-def _parsed(text: str, file: str, args: argparse.Namespace) -> Document:
+def _parse(text: str, file: str, args: argparse.Namespace) -> Document:
     folder = os.path.dirname(file) or os.curdir
     return parse_document(
         text, language=read_language(args.language), unit=args.unit, library=Library(folder)

@@ -144,16 +144,16 @@ class Live:
             return "… nothing is known yet"
         last = self._values[-1]
         sign = _SIGNS[last > 0] if last else "?"
-        lowest = f"lowest {short(self._lowest[0])} at {rounded(self._lowest[1])}"
-        return f"{sign} {short(last)} at {rounded(self._known)}  ({lowest})"
+        lowest = f"lowest {short(self._lowest[0])} at {format_time(self._lowest[1])}"
+        return f"{sign} {short(last)} at {format_time(self._known)}  ({lowest})"
 
 
-def rounded(timestamp: Any) -> str:
+def format_time(timestamp: Any) -> str:
     """Return a time for people: to the millisecond, below a second to six digits.
 
-    >>> rounded(12.300000000000001), rounded(1.25e-5), rounded(1700000000.1)
+    >>> format_time(12.300000000000001), format_time(1.25e-5), format_time(1700000000.1)
     ('12.3 s', '1.25e-05 s', '1700000000.1 s')
-    >>> rounded(np.datetime64("2026-05-01T12:00:00.123456789")), rounded(np.timedelta64(1500, "ms"))
+    >>> format_time(np.datetime64("2026-05-01T12:00:00.123456789")), format_time(np.timedelta64(1500, "ms"))
     ('2026-05-01T12:00:00.123', '1.5 s')
     """
     if isinstance(timestamp, np.datetime64):

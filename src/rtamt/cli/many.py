@@ -19,7 +19,7 @@ from rtamt.extras import library
 from rtamt.files import replacing
 from rtamt.fleet.suite import Suite
 from rtamt.fleet.verdict_table import VerdictTable, arrow_fields
-from rtamt.scale.engines import checked
+from rtamt.scale.engines import check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 
@@ -64,9 +64,9 @@ def run(args: argparse.Namespace) -> int:
     job = Job(Suite(specs), **given)
     recordings = recordings_of(patterns)
     summary = _Summary([requirement.name for requirement in job.suite.requirements])
-    with Progress() as progress, _written(args.output) as write:
+    with Progress() as progress, _row_writer(args.output) as write:
         counter = _Counter(progress)
-        tables = checked(
+        tables = check_recordings(
             job,
             recordings,
             engine=args.engine or "local",
@@ -199,7 +199,7 @@ def _as_json(row: Row) -> str:
 
 
 @contextmanager
-def _written(path: str | None) -> Iterator[Callable[[VerdictTable], None]]:
+def _row_writer(path: str | None) -> Iterator[Callable[[VerdictTable], None]]:
     """Yield what writes the rows of a recording to a table: Parquet or CSV, complete or not at all."""
     if path is None:
         yield lambda _table: None

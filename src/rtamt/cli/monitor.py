@@ -163,7 +163,7 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
         monitor: Any = spec.monitor(watch=names)
         watched = EventFeed(monitor, output, names)
     else:
-        watched = _watched(spec, args.tolerance, output, names)
+        watched = _watch(spec, args.tolerance, output, names)
     rule = spec.domain.sampling(spec.sampling)
     held = rule is not None and rule.hold
     if rule is not None and held:
@@ -263,9 +263,7 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
     return EagerFeed(monitor, spec.types, explain=args.explain)
 
 
-def _watched(
-    spec: Specification, tolerance: float | None, output: Output, names: Sequence[str]
-) -> SampleFeed:
+def _watch(spec: Specification, tolerance: float | None, output: Output, names: Sequence[str]) -> SampleFeed:
     monitor = spec.monitor(tolerance=TOLERANCE if tolerance is None else tolerance, watch=names)
     return SampleFeed(monitor, output, names, assumed=spec.period is None and tolerance is None)
 

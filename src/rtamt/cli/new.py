@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import CommandError, write_output
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say, table
-from rtamt.patterns import pattern_named, patterns, specification_of
+from rtamt.patterns import find_pattern, patterns, specification_of
 
 if TYPE_CHECKING:
     import argparse
@@ -50,7 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Ask for what is missing, and write the specification."""
-    pattern = _chosen() if args.pattern is None else pattern_named(args.pattern)
+    pattern = _choose() if args.pattern is None else find_pattern(args.pattern)
     arguments = _arguments(args.arguments)
     missing = [name for name in pattern.parameters if name not in arguments]
     if missing:
@@ -71,10 +71,10 @@ def run(args: argparse.Namespace) -> int:
     return OK
 
 
-def _chosen() -> Pattern:
+def _choose() -> Pattern:
     """List the patterns, and ask for one."""
     say(table([("pattern", "requires"), *((each.signature, each.sentence) for each in patterns().values())]))
-    return pattern_named(_answer("pattern"))
+    return find_pattern(_answer("pattern"))
 
 
 def _answer(what: str) -> str:

@@ -41,18 +41,20 @@ def run(args: argparse.Namespace) -> int:
     language = read_language(args.language)
     tightest_first = sorted((*language, *QUANTIFIERS.values()), key=lambda op: -op.power)
     chosen = (
-        tightest_first if not args.names else [op for name in args.names for op in _called(name, language)]
+        tightest_first
+        if not args.names
+        else [op for name in args.names for op in _find_operators(name, language)]
     )
     rows = [("name", "written", "example", "meaning")]
-    rows += [(op.name, _written(op), op.example, op.doc) for op in chosen]
+    rows += [(op.name, _signature(op), op.example, op.doc) for op in chosen]
     color = use_color("auto", sys.stdout)
-    say(_fitted(rows, color), color=color)
+    say(_fit(rows, color), color=color)
     if not args.names:
         say(f"\n{_notes(language)}")
     return OK
 
 
-def _fitted(rows: list[tuple[str, str, str, str]], color: bool) -> str:
+def _fit(rows: list[tuple[str, str, str, str]], color: bool) -> str:
     """Return the rows as a table; the meanings on lines of their own where the terminal is too narrow."""
     columns = width_of(sys.stdout)
     if columns is None or max(len(line) for line in table(rows, width=columns).splitlines()) <= columns:
@@ -72,7 +74,7 @@ def _notes(language: Language) -> str:
     return textwrap.fill(notes, min(100, shutil.get_terminal_size().columns))
 
 
-def _called(name: str, language: Language) -> list[Operator]:
+def _find_operators(name: str, language: Language) -> list[Operator]:
     found = [op for op in (*language, *QUANTIFIERS.values()) if name == op.name or name in op.spellings]
     if not found:
         known = sorted({word for op in language for word in (op.name, *op.spellings)})
@@ -89,6 +91,6 @@ _INTERVALS = {
 }
 
 
-def _written(op: Operator) -> str:
+def _signature(op: Operator) -> str:
     interval = _INTERVALS[op.bounds]
     return " ".join(op.spellings) + interval

@@ -162,7 +162,7 @@ def exit_code(outcomes: Sequence[Outcome]) -> int:
     return max(ERROR if unchecked else OK, *(CODES[outcome.verdict] for outcome in outcomes))
 
 
-def counted(verdicts: Sequence[str]) -> str:
+def count_verdicts(verdicts: Sequence[str]) -> str:
     """Return how many there are of each verdict, as text."""
     return ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts)
 

@@ -80,7 +80,7 @@ class Parser(argparse.ArgumentParser):
         found, rest = self.parse_known_intermixed_args(marked)
         if rest:
             self.error(f"unexpected argument '{rest[0]}'")
-        args = argparse.Namespace(**{name: _unmarked(value) for name, value in vars(found).items()})
+        args = argparse.Namespace(**{name: _unmark(value) for name, value in vars(found).items()})
         self._refuse_overwriting(args)
         return args
 
@@ -111,9 +111,9 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"unknown option '{option}'{did_you_mean(option, known)}")
 
 
-def _unmarked(value: Any) -> Any:
+def _unmark(value: Any) -> Any:
     if isinstance(value, list):
-        return [_unmarked(item) for item in value]
+        return [_unmark(item) for item in value]
     return value.removeprefix(_MARK) if isinstance(value, str) else value
 
 

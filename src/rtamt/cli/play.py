@@ -11,7 +11,7 @@ import tempfile
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import CommandError, add_time_option, is_trace, pack_named
+from rtamt.cli.command import CommandError, add_time_option, find_pack, is_trace
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     time_domain(args.time, args.period or None)  # raises the error of either
     if args.trace is None and is_trace(args.spec):
         args.spec, args.trace = None, args.spec
-    given, folder, fragment = _given(args)
+    given, folder, fragment = _page_state(args)
     with (
         _stopped_by_signals(),
         _socket(args.port) as listening,
@@ -157,7 +157,7 @@ def _socket(port: int) -> socket.socket:
     return listening
 
 
-def _given(args: argparse.Namespace) -> tuple[Given, str | None, str]:
+def _page_state(args: argparse.Namespace) -> tuple[Given, str | None, str]:
     """Return what the page starts with, the folder of imported files, and the fragment of a link."""
     from rtamt.play.server import Given
 
@@ -184,6 +184,6 @@ def _given(args: argparse.Namespace) -> tuple[Given, str | None, str]:
     elif spec is not None and spec.endswith(".stl"):
         raise CommandError(f"there is no file '{spec}'")
     elif spec is not None:
-        packed = pack_named(spec)
+        packed = find_pack(spec)
         text, name = (spec, "") if packed is None else (pack(packed).text, packed)
     return Given(text, name, args.time, args.period, args.trace), folder, fragment

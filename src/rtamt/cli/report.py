@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
-from rtamt.cli.outcome import counted, exit_code
+from rtamt.cli.outcome import count_verdicts, exit_code
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import add_input_options, add_instant_option, reading_of
 from rtamt.cli.report_formats.html import HtmlReport
@@ -65,5 +65,5 @@ def run(args: argparse.Namespace) -> int:
             page.add(outcome)
             found.append(replace(outcome, result=None))
     page.write(args.output)
-    say(f"{args.output}: {counted([outcome.verdict for outcome in found])}")
+    say(f"{args.output}: {count_verdicts([outcome.verdict for outcome in found])}")
     return exit_code(found)

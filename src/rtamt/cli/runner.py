@@ -67,7 +67,7 @@ def outcomes(
     if count <= 1 or reading.whole:
         for trace in traces:
             for outcome in evaluate(requirements, trace, reading):
-                yield _explained(outcome) if reading.explained else outcome
+                yield _explain(outcome) if reading.explained else outcome
         return
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
@@ -75,7 +75,7 @@ def outcomes(
     # Reading a text file is Python's work, which threads could not share. Processes start afresh, so
     # that nothing of this one (locks, threads of libraries) is copied into them.
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        work = [pool.submit(_apart, requirements, trace, reading) for trace in traces]
+        work = [pool.submit(_picklable, requirements, trace, reading) for trace in traces]
         try:
             for future in work:
                 yield from future.result()
@@ -83,13 +83,13 @@ def outcomes(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _apart(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+def _picklable(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Return outcomes without what cannot leave a process."""
     found = evaluate(requirements, trace, reading)
-    return [replace(_explained(outcome) if reading.explained else outcome, result=None) for outcome in found]
+    return [replace(_explain(outcome) if reading.explained else outcome, result=None) for outcome in found]
 
 
-def _explained(outcome: Outcome) -> Outcome:
+def _explain(outcome: Outcome) -> Outcome:
     """Return an outcome with the reason of a violation, if it can be explained."""
     if outcome.result is None or outcome.verdict != "violated":
         return outcome
@@ -117,7 +117,7 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
         known = {outcome.requirement: outcome for each in several for outcome in each}
         return [known[row.label] for each in requirements for row in each.rows or (each,)]
     if not any(requirement.spec.optional for requirement in requirements):
-        return _checked(requirements, trace, reading)
+        return _check_requirements(requirements, trace, reading)
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
             kept, unchecked = applicable(requirements, source.signals, trace)
@@ -131,7 +131,7 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
                 rest = None
     except StlError:  # the check reports what is wrong
         kept, unchecked, rest = list(requirements), [], None
-    found = _checked(kept, trace, reading) if rest is None else rest
+    found = _check_requirements(kept, trace, reading) if rest is None else rest
     of = together(found, unchecked)
     return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
 
@@ -176,7 +176,7 @@ def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outco
     return early_outcomes(requirement, trace, reading)
 
 
-def _checked(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
+def _check_requirements(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording that has the signals for them."""
     early = {requirement.label: _early(requirement, trace, reading) for requirement in requirements}
     rest = [requirement for requirement in requirements if early[requirement.label] is None]

@@ -11,12 +11,12 @@ from rtamt.cli.json_lines import (
     STDIN,
     code_of,
     flat,
-    given_in,
     has_value,
     line_error,
     number_in,
     object_in,
     stamp_in,
+    value_in,
 )
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
@@ -134,14 +134,14 @@ class Samples:
                 members=self.members,
             )
             self.units = rows.units
-            self._read = self._converted(rows)
+            self._read = self._convert(rows)
         except TraceError as error:
             if str(error).startswith(STDIN):
                 raise
             raise line_error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
 
-    def _converted(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
+    def _convert(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
         """Return what reads rows, with values in their declared units."""
         found = {}
         for name, declared in {**rows.declared, **dict(self._binding.units)}.items():
@@ -300,7 +300,7 @@ class JsonSamples:
             columns[name] = self._choice.column_of(name, partial(has_value, data))
         names = [name for name in names if not self._dense or has_value(data, columns[name])]
         for name in names:
-            self._timestamps.require(columns[name], given_in(data, columns[name], number, name), number)
+            self._timestamps.require(columns[name], value_in(data, columns[name], number, name), number)
         values = {name: number_in(data, columns[name], number, self._types.get(name)) for name in names}
         if self._members is not None:
             found = self._members.in_object(data, number)

@@ -95,7 +95,7 @@ def table(
         whole = {*right, *([len(widths) - 1] if kinds else [])}
         least = sum(own if i in whole else min(own, _NARROW) for i, own in enumerate(widths))
         if least + space <= width:
-            return _folded(rows, right, kinds, color, width)
+            return _fold(rows, right, kinds, color, width)
     lines = []
     for number, row in enumerate(rows):
         cells = [
@@ -122,7 +122,7 @@ def _rich(module: str) -> Any:
         return None
 
 
-def _folded(
+def _fold(
     rows: Sequence[Sequence[str]], right: Sequence[int], kinds: Sequence[str], color: bool, width: int
 ) -> str:
     """Return a table with cells folded within their columns, drawn by rich; its codes are those of ``paint``."""

@@ -169,7 +169,7 @@ def run(args: argparse.Namespace) -> int:
     from rtamt.metrics import exported
 
     with exported(args) as metrics:
-        counts = _worked(args, metrics)
+        counts = _run_job(args, metrics)
     expired = f", {counts['expired']} keys expired" if counts["expired"] else ""
     complain(
         f"{counts['samples']} samples, {counts['results']} results, {counts['violations']} of them violations, "
@@ -178,7 +178,7 @@ def run(args: argparse.Namespace) -> int:
     return OK
 
 
-def _worked(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
+def _run_job(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
     from rtamt.scale.kafka import Worker
     from rtamt.scale.kafka_settings import Settings
     from rtamt.scale.messages import MessageReader, decoder

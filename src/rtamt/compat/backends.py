@@ -111,14 +111,14 @@ class Stream:
         return robustness
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _reopened, (self._made_of, self.monitor.state())
+        return _reopen, (self._made_of, self.monitor.state())
 
     def latest(self, part: Formula) -> float:
         """Return the value of a formula, or of a part of one, at the latest sample."""
         return part.value if isinstance(part, Const) else self._session.part(self.monitor, part)
 
 
-def _reopened(made_of: tuple[Any, ...], state: Any) -> Stream:
+def _reopen(made_of: tuple[Any, ...], state: Any) -> Stream:
     stream = Stream(*made_of)
     stream.monitor.restore(state)
     return stream

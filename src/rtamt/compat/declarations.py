@@ -139,7 +139,7 @@ class Declarations(ABC):
             raise UsageError(f"the io type of '{var_name}' is {var_iotype!r}; choose 'input' or 'output'")
         if self.var_io_dict[var_name] != var_iotype:
             self.var_io_dict[var_name] = var_iotype
-            self._settings_changed()
+            self._apply_settings()
 
     @raises_rtamt
     def set_var_topic(self, var_name: str, var_topic: str) -> None:
@@ -193,7 +193,7 @@ class Declarations(ABC):
     def unit(self, unit: str) -> None:
         before, self._unit = self._unit, check_unit(unit)
         try:
-            self._settings_changed()
+            self._apply_settings()
         except StlError:
             self._unit = before
             raise
@@ -212,7 +212,7 @@ class Declarations(ABC):
         warn_of_chains(document, self._read_as, stacklevel=4)
         self._adopt(document)
         self._check_objects(document)
-        self._parsed(document)
+        self._accept(document)
         self._document = document
         out = self._out_name[0]
         self._objects.setdefault(out, 0.0)
@@ -248,15 +248,15 @@ class Declarations(ABC):
         read = {head_of(name) for name in variables(*self._assertions(self._document).values())}
         return (set(self._types) | read) - computed
 
-    def _settings_changed(self) -> None:
+    def _apply_settings(self) -> None:
         """Apply a setting that changed after ``parse``; overridden by classes with more state."""
         if self._document is not None:
             document = self._read_as(self._document.text, STL)
-            self._parsed(document)
+            self._accept(document)
             self._document = document
 
     @abstractmethod
-    def _parsed(self, document: Document) -> None:
+    def _accept(self, document: Document) -> None:
         """Accept a parsed document; each time domain adds its own checks."""
 
     @property

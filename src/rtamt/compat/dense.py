@@ -196,7 +196,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         operand and no interval also keep the points of the operand, where the value need not change. Raises
         :class:`RTAMTException` for wrong data; the monitor is then unchanged.
         """
-        changes = self._updated(dataset)
+        changes = self._update(dataset)
         points = with_points_at(changes, self._kept_times(), self._last)
         self._last = points[-1:] or self._last
         return points
@@ -212,10 +212,10 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         return (
             []
             if part is self._result or isinstance(part, Const)
-            else [time for time, _ in self._reported(part)]
+            else [time for time, _ in self._report(part)]
         )
 
-    def _updated(self, dataset: tuple[Any, ...]) -> list[list[float]]:
+    def _update(self, dataset: tuple[Any, ...]) -> list[list[float]]:
         monitor = self._require_monitor()
         given = samples_by_name(dataset)
         for name in given:
@@ -228,7 +228,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if len(signal):
             self._publish(float(signal.values[-1]))
         self._given = columns
-        self._value_of = self._reported
+        self._value_of = self._report
         return points_of(signal, self._whole)
 
     @raises_rtamt
@@ -252,7 +252,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         [[1, 0.0], [4, 0.0]]
         """
         before = copy(self)
-        points = self._updated(dataset)
+        points = self._update(dataset)
         kept = self._kept_times()
         try:
             signal = self._require_monitor().finish()
@@ -280,7 +280,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
         if self._monitor is not None:
             self._monitor.reset()
 
-    def _reported(self, part: Formula) -> list[list[float]]:
+    def _report(self, part: Formula) -> list[list[float]]:
         """Return what the latest update made known of a part, or the samples it gave of a variable (as RTAMT does)."""
         if isinstance(part, Var):
             times, values = self._given.get(part.name, ((), ()))

@@ -54,7 +54,7 @@ class DiscreteTimeSpecification(Formulas):
         before = self._period, self._tolerance
         self._period, self._tolerance = sampling(sampling_period, unit, tolerance)
         try:
-            self._settings_changed()
+            self._apply_settings()
         except StlError:
             self._period, self._tolerance = before
             raise
@@ -79,14 +79,14 @@ class DiscreteTimeSpecification(Formulas):
 
     # ---- reading ---------------------------------------------------------------------------------
 
-    def _parsed(self, document: Document) -> None:
+    def _accept(self, document: Document) -> None:
         rule = document.sampling
         if rule is not None and (rule.hold or rule.period != self._period):
             raise UsageError(
                 f"'{rule}' is read by rtamt.load and rtamt.parse; here the period is set with "
                 f"set_sampling_period(), and data are samples as they are"
             )
-        super()._parsed(document)
+        super()._accept(document)
         self._violations = 0
 
     def _check(self, formula: Formula, text: str) -> None:

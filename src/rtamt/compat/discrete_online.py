@@ -99,7 +99,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     def _begin(self, timestamp: Any, dataset: Any) -> Any:
         """Take a sample after setting up the stream."""
-        stream = self._opened_stream()
+        stream = self._open_stream()
         objects = self.out_var_field or any(name != head_of(name) for name in self._inputs)
         quick = None if self._shared or objects else stream.quick
         self._take = quick or self._update_carefully
@@ -113,7 +113,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     @raises_rtamt
     @exclusive
-    def _opened_stream(self) -> Stream:
+    def _open_stream(self) -> Stream:
         return self._require_stream()
 
     @raises_rtamt
@@ -176,7 +176,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     def _came_from_outside(self, head: str) -> bool:
         """Return whether a variable's entry in var_object_dict has to be read: objects change in place."""
-        return not isinstance(self._objects[head], Real) or self._changed(head)
+        return not isinstance(self._objects[head], Real) or self._is_assigned(head)
 
     def _refusal(self, timestamp: Any, numbers: dict[str, Any], monitor: Any) -> Exception:
         """Return the error for a sample that the monitor rejected."""
@@ -202,9 +202,9 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
     def _holds(self, name: str) -> bool:
         # Once var_object_dict is exposed, every update writes into it.
         written = self._shared and self._value_of == self._latest
-        return written or self._changed(name) or super()._holds(name)
+        return written or self._is_assigned(name) or super()._holds(name)
 
-    def _changed(self, name: str) -> bool:
+    def _is_assigned(self, name: str) -> bool:
         """Return whether the caller has assigned to a variable's entry in var_object_dict."""
         return self._shared and self._objects[name] is not self._seen.get(name)
 

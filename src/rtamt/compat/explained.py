@@ -43,8 +43,8 @@ class ExplainedSpecification(Formulas):
         self.explainer = Explainer()
         self._evaluated: tuple[Formula, DomainTrace, str | PredicateSemantics] | None = None
 
-    def _parsed(self, document: Document) -> None:
-        super()._parsed(document)
+    def _accept(self, document: Document) -> None:
+        super()._accept(document)
         self._evaluated = None
         self.explainer = Explainer()
 

@@ -55,7 +55,7 @@ class Formulas(Declarations):
         self._inputs: tuple[str, ...] = ()  # the variables they read, fields by full name
         self._value_of: Callable[[Formula], Any] | None = None  # of the latest evaluation or update
 
-    def _parsed(self, document: Document) -> None:
+    def _accept(self, document: Document) -> None:
         formulas = self._assertions(document)
         for formula in outermost([*formulas.values()]):
             self._check(formula, document.text)
@@ -73,7 +73,7 @@ class Formulas(Declarations):
     def semantics(self, semantics: Semantics | str | PredicateSemantics) -> None:
         semantics_of(semantics)
         self._semantics = semantics
-        self._settings_changed()
+        self._apply_settings()
 
     @property
     def _tick(self) -> Fraction:
@@ -150,13 +150,13 @@ class Formulas(Declarations):
         if self._value_of is None:
             hint = "" if var_name in self._formulas else did_you_mean(var_name, self._objects)
             raise UsageError(f"'{var_name}' has no value yet{hint}; call update() or evaluate() first")
-        return self._value_of(self._formula_named(var_name))
+        return self._value_of(self._find_formula(var_name))
 
     def _holds(self, name: str) -> bool:
         """Return whether the stored entry of a variable is its value: objects are kept, numbers need not be."""
         return not isinstance(self._objects[name], Real)
 
-    def _formula_named(self, text: str) -> Formula:
+    def _find_formula(self, text: str) -> Formula:
         if text in self._formulas:
             return self._formulas[text]
         if text in self._inputs:

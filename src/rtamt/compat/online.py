@@ -41,17 +41,17 @@ class OnlineSpecification(Formulas):
         self._start_over(formulas)
         self._pastified = True
 
-    def _parsed(self, document: Document) -> None:
-        super()._parsed(document)
+    def _accept(self, document: Document) -> None:
+        super()._accept(document)
         self._reads = {}
         for name in self._inputs:
             self._reads.setdefault(head_of(name), []).append(name)
         self._start_over(self._formulas)
         self._pastified = False
 
-    def _settings_changed(self) -> None:
+    def _apply_settings(self) -> None:
         pastified = self._pastified
-        super()._settings_changed()
+        super()._apply_settings()
         if pastified:
             self.pastify()
 

@@ -48,7 +48,7 @@ class _Move(NamedTuple):
 def hoist(program: Program) -> Program:
     """Return the program with constants moved out of those windows and delays that become one."""
     while not program.domain.continuous and (moves := _moves(program)):
-        program = _moved(program, moves)
+        program = _move_instructions(program, moves)
     return program
 
 
@@ -104,7 +104,7 @@ def _is_finite_constant(program: Program, place: int) -> bool:
     return ins.opcode == "const" and isfinite(ins.x) and not isinstance(program.origins[place], Parameter)
 
 
-def _moved(program: Program, moves: dict[int, _Move]) -> Program:
+def _move_instructions(program: Program, moves: dict[int, _Move]) -> Program:
     """Return the program with these instructions moved, and without operations that nothing reads any more."""
     unread = _unread(program, moves)
     instructions: list[Instruction] = []

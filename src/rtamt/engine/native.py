@@ -129,7 +129,7 @@ def core_monitor(
             code, list(program.inputs), period, tolerance, strict, frozenset(ignored), calls, types
         )
     except RuntimeError as error:
-        raise not_made(program, error) from None
+        raise creation_error(program, error) from None
     except MemoryError:
         timestamps = 8 * (max(program.lags) + 1)  # of the samples whose values are still to come
         gibibytes = (_core.memory(code, calls) + timestamps) / 2**30
@@ -139,7 +139,7 @@ def core_monitor(
         ) from None
 
 
-def not_made(program: Program, error: RuntimeError) -> UsageError:
+def creation_error(program: Program, error: RuntimeError) -> UsageError:
     """Return the error for a compiled kernel that could not be created."""
     names = dict.fromkeys(site.op.name for site in program.calls)
     return UsageError(f"the kernel of '{' or '.join(names)}' cannot be made: {error}")

@@ -209,7 +209,7 @@ class OnlineMonitor:
     def __reduce__(self) -> tuple[Any, ...]:
         if self._factory is None:
             raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
-        return _resumed, (self._factory, self._state())
+        return _rebuild, (self._factory, self._state())
 
     @exclusive
     def _state(self) -> tuple[Any, ...]:
@@ -241,7 +241,7 @@ def depth_of(formula: Formula, period: Fraction = Fraction(1), text: str | None 
     return depth
 
 
-def _resumed(factory: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
+def _rebuild(factory: Callable[[], OnlineMonitor], state: tuple[Any, ...]) -> OnlineMonitor:
     monitor = factory()
     monitor._factory = factory
     monitor._resume(state)

@@ -171,7 +171,7 @@ class QuantifierMonitor:
                 given.setdefault(parts[0], {})[parts[1]] = value
         return found
 
-    def _parted(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    def _partition(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         """Return the values of an update by variable, and by member and field; raise at a name that is neither."""
         own: dict[str, Any] = {}
         given: dict[str, dict[str, Any]] = {}
@@ -189,7 +189,7 @@ class QuantifierMonitor:
                 own[name] = arrays.field_of(own[head], head, path, self.samples)
         return {name: own[name] for name in self.input_names if name in own}, given
 
-    def _tried(self, *given: Any) -> Any:
+    def _try_update(self, *given: Any) -> Any:
         """Take what was read of an update; if it fails, nothing has changed."""
         if self._finished:
             raise UsageError("the monitor has finished its trace; call reset() before the next sample")
@@ -260,10 +260,10 @@ class QuantifierMonitor:
     def __reduce__(self) -> tuple[Any, ...]:
         if self._factory is None:
             raise UsageError("only a monitor that Specification.monitor() has made can be pickled")
-        return _resumed, (self._factory, self._state())
+        return _rebuild, (self._factory, self._state())
 
 
-def _resumed(factory: Callable[[], QuantifierMonitor], state: Any) -> QuantifierMonitor:
+def _rebuild(factory: Callable[[], QuantifierMonitor], state: Any) -> QuantifierMonitor:
     monitor = factory()
     monitor._restore(state)
     return monitor

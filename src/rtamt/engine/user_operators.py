@@ -118,7 +118,7 @@ class _Driver:
     def _begin(self) -> None:
         self._fault: Exception | None = None
         self._saved: tuple[Any, ...] | None = None
-        self._object = self._asked(self._make)
+        self._object = self._call(self._make)
 
     def reset(self) -> None:
         """Start a new trace. Errors here and in a checkpoint are raised by the next call."""
@@ -130,7 +130,7 @@ class _Driver:
     def checkpoint(self) -> None:
         """Save the state."""
         try:
-            self._saved = (self._asked(copy.deepcopy, self._object), self._progress())
+            self._saved = (self._call(copy.deepcopy, self._object), self._progress())
         except StlError as error:
             self._fault = error
 
@@ -148,7 +148,7 @@ class _Driver:
     def _return_to(self, progress: Any) -> None:
         raise NotImplementedError
 
-    def _asked(self, function: Callable[..., Any], *args: Any, **more: Any) -> Any:
+    def _call(self, function: Callable[..., Any], *args: Any, **more: Any) -> Any:
         """Call the user's code; name the operator in its errors."""
         try:
             with np.errstate(all="ignore"):  # the core detects and reports NaN
@@ -184,17 +184,17 @@ class SampleDriver(_Driver):
             raise self._fault
         if len(operands[0]):
             self._taken += len(operands[0])
-            self._add(self._asked(self._object.push, *operands), max(0, self._taken - self._ahead))
+            self._add(self._call(self._object.push, *operands), max(0, self._taken - self._ahead))
         if last and not self._ended:
             self._ended = True
             if self._given < self._taken:
-                self._add(self._asked(self._object.finish), self._taken)
+                self._add(self._call(self._object.finish), self._taken)
         values, self._waiting = self._waiting[:due], self._waiting[due:]
         return np.ascontiguousarray(values)
 
     def _add(self, values: Any, known: int) -> None:
         """Store the values that the object returned; ``known`` values must be available by now."""
-        block = self._asked(numbers_of, self._node, values)
+        block = self._call(numbers_of, self._node, values)
         if block.shape != (known - self._given,):
             raise self._wrong(
                 f"returned an array of shape {block.shape}, expected ({known - self._given},): after {self._taken} "
@@ -221,8 +221,8 @@ class EventDriver(_Driver):
         """Take the events of each operand up to ``until``; return those that are known by then."""
         if self._fault is not None:
             raise self._fault
-        given = self._asked(self._object.push, *operands, until=until)
-        events: Events = self._asked(self._events, given)
+        given = self._call(self._object.push, *operands, until=until)
+        events: Events = self._call(self._events, given)
         return events
 
     def _events(self, given: Any) -> Events:

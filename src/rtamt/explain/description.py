@@ -63,7 +63,7 @@ class Description:
                 )
                 for name, cells in found.items()
             }
-        recorded = self._recorded(point.formula, (point.value,), found)
+        recorded = self._recorded_values(point.formula, (point.value,), found)
         return replace(point, reads=self._as_data(found), recorded=recorded), text
 
     def stretch(self, interval: Interval, *, satisfied: bool) -> tuple[Stretch, str, str]:
@@ -84,11 +84,11 @@ class Description:
             float(values.min()),
             float(values.max()),
             self._as_data(read),
-            self._recorded(leaf.formula, values, read),
+            self._recorded_values(leaf.formula, values, read),
         )
         return stretch, self._when(interval.start, interval.end), self._in_words(leaf.formula, here, read)
 
-    def _recorded(self, predicate: Formula, values: Iterable[float], read: Mapping[str, Cells]) -> str:
+    def _recorded_values(self, predicate: Formula, values: Iterable[float], read: Mapping[str, Cells]) -> str:
         """Return the Booleans and members that a predicate of truth reads."""
         types = {name: type_ for name, type_ in types_of(predicate).items() if name in read}
         if not types or not all(map(isinf, values)):

@@ -78,16 +78,16 @@ class _Explainer:
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
         leaves = self._structure.leaves
         predicates = [leaf.formula for leaf in leaves.values()]
-        self._values = self._measured([semantics(predicate) for predicate in predicates])
+        self._values = self._measure([semantics(predicate) for predicate in predicates])
         try:
-            self._truth = self._measured([boolean(predicate) for predicate in predicates])
+            self._truth = self._measure([boolean(predicate) for predicate in predicates])
         except EvaluationError as error:
             raise no_verdict(error) from error
         self._signals = Signals(self._structure, self._line, self._values)
         self._holds = truths(self._structure.order, self._line, self._truth)
         self._walk = Walk(self._signals, self._line.period, self._line.end)
 
-    def _measured(self, formulas: list[Formula]) -> dict[str, StepFunction]:
+    def _measure(self, formulas: list[Formula]) -> dict[str, StepFunction]:
         """Evaluate a formula for each leaf; return the values by the leaf's name."""
         steps = self._line.measured(formulas) if formulas else []
         return dict(zip(self._structure.leaves, steps, strict=True))
@@ -125,7 +125,7 @@ class _Explainer:
                 caused=bool(stretches),
             ),
             Listed(len(stretches), lambda k: cause(*stretches[k])),
-            _ranked(implicant, point),
+            _rank(implicant, point),
         )
 
     # ---- the critical point ------------------------------------------------------------------------
@@ -136,12 +136,12 @@ class _Explainer:
         Where several places have the value of the robustness it is, if there is one, a place that overturns
         the verdict alone; such a place is in every implicant.
         """
-        first = self._described(self._walk.down(self._structure.core, cell), cell)
+        first = self._describe(self._walk.down(self._structure.core, cell), cell)
         if overturns(first[0]):
             return first
         others = self._places(implicant, self._signals.at(self._structure.core, cell))
         found = self._alone(list(islice(others, _TRIED)), cell)
-        return first if found is None else self._described(found, cell)
+        return first if found is None else self._describe(found, cell)
 
     def _alone(self, points: Sequence[Point], cell: int) -> Point | None:
         """Return the first of some places that overturns the verdict alone.
@@ -151,7 +151,7 @@ class _Explainer:
         if not points:
             return None
         robustness = self._signals.at(self._structure.core, cell)
-        moved = self._moved(points, -inf if robustness > 0 else inf, cell)
+        moved = self._move_values(points, -inf if robustness > 0 else inf, cell)
         if not (moved < 0 if robustness > 0 else moved > 0):
             return None
         if len(points) == 1:
@@ -183,7 +183,7 @@ class _Explainer:
             cells = (start,) if self._dense else range(start, end)
             yield from (Point(there, implicant[number].sign, implicant[number].name) for there in cells)
 
-    def _described(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
+    def _describe(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
         """Return a place that has the value of the robustness as a critical point, and its cell."""
         start, end = point.cell, point.cell + 1
         value = point.sign * self._signals.at(self._structure.core, cell)
@@ -197,7 +197,7 @@ class _Explainer:
             decided_by = "constant" if leaf.fixed else "predicate"
         if leaf is not None and not leaf.fixed:
             start, end = self._stretch(point)
-            lowest, highest = (self._moved([point], toward, cell) for toward in (-inf, inf))
+            lowest, highest = (self._move_values([point], toward, cell) for toward in (-inf, inf))
         found = CriticalPoint(
             words,
             None if leaf is None else leaf.formula,
@@ -216,7 +216,7 @@ class _Explainer:
         """Return the cells on which a value moves: in dense time those of its segment."""
         return self._values[point.name].around(point.cell) if self._dense else (point.cell, point.cell + 1)
 
-    def _moved(self, points: Sequence[Point], toward: float, cell: int) -> float:
+    def _move_values(self, points: Sequence[Point], toward: float, cell: int) -> float:
         """Return the robustness when the values at some places go, up to sign, to -inf or to +inf."""
         run = self._line.runner((self._structure.polar[self._structure.core, 1],))
         signals = {name: self._values[name] for name, leaf in self._structure.leaves.items() if leaf.fixed}
@@ -256,7 +256,7 @@ def overturns(point: CriticalPoint) -> bool:
     return point.lowest < 0 if robustness > 0 else point.highest > 0 if robustness < 0 else True
 
 
-def _ranked(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
+def _rank(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
     """Return the numbers of the intervals: of each predicate the closest to a cell, then the others, closest first."""
     starts, ends = (np.array([getattr(i, end) for i in implicant], np.int64) for end in ("start", "end"))
     order = np.argsort(np.maximum(starts - point, point - ends + 1).clip(0), kind="stable").tolist()

@@ -113,13 +113,13 @@ def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> 
     """
     kept: list[Interval] = []
     open_: list[Interval] = []
-    for interval, plain in zip(intervals, _are_needed(intervals, needs), strict=True):
+    for interval, plain in zip(intervals, _which_needed(intervals, needs), strict=True):
         (kept if plain else open_).append(interval)
     open_.sort(key=lambda interval: (interval.start, interval.end))
     size = 1 << max(len(open_) - 1, 0).bit_length()
     groups = [open_] if open_ else []
     while groups:
-        groups = _needed(groups, kept, forcing)
+        groups = _needed_groups(groups, kept, forcing)
         if size == 1:
             break
         size //= 2
@@ -127,7 +127,7 @@ def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> 
     return kept + [interval for group in groups for interval in group]
 
 
-def _are_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.bool_]:
+def _which_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.bool_]:
     """Return of each interval whether ``needs`` asks for a part of it."""
     plain = np.zeros(len(intervals), bool)
     starts, ends = (
@@ -138,11 +138,11 @@ def _are_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.boo
         of.setdefault((interval.name, interval.sign), []).append(number)
     for literal_, numbers in of.items():
         if (asked := needs.leaves.get(literal_)) is not None:
-            plain[numbers] = asked.cells.met_by(starts[numbers], ends[numbers])
+            plain[numbers] = asked.cells.intersects(starts[numbers], ends[numbers])
     return plain
 
 
-def _needed(
+def _needed_groups(
     groups: Sequence[list[Interval]], kept: Sequence[Interval], forcing: Forcing
 ) -> list[list[Interval]]:
     """Return the groups that cannot be taken away, each tried when those before it have been decided."""

@@ -45,7 +45,7 @@ class Needs(Demands):
     def _witnesses(self, node: Apply, reduce: str, sign: int, cells: Cells) -> Cells:
         del reduce  # whichever it is
         having = self._having(node.args[0], sign)
-        return _needed(node.args[0], only_stretches(cells, having, *self._offsets(node)), having)
+        return _needed_cells(node.args[0], only_stretches(cells, having, *self._offsets(node)), having)
 
     def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
         need, found = self._share(node, sign)
@@ -66,14 +66,14 @@ class Needs(Demands):
         hold, goal = having
         first, last = window
         if not self.truth(sign):
-            gaps = _needed(node.args[0], only_gaps(cells, hold, goal, first, last), hold)
+            gaps = _needed_cells(node.args[0], only_gaps(cells, hold, goal, first, last), hold)
             return gaps, NONE if first else cells
         # Where φ need not hold, t' is at once or not at all.
-        goals = _needed(node.args[1], only_goals(cells, hold, goal, first, last), goal)
+        goals = _needed_cells(node.args[1], only_goals(cells, hold, goal, first, last), goal)
         return (cells, goals) if first else (cells - goal, goals | (cells - hold))
 
 
-def _needed(operand: Formula, found: Cells, having: Cells) -> Cells:
+def _needed_cells(operand: Formula, found: Cells, having: Cells) -> Cells:
     """Return the cells that are needed of an operand, given one cell of each stretch that is needed.
 
     Of a predicate, the stretch is an interval, needed as a whole; else which of its cells are needed is

@@ -275,7 +275,7 @@ class _Parts:
 
     def __init__(self, formula: Formula, axis: TimeAxis) -> None:
         self._axis = axis
-        self.top = _opened(spelled_out(formula))
+        self.top = _expand(spelled_out(formula))
         self.order: list[Formula] = []
         self._steps: dict[Formula, StepFunction] = {}
         stack: list[tuple[Formula, bool]] = [(self.top, False)]
@@ -340,7 +340,7 @@ def _conditions(node: Apply) -> list[Formula]:
     return [arg for sort, arg in zip(node.op.operands, node.args, strict=False) if sort is Sort.CONDITION]
 
 
-def _opened(formula: Formula) -> Formula:
+def _expand(formula: Formula) -> Formula:
     """Return a formula with its operators expanded, from the top down to those with a rule; conditions stay."""
     expanded: dict[int, Formula] = {}
     done: dict[int, tuple[Formula, Formula]] = {}

@@ -61,11 +61,11 @@ class Signals:
                 missing = [arg for arg in children(top) if arg not in known]
                 stack.extend(missing)
                 if not missing:
-                    known[top] = _chosen(opcode(top), [known[arg] for arg in children(top)])
+                    known[top] = _choose(opcode(top), [known[arg] for arg in children(top)])
         return known[node]
 
 
-def _chosen(code: str | None, values: list[float]) -> float:
+def _choose(code: str | None, values: list[float]) -> float:
     if code == NEGATION:
         return -values[0]
     return min(values) if code == CHOOSING[0] else max(values)

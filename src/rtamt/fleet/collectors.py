@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.engine.dense.monitor import DenseMonitor
-from rtamt.engine.discrete.monitor import Monitor, settled_time
+from rtamt.engine.discrete.monitor import Monitor, last_settled_time
 from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetChanges, FleetPoints, FleetVerdicts
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_numpy import np
@@ -71,7 +71,7 @@ class _Values(Collector):
     def take(self, index: int, monitor: Monitor, report: float | None) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._values.append(report)
-        self._times.append(nan if report is None else settled_time(monitor))
+        self._times.append(nan if report is None else last_settled_time(monitor))
 
     def update(self, keys: NDArray[Any]) -> FleetUpdate:
         """See :class:`Collector`."""
@@ -98,7 +98,7 @@ class _Points(Collector):
     def take(self, index: int, monitor: DenseMonitor, report: Signal) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._index += [index] * len(report.values)
-        self._times += _listed(report.times)
+        self._times += _to_list(report.times)
         self._values += report.values.tolist()
 
     def update(self, keys: NDArray[Any]) -> FleetPoints:
@@ -227,7 +227,7 @@ def _columns(rows: Sequence[tuple[Any, ...]], width: int) -> Sequence[Sequence[A
     return list(zip(*rows, strict=True)) if rows else [()] * width
 
 
-def _listed(times: NDArray[Any]) -> list[Any]:
+def _to_list(times: NDArray[Any]) -> list[Any]:
     """Return times as a list; dates stay dates of numpy."""
     return list(times) if times.dtype.kind in "mM" else times.tolist()
 

@@ -64,7 +64,7 @@ class Field(NamedTuple):
 _U64 = struct.Struct("<Q")
 
 
-def _packed(form: str, kinds: tuple[type, ...]) -> Field:
+def _packer(form: str, kinds: tuple[type, ...]) -> Field:
     pattern = struct.Struct(form)
 
     def put(out: bytearray, value: Any) -> None:
@@ -83,7 +83,7 @@ def _unfit(value: Any) -> UsageError:
 
 
 #: A whole number of 64 bits, a double, and one of a few kinds.
-INTEGER, REAL, KIND = _packed("<q", (int,)), _packed("<d", (float, int)), _packed("<B", (int,))
+INTEGER, REAL, KIND = _packer("<q", (int,)), _packer("<d", (float, int)), _packer("<B", (int,))
 
 
 def _put_data(out: bytearray, value: Any) -> None:

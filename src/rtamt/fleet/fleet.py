@@ -9,7 +9,7 @@ from rtamt.fleet.fleet_snapshot import unpacked
 from rtamt.fleet.gaps import GAPS
 from rtamt.fleet.keys import capacity_of, keys_of
 from rtamt.fleet.late_data import Reordered
-from rtamt.fleet.opening import opened
+from rtamt.fleet.opening import open_fleet
 from rtamt.signals.arrays import is_mapping
 from rtamt.usage_guard import UsageGuard, exclusive
 
@@ -171,7 +171,7 @@ class Fleet(Generic[Update]):
     ) -> None:
         self._usage = UsageGuard()
         self._gaps = gaps
-        self._samples, self._binding, self._partial, self.requirements = opened(
+        self._samples, self._binding, self._partial, self.requirements = open_fleet(
             spec, capacity, lateness, gaps, settings, state
         )
 

@@ -37,7 +37,7 @@ def keys_of(keys: Any) -> NDArray[Any]:
     if isinstance(keys, np.ma.MaskedArray):
         masked = np.ma.getmaskarray(keys)
         if masked.any():
-            raise _masked(int(masked.argmax()))
+            raise _masked_error(int(masked.argmax()))
         keys = given = keys.data
     if not isinstance(keys, np.ndarray):
         if isinstance(keys, str | bytes | bytearray | Mapping) or not isinstance(keys, Iterable):
@@ -45,7 +45,7 @@ def keys_of(keys: Any) -> NDArray[Any]:
         keys = list(keys)
         kinds = {type(key) for key in keys}
         if type(np.ma.masked) in kinds:
-            raise _masked([key is np.ma.masked for key in keys].index(True))
+            raise _masked_error([key is np.ma.masked for key in keys].index(True))
         if len(kinds) > 1:
             names = ", ".join(sorted(kind.__name__ for kind in kinds))
             raise TraceError(f"the keys are of several types ({names}): give integers, texts, or bytes")
@@ -80,7 +80,7 @@ def _beyond(key: int) -> TraceError:
     return TraceError(f"the key {key} is beyond 64 bits with a sign; give it as text")
 
 
-def _masked(index: int) -> TraceError:
+def _masked_error(index: int) -> TraceError:
     return TraceError(f"the key at index {index} of the batch is masked: leave the sample out")
 
 

@@ -95,7 +95,7 @@ class InOrder:
                 np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
             )
             if any(len(each.at) for each in outputs)
-            else _nothing_released(outputs[0].keys.dtype)
+            else _no_release(outputs[0].keys.dtype)
         )
         if not self._requirements:
             (one,) = outputs
@@ -221,7 +221,7 @@ class Reordered(InOrder):
             self._buffer.withdraw()
             raise
         self._buffer.accept()
-        return Taken(late, [_sorted_out(len(late), keys, ready, each) for each in known])
+        return Taken(late, [_split_known(len(late), keys, ready, each) for each in known])
 
     @property
     def late(self) -> int:
@@ -285,11 +285,11 @@ def _all_in_order(keys: NDArray[Any], known: Iterable[Sequence[NDArray[Any]]]) -
 
 
 @lru_cache(16)
-def _nothing_released(keys: np.dtype[Any]) -> Released:
+def _no_release(keys: np.dtype[Any]) -> Released:
     return Released(np.empty(0, keys), np.empty(0), np.empty(0), np.empty(0, np.int64))
 
 
-def _sorted_out(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output:
+def _split_known(size: int, keys: NDArray[Any], ready: Any, known: Any) -> Output:
     """Return what samples of the batch made known, in its order, and the rest."""
     values, final, times, warming = (
         np.zeros(size),

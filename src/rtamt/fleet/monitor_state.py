@@ -199,7 +199,7 @@ def _early(monitor: Any) -> Field:
     return many(row(checked(REAL, isfinite), mapping(name, optional(_BOUNDS))))
 
 
-def _noted(monitor: Any) -> Field:
+def _evidence_state(monitor: Any) -> Field:
     output = checked(INTEGER, lambda number: number in monitor._outputs)
     return mapping(output, many(row(INTEGER, INTEGER, NUMBER, NUMBER)))
 
@@ -220,7 +220,7 @@ REMEMBERED: Mapping[str, Callable[[Any], Field]] = MappingProxyType(
         "_retracted": _changes,
         "_mark": lambda monitor: optional(_step(monitor)),
         "_filled": lambda _: NATURAL,
-        "_noted": _noted,
+        "_noted": _evidence_state,
         "_rest": lambda _: fixed(()),
         "_open_at_end": lambda _: fixed(()),
         "_at_end": lambda _: fixed(None),
@@ -300,7 +300,7 @@ class MonitorStates:
         self._back_end = back_end
         self._fields = {name: REMEMBERED[name](new) for name in type(new)._remembered}
         #: What the states depend on, by name.
-        self.made_of = _made_of(new, identities)
+        self.made_of = _dependencies(new, identities)
         #: The version of the state of the back end, which is at its beginning.
         self.version = int.from_bytes(_first(self._new._backend.state())[:4], "little")
 
@@ -348,7 +348,7 @@ _SETTINGS = {
 }
 
 
-def _made_of(monitor: Any, identities: Mapping[str, str]) -> dict[str, str]:
+def _dependencies(monitor: Any, identities: Mapping[str, str]) -> dict[str, str]:
     """Return what the state of a monitor depends on, as texts by their names in messages."""
     formula, *watched = map(to_text, monitor._formulas)
     found = {

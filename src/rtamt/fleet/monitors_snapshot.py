@@ -51,12 +51,12 @@ def packed(fleet: Monitors) -> bytes:
     KIND.put(out, kind)
     many(field).put(out, fleet.keys)
     _STATES.put(out, list(zip(fleet.newest, fleet.states, strict=True)))
-    return _sealed(out)
+    return _seal(out)
 
 
 def unpacked(state: bytes) -> Monitors:
     """Return a fleet from bytes; raise :class:`UsageError` for other bytes."""
-    version, source = _opened(state, MONITORS)
+    version, source = _open(state, MONITORS)
     text, capacity, late = _FIELDS.get(source)
     try:
         made_of = json.loads(text)
@@ -83,12 +83,12 @@ def packed_requirements(fleets: Mapping[str, bytes], late: int) -> bytes:
     out = bytearray(_HEAD.pack(REQUIREMENTS, _VERSION, 0, 0))
     NATURAL.put(out, late)
     many(row(TEXT, DATA)).put(out, list(fleets.items()))
-    return _sealed(out)
+    return _seal(out)
 
 
 def unpacked_requirements(state: bytes) -> tuple[dict[str, bytes], int]:
     """Return the states of fleets by the names of their requirements, and how many samples were late."""
-    _, source = _opened(state, REQUIREMENTS)
+    _, source = _open(state, REQUIREMENTS)
     late = NATURAL.get(source)
     found = many(row(TEXT, DATA), list).get(source)
     source.end()
@@ -108,11 +108,11 @@ def require_same(theirs: Mapping[str, str], ours: Mapping[str, str]) -> None:
             )
 
 
-def _sealed(body: bytearray) -> bytes:
+def _seal(body: bytearray) -> bytes:
     return bytes(body + _CHECKSUM.pack(zlib.crc32(body)))
 
 
-def _opened(state: bytes, magic: bytes) -> tuple[int, Source]:
+def _open(state: bytes, magic: bytes) -> tuple[int, Source]:
     """Return the last number of the header, and what follows."""
     if len(state) < _HEAD.size + _CHECKSUM.size:
         raise damaged("it ends too early")

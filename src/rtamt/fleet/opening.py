@@ -39,7 +39,7 @@ class Opened(NamedTuple):
     requirements: tuple[str, ...]
 
 
-def opened(
+def open_fleet(
     spec: Any,
     capacity: int,
     lateness: Duration | None,

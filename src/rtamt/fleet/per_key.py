@@ -87,13 +87,13 @@ class MonitorPerKey:
     def prepared(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> Prepared:
         """Run a batch on copies; nothing has changed. Raises for wrong data."""
         self._check_names(columns)
-        moments = _listed(TIME, times)
+        moments = _to_list(TIME, times)
         seconds = timestamps(times, self._unit).seconds.tolist()
         if len(keys) != len(seconds):
             raise TraceError(
                 f"there are {len(keys)} keys and {len(seconds)} times: give one of each for every sample"
             )
-        values = {name: _listed(name, column) for name, column in columns.items()}
+        values = {name: _to_list(name, column) for name, column in columns.items()}
         for name, column in values.items():
             if len(column) != len(seconds):
                 raise TraceError(
@@ -183,11 +183,11 @@ class MonitorPerKey:
 
     def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
         """Declare that no sample at or before a time will arrive, of any key; return what each key reports then."""
-        return self._kept(self.marked("watermark", time, arrays))
+        return self._keep(self.marked("watermark", time, arrays))
 
     def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:
         """Set the current time of all keys; return what each key reports then."""
-        return self._kept(self.marked("advance", now, arrays))
+        return self._keep(self.marked("advance", now, arrays))
 
     def release_keys(self, keys: NDArray[Any], arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Any:  # noqa: ARG002 - nothing waits
         """Raise :class:`UsageError`: no sample waits."""
@@ -195,7 +195,7 @@ class MonitorPerKey:
             "no sample of this fleet waits, since each key has a monitor, which takes each sample at once"
         )
 
-    def _kept(self, prepared: Prepared) -> Any:
+    def _keep(self, prepared: Prepared) -> Any:
         self.accept(prepared)
         return prepared.update
 
@@ -294,11 +294,11 @@ class MonitorPerKey:
                 self._newest[key] = time
 
 
-def _listed(name: str, column: Any) -> list[Any]:
+def _to_list(name: str, column: Any) -> list[Any]:
     """Return the values of a column one by one; of a masked array, what is masked stays masked."""
     if isinstance(column, np.ma.MaskedArray):
         mask = np.ma.getmaskarray(column).tolist()
-        data = _listed(name, column.data)
+        data = _to_list(name, column.data)
         return [np.ma.masked if hidden else each for each, hidden in zip(data, mask, strict=True)]
     kind = getattr(getattr(column, "dtype", None), "kind", "")
     if kind not in ("m", "M"):  # as numbers they would be in any unit

@@ -72,10 +72,10 @@ class Suite:
         tolerance: float | None = None,
         **reading: Unpack[EvaluationSettings],
     ) -> None:
-        self.select = _selected(select)
+        self.select = _select(select)
         robustness = "robustness" in self.select
         truth = len(self.select) > robustness
-        every = _named(specs)
+        every = _name_requirements(specs)
         asked = {}
         for number, (name, spec) in enumerate(every):
             query = _query_of(name, spec, {"tolerance": tolerance, **reading})
@@ -257,7 +257,7 @@ class Suite:
         """
         if self.storable:
             return Suite.from_bytes, (self.to_bytes(),)
-        return _again, (self._specs, self.select, self._settings)
+        return _rebuild, (self._specs, self.select, self._settings)
 
     @property
     def ways(self) -> tuple[Way, ...]:
@@ -290,7 +290,7 @@ def _apart_in_fleets() -> UsageError:
     )
 
 
-def _again(specs: Mapping[str, Specification], select: Sequence[str], settings: dict[str, Any]) -> Suite:
+def _rebuild(specs: Mapping[str, Specification], select: Sequence[str], settings: dict[str, Any]) -> Suite:
     return Suite(specs, select=select, **settings)
 
 
@@ -301,7 +301,7 @@ def _query_of(name: str, spec: Specification, settings: dict[str, Any]) -> Query
         raise placed(error, name) from None
 
 
-def _selected(select: Iterable[str]) -> tuple[str, ...]:
+def _select(select: Iterable[str]) -> tuple[str, ...]:
     if isinstance(select, str):
         raise UsageError(f"select is the text '{select}'; give a list of names, such as ['{select}']")
     names = list(select)
@@ -315,7 +315,7 @@ def _selected(select: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in SELECTABLE if name in names)
 
 
-def _named(specs: Any) -> list[tuple[str, Specification]]:
+def _name_requirements(specs: Any) -> list[tuple[str, Specification]]:
     """Return every requirement of every specification, with a unique name."""
     given: list[tuple[str | None, Any]]
     if isinstance(specs, Specification):

@@ -289,7 +289,7 @@ def _prepared_of(
     windows = {_number(number): _window(*rest) for number, *rest in given["windows"]}
     joining = plan(given["joining"], _JOINING, [f"#{number}" for number in windows])
     outputs = tuple(map(_number, given["outputs"]))
-    joined = tuple(_joined(*each) for each in given["joined"])
+    joined = tuple(_join(*each) for each in given["joined"])
     values = [each.value for each in joined]
     values += [output for each in joined for _, output in each.parts if output is not None]
     read = [number for each in joined for number in each.windows]
@@ -316,7 +316,7 @@ def _window(output: Any, reduce: Any, begin: Any, end: Any, settled: Any) -> Win
     return Window(_number(output), reduce, _number(begin), last, _number(settled))
 
 
-def _joined(value: Any, windows: Any, parts: Any) -> Joined:
+def _join(value: Any, windows: Any, parts: Any) -> Joined:
     return Joined(
         _number(value),
         tuple(map(_number, windows)),

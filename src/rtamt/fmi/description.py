@@ -86,7 +86,7 @@ def _fmi2(unit: Unit) -> Element:
     tags = {"real": "Real", "integer": "Integer", "boolean": "Boolean", "enumeration": "Enumeration"}
     for variable in variables:
         scalar = _add(listed, "ScalarVariable", **_common(variable))
-        _add(scalar, tags[variable.type], **_declared(variable), start=_start(variable), **_unit(variable))
+        _add(scalar, tags[variable.type], **_declare(variable), start=_start(variable), **_unit(variable))
     outputs = _add(_add(root, "ModelStructure"), "Outputs")
     for variable in variables:
         if variable.causality == "output":  # counted from 1; nothing depends on an input directly
@@ -112,7 +112,7 @@ def _fmi3(unit: Unit) -> Element:
     listed = _add(root, "ModelVariables")
     tags = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "enumeration": "Enumeration"}
     for variable in variables:
-        attributes = _common(variable) | _declared(variable) | {"start": _start(variable)} | _unit(variable)
+        attributes = _common(variable) | _declare(variable) | {"start": _start(variable)} | _unit(variable)
         _add(listed, tags[variable.type], **attributes)
     reference = str(len(variables))
     _add(
@@ -173,7 +173,7 @@ def _types(root: Element, variables: tuple[Variable, ...], define: Callable[[Ele
             _add(items, "Item", name=name, value=str(code))
 
 
-def _declared(variable: Variable) -> dict[str, str]:
+def _declare(variable: Variable) -> dict[str, str]:
     return {} if variable.enumeration is None else {"declaredType": variable.enumeration.name}
 
 

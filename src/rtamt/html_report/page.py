@@ -196,7 +196,7 @@ class Page:
         lines: list[tuple[tuple[int, float], dict[str, Any]]] = []
         for order, name in enumerate(names):
             cells = [places.get((name, column) if across else (column, name)) for column in columns]
-            worst = min(_badness(cell) for cell in cells if cell)
+            worst = min(_severity(cell) for cell in cells if cell)
             description = self._formulas[name].description if across else ""
             line = {"name": name, "order": order, "description": description, "cells": cells}
             lines.append((worst, line))
@@ -204,7 +204,7 @@ class Page:
         return ("requirement" if across else "trace"), columns, ordered
 
 
-def _badness(card: Card) -> tuple[int, float]:
+def _severity(card: Card) -> tuple[int, float]:
     robustness = float(card.row.robustness) if card.row.robustness else inf
     return _VERDICTS.index(card.row.verdict), robustness
 

@@ -325,7 +325,7 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
     notes = [f"bounds are numbers of samples of {decimal(step)} s", _END_NOTE]
     if first:
         notes.append(f"of these, the verdict of the first instant counts: {', '.join(first)}")
-    lines = _declared(formulas)
+    lines = _declare(formulas)
     for section, each in sections.items():
         lines += [section, *each, ""] if each else []
     return Conversion("\n".join(lines).rstrip() + "\n", tuple(converted), tuple(rejected), tuple(notes))
@@ -362,7 +362,7 @@ def _without_exponents(text: str) -> str:
     return _EXPONENT.sub(lambda match: f"{Decimal(match[0]):f}", text)
 
 
-def _declared(formulas: list[Formula]) -> list[str]:
+def _declare(formulas: list[Formula]) -> list[str]:
     """Return the sections that declare the variables of formulas."""
     kinds: dict[str, list[str]] = {}
     enumerations: dict[str, Enumeration] = {}

@@ -119,7 +119,7 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
                     raise InexpressibleError(
                         f"'{node.name}' is no Boolean whose name begins with a small letter"
                     )
-            text = fold(MTL.translated(requirement.formula), _grouped)
+            text = fold(MTL.translated(requirement.formula), _group)
         except InexpressibleError as error:
             rejected.append(Rejection(requirement.name, str(error)))
             continue
@@ -128,7 +128,7 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
     return Conversion("\n".join(lines) + "\n", tuple(converted), tuple(rejected), (_NOTE, _END_NOTE))
 
 
-def _grouped(node: Formula, args: tuple[str, ...]) -> str:
+def _group(node: Formula, args: tuple[str, ...]) -> str:
     """Return the text of a node; in its grammar each infix operator stands in parentheses of its own."""
     if not isinstance(node, Apply):
         return str(node)

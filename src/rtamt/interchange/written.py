@@ -70,7 +70,7 @@ def specification_text(
     taken = {*types, *names.constants, *names.parameters}
     for each in written:
         name = each.name if each.name not in taken else f"REQ-{each.name}"
-        about = f' "{_escaped(each.description)}"' if each.description else ""
+        about = f' "{_escape(each.description)}"' if each.description else ""
         lines += [
             "",
             f"// {' '.join(each.source.split())}",
@@ -104,8 +104,8 @@ def quoted(name: str) -> str:
 
 
 def _id(name: str) -> str:
-    return name if _ID.fullmatch(name) else f'"{_escaped(name)}"'
+    return name if _ID.fullmatch(name) else f'"{_escape(name)}"'
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return text.replace('"', '""')

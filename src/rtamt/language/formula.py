@@ -108,7 +108,7 @@ class Formula:
         # A flat list of the nodes: pickle would recurse to the depth of the formula.
         nodes = postorder(self)
         places = {id(node): i for i, node in enumerate(nodes)}
-        return _restored, (tuple([_flat(node, places) for node in nodes]),)
+        return _restore, (tuple([_flat(node, places) for node in nodes]),)
 
     def __str__(self) -> str:
         from rtamt.language.printing.printer import to_text
@@ -276,7 +276,7 @@ def _flat(node: Formula, places: dict[int, int]) -> tuple[Any, ...]:
     return (type(node), *[getattr(node, each.name) for each in fields(node)])  # type: ignore[arg-type] # lazy
 
 
-def _restored(flat: tuple[tuple[Any, ...], ...]) -> Formula:
+def _restore(flat: tuple[tuple[Any, ...], ...]) -> Formula:
     """Return the formula with the nodes ``flat``, as written by :func:`_flat`."""
     nodes: list[Formula] = []
     for kind, *values in flat:

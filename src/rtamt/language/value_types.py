@@ -67,9 +67,9 @@ class Enumeration:
 
     def lacks(self, member: str) -> str:
         """Return the message for a name that is no member."""
-        return f"'{member}' is {self.stranger(member)}"
+        return f"'{member}' is {self.unknown_member(member)}"
 
-    def stranger(self, member: str) -> str:
+    def unknown_member(self, member: str) -> str:
         """Return the end of the message for a name that is no member."""
         same = next((name for name in self.names if name.lower() == member.lower()), member)
         hint = did_you_mean(same, self.names) or f"; its members are {self.listing()}"

@@ -74,7 +74,7 @@ def temporal() -> list[str]:
     >>> "always" in temporal() and "G" in temporal() and "and" not in temporal()
     True
     """
-    return _spelled(lambda op: kind_of(op) == "temporal")
+    return _spell(lambda op: kind_of(op) == "temporal")
 
 
 def functions() -> list[str]:
@@ -83,7 +83,7 @@ def functions() -> list[str]:
     >>> functions()[:3]
     ['abs', 'acos', 'ahead']
     """
-    return _spelled(lambda op: kind_of(op) == "function")
+    return _spell(lambda op: kind_of(op) == "function")
 
 
 def logical() -> list[str]:
@@ -106,5 +106,5 @@ def symbols() -> list[str]:
     return sorted(found, key=lambda s: (-len(s), s))
 
 
-def _spelled(chosen: Callable[[Operator], bool]) -> list[str]:
+def _spell(chosen: Callable[[Operator], bool]) -> list[str]:
     return sorted(s for op in STL if chosen(op) for s in op.spellings if is_word(s))

@@ -242,7 +242,7 @@ def _before_reset(
 ) -> tuple[Any, dict[str, Any]]:
     """Return observations and infos of the last step, where the environment has already been reset after it."""
     final = {int(row): _row(infos["final_obs"], row) for row in rows}
-    return _replaced(observations, final), _merged(infos, infos.get("final_info", {}), rows)
+    return _replace_rows(observations, final), _merge_infos(infos, infos.get("final_info", {}), rows)
 
 
 def _row(batch: Any, row: int) -> Any:
@@ -251,23 +251,23 @@ def _row(batch: Any, row: int) -> Any:
     return batch[row]
 
 
-def _replaced(batch: Any, final: Mapping[int, Any]) -> Any:
+def _replace_rows(batch: Any, final: Mapping[int, Any]) -> Any:
     """Return a batch of observations with some rows replaced."""
     if isinstance(batch, Mapping):
         return {
-            name: _replaced(part, {row: one[name] for row, one in final.items()})
+            name: _replace_rows(part, {row: one[name] for row, one in final.items()})
             for name, part in batch.items()
         }
     if isinstance(batch, tuple):
         parts = enumerate(batch)
-        return tuple(_replaced(part, {row: one[at] for row, one in final.items()}) for at, part in parts)
+        return tuple(_replace_rows(part, {row: one[at] for row, one in final.items()}) for at, part in parts)
     found = np.array(batch)
     for row, one in final.items():
         found[row] = one
     return found
 
 
-def _merged(infos: Mapping[str, Any], final: Mapping[str, Any], rows: NDArray[Any]) -> dict[str, Any]:
+def _merge_infos(infos: Mapping[str, Any], final: Mapping[str, Any], rows: NDArray[Any]) -> dict[str, Any]:
     """Return infos with some rows replaced, and which environments have each entry."""
     merged: dict[str, Any] = {}
     for name in {*infos, *final}:
@@ -275,7 +275,7 @@ def _merged(infos: Mapping[str, Any], final: Mapping[str, Any], rows: NDArray[An
             continue
         given, last = infos.get(name), final.get(name)
         if isinstance(given, Mapping) or isinstance(last, Mapping):
-            merged[name] = _merged(given or {}, last or {}, rows)
+            merged[name] = _merge_infos(given or {}, last or {}, rows)
             continue
         some = np.asarray(last if given is None else given)
         present = np.array(infos.get(f"_{name}", np.full(len(some), given is not None)))

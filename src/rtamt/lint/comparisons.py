@@ -11,7 +11,7 @@ from rtamt.language.parsing.grammar import is_predicate
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import EQ, NE
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.lint.edits import is_infix_here, keep_left, keep_right, spine
+from rtamt.lint.edits import chain_operands, is_infix_here, keep_left, keep_right
 from rtamt.lint.found import Fix, Found
 from rtamt.lint.structure import JUNCTIONS
 
@@ -82,8 +82,8 @@ def chains_of(text: Text) -> list[Chain]:
     found = []
     for node in text.of(JUNCTIONS):
         if id(node) not in inner:
-            operands = spine(node)
-            plain, negated = (_repeated(operands, negated=each) for each in (False, True))
+            operands = chain_operands(node)
+            plain, negated = (_repeated_bounds(operands, negated=each) for each in (False, True))
             if plain or negated:
                 found.append(Chain(node, plain, negated))
     return found
@@ -93,7 +93,7 @@ def _is(formula: Formula, op: Operator) -> bool:
     return isinstance(formula, Apply) and formula.op is op
 
 
-def _repeated(operands: Sequence[Formula], *, negated: bool) -> list[list[Bound]]:
+def _repeated_bounds(operands: Sequence[Formula], *, negated: bool) -> list[list[Bound]]:
     """Return the bounds of each number that has several."""
     bounds = [bound for operand in operands for bound in _bounds(operand, negated=negated)]
     if len(bounds) < 2:
@@ -104,7 +104,7 @@ def _repeated(operands: Sequence[Formula], *, negated: bool) -> list[list[Bound]
     return [each for each in found.values() if len(each) > 1]
 
 
-def _against(text: Text, neutral: float) -> Iterator[tuple[Apply, Bound, Bound]]:
+def _exclusive_bounds(text: Text, neutral: float) -> Iterator[tuple[Apply, Bound, Bound]]:
     """Yield the chains of one operator in which two bounds exclude each other, negated in those of ``or``."""
     for chain in text.chains:
         if JUNCTIONS[chain.root.op] != neutral:
@@ -117,7 +117,7 @@ def _against(text: Text, neutral: float) -> Iterator[tuple[Apply, Bound, Bound]]
                 yield chain.root, *pair
 
 
-def _shown(text: Text, a: Bound, b: Bound) -> tuple[str, str]:
+def _quote_comparisons(text: Text, a: Bound, b: Bound) -> tuple[str, str]:
     """Return two comparisons for a message: as they are written, or printed where one use of a template is both."""
     if a.comparison.span == b.comparison.span:
         return f"'{excerpt(a.comparison)}'", f"'{excerpt(b.comparison)}'"
@@ -126,15 +126,15 @@ def _shown(text: Text, a: Bound, b: Bound) -> tuple[str, str]:
 
 def contradiction(text: Text) -> Iterator[Found]:
     """``x > 5 and x < 3``, ``mode == AUTO and mode == RTL``."""
-    for node, a, b in _against(text, inf):
-        pair = " and ".join(_shown(text, a, b))
+    for node, a, b in _exclusive_bounds(text, inf):
+        pair = " and ".join(_quote_comparisons(text, a, b))
         yield Found(node.span, f"{pair} never hold at the same instant")
 
 
 def tautology(text: Text) -> Iterator[Found]:
     """``x < 5 or x > 3``, ``mode != AUTO or mode != RTL``."""
-    for node, a, b in _against(text, -inf):
-        pair = " or ".join(_shown(text, b, a))
+    for node, a, b in _exclusive_bounds(text, -inf):
+        pair = " or ".join(_quote_comparisons(text, b, a))
         yield Found(node.span, f"one of {pair} always holds")
 
 
@@ -154,15 +154,15 @@ def weaker_comparison(text: Text) -> Iterator[Found]:
                 for bound in same:
                     if bound.limit == decisive.limit:
                         continue
-                    weaker, tighter = _shown(text, bound, decisive)
+                    weaker, tighter = _quote_comparisons(text, bound, decisive)
                     yield Found(
                         bound.comparison.span,
                         f"{weaker} changes nothing beside {tighter}; remove it",
-                        _removed(text, root, bound.comparison),
+                        _removal(text, root, bound.comparison),
                     )
 
 
-def _removed(text: Text, root: Apply, operand: Apply) -> Fix | None:
+def _removal(text: Text, root: Apply, operand: Apply) -> Fix | None:
     """Return the fix that removes an operand of a chain."""
     node = root
     while True:

@@ -94,7 +94,7 @@ def keep_right(text: Text, node: Apply) -> Edit | None:
     return None if at is None else Edit(Span(node.span.start, text.tokens.starts[at + 1]))
 
 
-def spine(node: Apply) -> list[Formula]:
+def chain_operands(node: Apply) -> list[Formula]:
     """Return the operands of a chain of one infix operator, from left to right."""
     found: list[Formula] = []
     first: Formula = node

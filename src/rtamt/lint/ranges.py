@@ -85,18 +85,18 @@ class _Enclosed:
         ]
         if operands and all(each == ANYTHING for each in operands):
             return ANYTHING
-        return _applied(node.op, operands, node.interval)
+        return _apply(node.op, operands, node.interval)
 
 
-def _applied(op: Operator, operands: list[Range], interval: Interval | None) -> Range:
+def _apply(op: Operator, operands: list[Range], interval: Interval | None) -> Range:
     """Return the bounds of an operator from those of its operands."""
     if op.source is not None:
         taken = [operands[k] for k in op.keeps if k < len(operands)]
         return min(low for low, _ in taken), max(high for _, high in taken)
     if op.truth is not None:
-        return _expanded(op.truth, operands, interval)
+        return _expand(op.truth, operands, interval)
     if op.extension is not None and op.definition is not None:
-        return _extended(op, operands)
+        return _extend(op, operands)
     if isinstance(op.kernel, Rank):
         # Instants outside the trace count for a share, and not for a number or a duration.
         low, high = operands[0]
@@ -108,11 +108,11 @@ def _applied(op: Operator, operands: list[Range], interval: Interval | None) -> 
         low, high = operands[0]
         return (0.0 if low >= 0 else -inf), (0.0 if high <= 0 else inf)
     if op.expansion is not None and op.kernel is None:
-        return _expanded(op.expansion, operands, interval)
+        return _expand(op.expansion, operands, interval)
     return ANYTHING
 
 
-def _expanded(expansion: object, operands: list[Range], interval: Interval | None) -> Range:
+def _expand(expansion: object, operands: list[Range], interval: Interval | None) -> Range:
     """Return the bounds of an expansion, with variables in place of the operands."""
     names = [str(k) for k in range(len(operands))]
     assert callable(expansion)
@@ -120,7 +120,7 @@ def _expanded(expansion: object, operands: list[Range], interval: Interval | Non
     return _Enclosed(dict(zip(names, operands, strict=True))).of(formula)
 
 
-def _extended(op: Operator, operands: list[Range]) -> Range:
+def _extend(op: Operator, operands: list[Range]) -> Range:
     from rtamt.language.definitions.enclosures import Enclosure, extended
 
     assert op.definition is not None
@@ -208,10 +208,12 @@ class Decided:
         self.guards.append(node)
         return True
 
-    def because(self, formula: Formula) -> str:
+    def ranges_note(self, formula: Formula) -> str:
         """Return the declared ranges of the variables of a formula, for a message."""
         names = dict.fromkeys(node.name for node in postorder(formula) if isinstance(node, Var))
-        ranges = [f"'{name}' is in {_written(self.ranges[name])}" for name in names if name in self.ranges]
+        ranges = [
+            f"'{name}' is in {_format_range(self.ranges[name])}" for name in names if name in self.ranges
+        ]
         return " and ".join(ranges)
 
 
@@ -221,7 +223,7 @@ def _holds(bounds: Range) -> bool | None:
     return True if low > 0 else False if high < 0 else None
 
 
-def _written(range_: Range) -> str:
+def _format_range(range_: Range) -> str:
     return f"[{number(range_[0])}, {number(range_[1])}]"
 
 
@@ -230,7 +232,7 @@ def always_holds(text: Text) -> Iterator[Found]:
     for node, holds in text.decided.formulas:
         if holds:
             yield Found(
-                node.span, f"{text.written(node.span)} always holds, because {text.decided.because(node)}"
+                node.span, f"{text.written(node.span)} always holds, because {text.decided.ranges_note(node)}"
             )
 
 
@@ -239,7 +241,7 @@ def never_holds(text: Text) -> Iterator[Found]:
     for node, holds in text.decided.formulas:
         if not holds:
             yield Found(
-                node.span, f"{text.written(node.span)} never holds, because {text.decided.because(node)}"
+                node.span, f"{text.written(node.span)} never holds, because {text.decided.ranges_note(node)}"
             )
 
 
@@ -250,7 +252,7 @@ def never_triggered(text: Text) -> Iterator[Found]:
         yield Found(
             guard.span,
             f"the implication is never triggered: {text.written(guard.span)} never holds, because "
-            f"{text.decided.because(guard)}",
+            f"{text.decided.ranges_note(guard)}",
         )
 
 
@@ -261,5 +263,5 @@ def branch_never_taken(text: Text) -> Iterator[Found]:
         yield Found(
             node.span,
             f"{text.written(dead.span)} is never reached: {text.written(node.args[0].span)} {how} holds, because "
-            f"{text.decided.because(node.args[0])}",
+            f"{text.decided.ranges_note(node.args[0])}",
         )

@@ -39,11 +39,11 @@ def findings(
             warning = LintWarning(rule.code, each.message, characters, each.span, rule.severity, each.fix)
             found.setdefault(warning)
     if ignored := list(silenced(characters, language)):
-        found = dict.fromkeys(_heard(list(found), ignored, characters))
+        found = dict.fromkeys(_apply_comments(list(found), ignored, characters))
     return tuple(sorted(found, key=lambda each: (each.span.start if each.span else 0, each.code)))
 
 
-def _heard(found: list[LintWarning], ignored: list[Silenced], text: str) -> list[LintWarning]:
+def _apply_comments(found: list[LintWarning], ignored: list[Silenced], text: str) -> list[LintWarning]:
     """Return the warnings that no comment silences, and one about each code of a comment without effect."""
     heard, effective = [], set()
     for warning in found:

@@ -11,13 +11,13 @@ from rtamt.language.parsing.grammar import is_infix, is_number
 from rtamt.language.printing.printer import interval_text
 from rtamt.lazy_dataclasses import replace
 from rtamt.lint.edits import (
+    chain_operands,
     infix_at,
     is_grouped,
     is_infix_here,
     is_prefix_here,
     keep_left,
     keep_right,
-    spine,
     without_prefix,
 )
 from rtamt.lint.found import Edit, Fix, Found
@@ -80,7 +80,7 @@ def repeated_operand(text: Text) -> Iterator[Found]:
             operands = {left}
             if isinstance(left, Apply) and left.op is node.op:
                 known = chains.pop(id(left), set())
-                operands = known or set(spine(left))
+                operands = known or set(chain_operands(left))
             repeated = right in operands
             operands.add(right)
             chains[id(node)] = operands
@@ -145,9 +145,7 @@ def same_window_twice(text: Text) -> Iterator[Found]:
             tokens = text.tokens
             last = max(at for at, stop in enumerate(tokens.ends) if stop <= end and tokens.starts[at] < end)
             edits = (
-                Edit(
-                    Span(node.span.start, tokens.ends[last]), _spelled(text, node) + interval_text(interval)
-                ),
+                Edit(Span(node.span.start, tokens.ends[last]), _spell(text, node) + interval_text(interval)),
                 without_prefix(text, inner),
             )
             joined = Fix(edits, node, Apply(node.op, inner.args, interval, node.span))
@@ -158,7 +156,7 @@ def same_window_twice(text: Text) -> Iterator[Found]:
         )
 
 
-def _spelled(text: Text, node: Apply) -> str:
+def _spell(text: Text, node: Apply) -> str:
     assert node.span is not None
     return next(s for s in node.op.spellings if text.document.text.startswith(s, node.span.start))
 
@@ -183,7 +181,7 @@ def _sum(first: Interval | None, second: Interval | None) -> Interval | None:
 def last_sample_only(text: Text) -> Iterator[Found]:
     """``always eventually p`` without bounds."""
     for node, inner in _alternating(text):
-        if node.op.tense is Tense.FUTURE and _unbounded(node.interval) and _unbounded(inner.interval):
+        if node.op.tense is Tense.FUTURE and _is_unbounded(node.interval) and _is_unbounded(inner.interval):
             both = f"{node.op.spellings[0]} {inner.op.spellings[0]}"
             yield Found(
                 node.span,
@@ -202,7 +200,7 @@ def same_bounds(text: Text) -> Iterator[Found]:
             both = f"{node.op.spellings[0]} and {inner.op.spellings[0]}"
             yield Found(
                 node.span,
-                f"{both} have the same bounds {_bounds_written(text, bounds)}, and together reach twice as far; "
+                f"{both} have the same bounds {_written_bounds(text, bounds)}, and together reach twice as far; "
                 f"if one window is meant, remove one of them",
             )
 
@@ -214,14 +212,14 @@ def _parameters(text: Text, interval: Interval | None) -> tuple[str, ...]:
     return tuple(name for name in names if name in declared)
 
 
-def _bounds_written(text: Text, interval: Interval) -> str:
+def _written_bounds(text: Text, interval: Interval) -> str:
     """Return the bounds of a window with the names in them."""
     if interval.constants and interval.span is not None:
         return " ".join(text.document.text[interval.span.start : interval.span.end].split())
     return interval_text(interval)
 
 
-def _unbounded(interval: Interval | None) -> bool:
+def _is_unbounded(interval: Interval | None) -> bool:
     return interval is None or (interval.begin == 0 and interval.end is None)
 
 
@@ -282,7 +280,7 @@ def whole_implication(text: Text) -> Iterator[Found]:
             continue
         if not is_prefix_here(text, left) or is_grouped(text, left):
             continue
-        word, whole = _spelled(text, left), text.document.text[node.span.start : node.span.end]
+        word, whole = _spell(text, left), text.document.text[node.span.start : node.span.end]
         start, end = left.span
         edits = Edit(Span(start, start), "("), Edit(Span(end, end), ")")
         yield Found(

@@ -43,11 +43,11 @@ class Colored(NamedTuple):
     modifiers: tuple[str, ...] = ()
 
 
-def colored(analysis: Analysis) -> list[Colored]:
+def classify_words(analysis: Analysis) -> list[Colored]:
     """Return what each word of a text is, in the order of the text.
 
     >>> from rtamt.lsp.document import Analysis
-    >>> [each.type for each in colored(Analysis("always[0:5](x >= 3) // high"))]
+    >>> [each.type for each in classify_words(Analysis("always[0:5](x >= 3) // high"))]
     ['keyword', 'number', 'number', 'variable', 'operator', 'number', 'comment']
     """
     found = [*_of_tokens(analysis), *(Colored(span, "comment") for span in analysis.comments)]

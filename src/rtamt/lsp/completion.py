@@ -61,9 +61,9 @@ def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) ->
     word = Span(match.start() if match else offset, offset)
     found: dict[str, Item] = {}
     for item in (
-        *_declared(analysis, word),
+        *_declared_names(analysis, word),
         *_columns(analysis, word, columns),
-        *_imported(analysis, word),
+        *_imported_names(analysis, word),
         *_words(word),
         *_patterns(analysis, word),
     ):
@@ -71,7 +71,7 @@ def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) ->
     return sorted(found.values(), key=lambda item: item.kind == "keyword")
 
 
-def _declared(analysis: Analysis, word: Span) -> Iterator[Item]:
+def _declared_names(analysis: Analysis, word: Span) -> Iterator[Item]:
     for symbol in analysis.outline.symbols:
         if symbol.kind == "requirement" or symbol.span.start <= word.start <= symbol.span.end:
             continue
@@ -83,7 +83,7 @@ def _declared(analysis: Analysis, word: Span) -> Iterator[Item]:
         yield Item(symbol.name, symbol.kind, Edit(word, name), symbol.kind, f"```stl\n{declared}\n```")
 
 
-def _imported(analysis: Analysis, word: Span) -> Iterator[Item]:
+def _imported_names(analysis: Analysis, word: Span) -> Iterator[Item]:
     document = analysis.document
     if document is None:
         return

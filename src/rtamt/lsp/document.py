@@ -64,14 +64,14 @@ class Analysis:
             self.errors = [StlError(too_long)]
             return
         try:
-            self.spec = self._parsed(text)
+            self.spec = self._parse(text)
         except StlError as error:
             if isinstance(error, SpecificationError) and error.message == NO_FORMULA:
                 self._read_library()
             if self.spec is None:
                 self._read_errors(error)
 
-    def _parsed(self, text: str) -> Specification:
+    def _parse(self, text: str) -> Specification:
         return parse(text, folder=self.folder, period=self.period)
 
     def _read_errors(self, first: StlError) -> None:
@@ -91,7 +91,7 @@ class Analysis:
     def _read_library(self) -> None:
         """Read the text as one that others import, if that is possible."""
         try:
-            spec = self._parsed(self.text + ENDING)
+            spec = self._parse(self.text + ENDING)
         except StlError:
             return
         found = spec.document

@@ -50,7 +50,7 @@ def hover(analysis: Analysis, offset: int) -> Shown | None:
     found = analysis.outline.at(offset)
     if found is not None:
         span, symbol = found
-        return Shown(span, _about(analysis, symbol))
+        return Shown(span, _describe(analysis, symbol))
     token = _token_at(analysis, offset)
     if token is None:
         return None
@@ -90,9 +90,9 @@ def of_operator(operator: Operator, written: str) -> str:
     return f"{spellings} ({', '.join(kinds)})\n\n{meaning_of(operator)}\n\n```stl\n{operator.example}\n```"
 
 
-def _about(analysis: Analysis, symbol: Symbol) -> str:
+def _describe(analysis: Analysis, symbol: Symbol) -> str:
     """Return the declaration of a name and what follows from it."""
-    parts = [f"```stl\n{_declared(analysis, symbol)}\n```"]
+    parts = [f"```stl\n{_declaration_text(analysis, symbol)}\n```"]
     comment = _comment_of(analysis, symbol)
     if comment:
         parts.append(comment)
@@ -100,7 +100,7 @@ def _about(analysis: Analysis, symbol: Symbol) -> str:
     return "\n\n".join(parts)
 
 
-def _declared(analysis: Analysis, symbol: Symbol) -> str:
+def _declaration_text(analysis: Analysis, symbol: Symbol) -> str:
     """Return the line or the lines that declare a name."""
     if symbol.kind in ("formula", "requirement"):
         document = analysis.document

@@ -87,7 +87,7 @@ class _Reader(UseReader):
         if self.texts[at] in (*ROLES, "const", "parameter") and self.text_at(at + 1) in self.types:
             at += 1
         if self.texts[at] in self.types and self._is_declared(at + 1):
-            return self._typed(begin, at)
+            return self._read_typed(begin, at)
         last = self.path(at)
         if self.text_at(last + 1) == "=" and self.defines(begin):
             return self._formula(begin, last)
@@ -97,7 +97,7 @@ class _Reader(UseReader):
         text = self.text_at(at)
         return is_quoted(text) or (is_name(text) and STL.infix(text) is None)
 
-    def _typed(self, begin: int, at: int) -> int:
+    def _read_typed(self, begin: int, at: int) -> int:
         """Read a variable, a constant or a parameter, whose type is at ``at``."""
         kinds = {"const": "constant", "parameter": "parameter"}
         kind = kinds.get(self.texts[at - 1] if at > begin else "", "variable")

@@ -100,7 +100,7 @@ def repairs(analysis: Analysis, span: Span) -> list[Repair]:
     return found
 
 
-def all_repaired(analysis: Analysis) -> str | None:
+def fix_all(analysis: Analysis) -> str | None:
     """Return the text without the findings that have a fix; None if there is none."""
     document = analysis.document
     if document is None or analysis.spec is None or not any(each.fix for each in analysis.findings):

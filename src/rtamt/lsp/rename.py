@@ -38,7 +38,7 @@ _RESERVED = frozenset((*DECLARING, *QUANTIFYING, *TYPES, "then", "else", "inf", 
 _MOST_FILES, _MOST_BYTES = 500, 2**20
 
 
-def renamed_at(analysis: Analysis, offset: int, path: str | None = None) -> tuple[Span, Symbol]:
+def renameable_at(analysis: Analysis, offset: int, path: str | None = None) -> tuple[Span, Symbol]:
     """Return the name at an offset that can be renamed. Raises :class:`UsageError` where there is none."""
     found = analysis.outline.at(offset)
     if found is None:
@@ -84,21 +84,23 @@ def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -
     >>> [(edit.span.start, edit.new) for edit in rename(Analysis(text), 14, "limit")]
     [(12, 'limit'), (33, 'limit')]
     """
-    _span, symbol = renamed_at(analysis, offset, path)
+    _span, symbol = renameable_at(analysis, offset, path)
     new = new.strip()
     if new == symbol.name:
         return []
     _check_new(analysis, symbol, new)
     tokens = tokenize(analysis.text, STL)
-    edits = [_written(analysis.text, tokens, span, symbol, new) for span in analysis.outline.uses_of(symbol)]
+    edits = [
+        _edit_of_name(analysis.text, tokens, span, symbol, new) for span in analysis.outline.uses_of(symbol)
+    ]
     end = analysis.outline.ends.get(symbol)
     if end is not None:
         edits.append(Edit(Span(end, end), f" = {quoted(symbol.name)}"))
-    _check_meaning(analysis, symbol, new, _edited(analysis.text, edits))
+    _check_meaning(analysis, symbol, new, _apply_edits(analysis.text, edits))
     return sorted(edits)
 
 
-def _written(text: str, tokens: Tokens, span: Span, symbol: Symbol, new: str) -> Edit:
+def _edit_of_name(text: str, tokens: Tokens, span: Span, symbol: Symbol, new: str) -> Edit:
     """Return the edit that writes a name at a span: in quotes, unless it needs none or stands in quotes already."""
     pattern = ID if symbol.kind == "requirement" else NAME
     if pattern.fullmatch(new) and not _is_word(new):
@@ -125,13 +127,13 @@ def _check_new(analysis: Analysis, symbol: Symbol, new: str) -> None:
         raise UsageError(
             f"the name of {_ONE_WORD[symbol.kind]} is one word of letters, digits and '_', got '{new}'"
         )
-    taken = _taken(analysis, symbol)
+    taken = _names_in_use(analysis, symbol)
     heads = {name.partition(".")[0] for name in taken}
     if new in taken or new in heads or new.partition(".")[0] in taken - {symbol.name}:
         raise UsageError(f"'{new}' is a name of this text already; choose another name")
 
 
-def _taken(analysis: Analysis, symbol: Symbol) -> set[str]:
+def _names_in_use(analysis: Analysis, symbol: Symbol) -> set[str]:
     """Return the names of a text that a symbol cannot have: of others of its kind, and what means something there."""
     siblings = {
         each.name for each in analysis.outline.symbols if (each.kind, each.of) == (symbol.kind, symbol.of)
@@ -175,7 +177,7 @@ def _check_meaning(analysis: Analysis, symbol: Symbol, new: str, text: str) -> N
         raise UsageError(f"'{symbol.name}' cannot become '{new}': the text would have another meaning")
 
 
-def _edited(text: str, edits: Iterable[Edit]) -> str:
+def _apply_edits(text: str, edits: Iterable[Edit]) -> str:
     for edit in sorted(edits, reverse=True):
         text = text[: edit.span.start] + edit.new + text[edit.span.end :]
     return text

@@ -13,15 +13,15 @@ from pygls.uris import from_fs_path, to_fs_path
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
-from rtamt.layout import laid_out
-from rtamt.lsp.colors import MODIFIERS, TYPES, colored
+from rtamt.layout import layout_text
+from rtamt.lsp.colors import MODIFIERS, TYPES, classify_words
 from rtamt.lsp.completion import completions
 from rtamt.lsp.hover import hover
 from rtamt.lsp.imported import place_of
 from rtamt.lsp.lenses import lenses
 from rtamt.lsp.places import Lines
-from rtamt.lsp.problems import all_repaired, repairs
-from rtamt.lsp.rename import rename, renamed_at
+from rtamt.lsp.problems import fix_all, repairs
+from rtamt.lsp.rename import rename, renameable_at
 from rtamt.lsp.session import Server, edits_of, offset_of, range_of, whole_of
 
 _SYMBOLS = {
@@ -50,7 +50,7 @@ def make_server() -> Server:
         server.state.settings.take(params.initialization_options)
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_CONFIGURATION)
-    def configured(params: lsp.DidChangeConfigurationParams) -> None:
+    def did_change_configuration(params: lsp.DidChangeConfigurationParams) -> None:
         given = params.settings
         server.state.settings.take(given.get("rtamt") if isinstance(given, dict) else None)
         for uri in list(server.workspace.text_documents):
@@ -58,38 +58,38 @@ def make_server() -> Server:
             server.check_later(uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
-    def opened(params: lsp.DidOpenTextDocumentParams) -> None:
+    def did_open(params: lsp.DidOpenTextDocumentParams) -> None:
         server.publish(params.text_document.uri)
         server.check_later(params.text_document.uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
-    def changed(params: lsp.DidChangeTextDocumentParams) -> None:
+    def did_change(params: lsp.DidChangeTextDocumentParams) -> None:
         server.publish(params.text_document.uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
-    def saved(params: lsp.DidSaveTextDocumentParams) -> None:
+    def did_save(params: lsp.DidSaveTextDocumentParams) -> None:
         server.state.analyses.clear()  # other texts may import this one
         for uri in list(server.workspace.text_documents):
             server.publish(uri)
         server.check_later(params.text_document.uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
-    def closed(params: lsp.DidCloseTextDocumentParams) -> None:
+    def did_close(params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
         server.state.analyses.pop(uri, None)
         server.state.checked.pop(uri, None)
         server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
 
-    _add_reading(server)
-    _add_changing(server)
+    _add_queries(server)
+    _add_edits(server)
     return server
 
 
-def _add_reading(server: Server) -> None:
+def _add_queries(server: Server) -> None:
     """Add the requests that change nothing."""
 
     @server.feature(lsp.TEXT_DOCUMENT_HOVER)
-    def hovered(params: lsp.HoverParams) -> lsp.Hover | None:
+    def hover_request(params: lsp.HoverParams) -> lsp.Hover | None:
         analysis = server.analysis(params.text_document.uri)
         found = hover(analysis, offset_of(analysis, params.position))
         if found is None:
@@ -98,7 +98,7 @@ def _add_reading(server: Server) -> None:
         return lsp.Hover(content, range_of(analysis.lines, found.span))
 
     @server.feature(lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=['"', "."]))
-    async def completed(params: lsp.CompletionParams) -> lsp.CompletionList:
+    async def completion(params: lsp.CompletionParams) -> lsp.CompletionList:
         uri = params.text_document.uri
         columns = await server.columns(uri)
         analysis = server.analysis(uri)
@@ -123,7 +123,7 @@ def _add_reading(server: Server) -> None:
         return lsp.CompletionList(is_incomplete=False, items=items)
 
     @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
-    def defined(params: lsp.DefinitionParams) -> lsp.Location | None:
+    def definition(params: lsp.DefinitionParams) -> lsp.Location | None:
         uri = params.text_document.uri
         analysis = server.analysis(uri)
         offset = offset_of(analysis, params.position)
@@ -139,7 +139,7 @@ def _add_reading(server: Server) -> None:
         return None
 
     @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
-    def referred(params: lsp.ReferenceParams) -> list[lsp.Location]:
+    def references(params: lsp.ReferenceParams) -> list[lsp.Location]:
         uri = params.text_document.uri
         analysis = server.analysis(uri)
         offset = offset_of(analysis, params.position)
@@ -157,7 +157,7 @@ def _add_reading(server: Server) -> None:
         return [lsp.Location(uri, range_of(analysis.lines, each)) for each in kept]
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    def listed(params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    def document_symbols(params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         analysis = server.analysis(params.text_document.uri)
         return [
             lsp.DocumentSymbol(
@@ -171,10 +171,10 @@ def _add_reading(server: Server) -> None:
             if each.kind in _SYMBOLS
         ]
 
-    _add_colors(server)
+    _add_semantic_tokens(server)
 
     @server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)
-    def lens(params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
+    def code_lenses(params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
         uri = params.text_document.uri
         analysis, key = server.analysis(uri), server.checking(uri)
         kept = server.state.checked.get(uri)
@@ -192,22 +192,22 @@ def _add_reading(server: Server) -> None:
         ]
 
     @server.command("rtamt.check")
-    async def check(*arguments: Any) -> dict[str, Any]:
+    async def check_command(*arguments: Any) -> dict[str, Any]:
         if len(arguments) != 1 or not isinstance(arguments[0], str):
             raise JsonRpcInvalidParams("rtamt.check takes the address of a text")
         return await server.check(arguments[0])
 
 
-def _add_colors(server: Server) -> None:
+def _add_semantic_tokens(server: Server) -> None:
     """Add the semantic tokens."""
     legend = lsp.SemanticTokensLegend(list(TYPES), list(MODIFIERS))
 
     @server.feature(lsp.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
-    def painted(params: lsp.SemanticTokensParams) -> lsp.SemanticTokens:
+    def semantic_tokens(params: lsp.SemanticTokensParams) -> lsp.SemanticTokens:
         analysis = server.analysis(params.text_document.uri)
         data: list[int] = []
         line = character = 0
-        for each in colored(analysis):
+        for each in classify_words(analysis):
             place = analysis.lines.place(each.span.start)
             before = character if place.line == line else 0
             width = analysis.lines.width(each.span)
@@ -217,20 +217,20 @@ def _add_colors(server: Server) -> None:
         return lsp.SemanticTokens(data)
 
 
-def _add_changing(server: Server) -> None:
+def _add_edits(server: Server) -> None:
     """Add the requests whose answers are edits."""
 
     @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
-    def may_rename(params: lsp.PrepareRenameParams) -> lsp.Range:
+    def prepare_rename(params: lsp.PrepareRenameParams) -> lsp.Range:
         analysis, path = server.analysis(params.text_document.uri), to_fs_path(params.text_document.uri)
         try:
-            span, _symbol = renamed_at(analysis, offset_of(analysis, params.position), path)
+            span, _symbol = renameable_at(analysis, offset_of(analysis, params.position), path)
         except UsageError as error:
             raise JsonRpcInvalidParams(str(error)) from None
         return range_of(analysis.lines, span)
 
     @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
-    def renamed(params: lsp.RenameParams) -> lsp.WorkspaceEdit:
+    def rename_request(params: lsp.RenameParams) -> lsp.WorkspaceEdit:
         uri = params.text_document.uri
         analysis = server.analysis(uri)
         try:
@@ -240,17 +240,17 @@ def _add_changing(server: Server) -> None:
         return lsp.WorkspaceEdit({uri: edits_of(analysis.lines, edits)})
 
     @server.feature(lsp.TEXT_DOCUMENT_FORMATTING)
-    def laid(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
+    def format_document(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
         analysis = server.analysis(params.text_document.uri)
         if analysis.spec is None:
             return []  # its error is shown already
-        new = laid_out(analysis.text, analysis.folder, STL)
+        new = layout_text(analysis.text, analysis.folder, STL)
         return [] if new == analysis.text else whole_of(analysis, new)
 
     kinds = [lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll]
 
     @server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=kinds))
-    def repaired(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+    def code_actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
         uri = params.text_document.uri
         analysis = server.analysis(uri)
         span = Span(offset_of(analysis, params.range.start), offset_of(analysis, params.range.end))
@@ -265,7 +265,7 @@ def _add_changing(server: Server) -> None:
         ]
         wanted = params.context.only
         if wanted is None or any(each.split(".")[0] == "source" for each in wanted):
-            text = all_repaired(analysis)
+            text = fix_all(analysis)
             if text is not None:
                 edit = lsp.WorkspaceEdit({uri: whole_of(analysis, text)})
                 kind = lsp.CodeActionKind.SourceFixAll

@@ -86,15 +86,15 @@ def builtin(names: Sequence[str], period: Fraction | None, shortest: Fraction) -
     signals = [str(Var(name)) for name in names]
     for x in signals:
         for direction, plain, within in ((1, _LARGER, _LARGER_WITHIN), (-1, _SMALLER, _SMALLER_WITHIN)):
-            found += [Template(_filled(text, x=x), direction) for text in plain]
-            found += [Template(_filled(text, x=x, w=w), direction) for w in windows for text in within]
+            found += [Template(_fill(text, x=x), direction) for text in plain]
+            found += [Template(_fill(text, x=x, w=w), direction) for w in windows for text in within]
     for x, y in combinations(signals, 2):
         for direction, pair in ((1, _LARGER_PAIR), (-1, _SMALLER_PAIR)):
-            found += [Template(_filled(text, x=x, y=y), direction) for text in pair]
+            found += [Template(_fill(text, x=x, y=y), direction) for text in pair]
     return found
 
 
-def _filled(text: str, **parts: str) -> str:
+def _fill(text: str, **parts: str) -> str:
     for name, part in parts.items():
         text = text.replace(f"{{{name}}}", part)
     return text

@@ -10,7 +10,7 @@ from rtamt.language.formula import Var
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.mining.classifier_templates import builtin, features, own
-from rtamt.mining.decision_list import DecisionList, learned
+from rtamt.mining.decision_list import DecisionList, learn_list
 from rtamt.mining.mine import named_recordings
 from rtamt.mining.region import Budget, Region, Spent, require_count
 from rtamt.specification_loader import parse
@@ -149,7 +149,7 @@ def classify(
     >>> round(found.accuracy, 2), round(found.baseline, 2)
     (0.86, 0.57)
     """
-    named = _labelled(named_recordings(good, "good"), named_recordings(bad, "bad"))
+    named = _label(named_recordings(good, "good"), named_recordings(bad, "bad"))
     recordings, labels = (
         {name: data for name, (data, _) in named.items()},
         {n: g for n, (_, g) in named.items()},
@@ -161,7 +161,7 @@ def classify(
             chosen = own([templates] if hasattr(templates, "requirements") else templates)
         else:
             names = _signals(recordings, signals)
-            chosen = builtin(names, *_clock(recordings, names, reading, budget))
+            chosen = builtin(names, *_common_sampling(recordings, names, reading, budget))
         if not chosen:
             raise UsageError("there is no template; give specifications with a parameter each")
         table = features(chosen, recordings, reading, budget)
@@ -169,9 +169,9 @@ def classify(
         undefined = len(chosen) - len(defined)
         chosen, table = [chosen[column] for column in defined], table[:, defined]
         is_good = np.array(list(labels.values()))
-        found = learned(chosen, table, is_good, rules)
-        accuracy, baseline = _validated(chosen, table, is_good, rules, folds, seed)
-        predicted = _predicted(found, labels, recordings, reading, budget)
+        found = learn_list(chosen, table, is_good, rules)
+        accuracy, baseline = _cross_validate(chosen, table, is_good, rules, folds, seed)
+        predicted = _predict(found, labels, recordings, reading, budget)
     except Spent:
         raise UsageError("the budget was spent before the rules were learned; give a larger one") from None
     return Classifier(
@@ -189,7 +189,7 @@ def classify(
     )
 
 
-def _labelled(good: dict[str, Any], bad: dict[str, Any]) -> dict[str, tuple[Any, bool]]:
+def _label(good: dict[str, Any], bad: dict[str, Any]) -> dict[str, tuple[Any, bool]]:
     """Return recordings with their class; numbered ones are called ``good 0``, ``bad 0`` and so on."""
     if set(good) & set(bad):
         good = {f"good {name}": data for name, data in good.items()}
@@ -228,7 +228,7 @@ def _signals(recordings: Mapping[str, Any], given: Sequence[str] | None) -> list
     return list(dict.fromkeys(given)) if given else common
 
 
-def _clock(
+def _common_sampling(
     recordings: Mapping[str, Any], names: Sequence[str], reading: Mapping[str, Any], budget: Budget
 ) -> tuple[Fraction | None, Fraction]:
     """Return the sampling period, None if recordings have different ones, and the shortest duration."""
@@ -239,7 +239,7 @@ def _clock(
     return periods.pop() if len(periods) == 1 else None, min(trace.last * trace.step for trace in traces)
 
 
-def _validated(
+def _cross_validate(
     templates: Sequence[Template], table: NDArray[np.float64], good: Bits, rules: int, folds: int, seed: int
 ) -> tuple[float, float]:
     """Return the share of recordings that are right by a list that was learned without them, and of the majority."""
@@ -251,12 +251,12 @@ def _validated(
     right = 0
     for fold in range(folds):
         held = part == fold
-        found = learned(templates, table[~held], good[~held], rules)
+        found = learn_list(templates, table[~held], good[~held], rules)
         right += int((found.predicted(table[held]) == good[held]).sum())
     return right / len(good), max(float(good.mean()), float((~good).mean()))
 
 
-def _predicted(
+def _predict(
     found: DecisionList,
     labels: Mapping[str, bool],
     recordings: Mapping[str, Any],

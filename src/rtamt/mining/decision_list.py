@@ -77,7 +77,9 @@ class DecisionList:
         return text
 
 
-def learned(templates: Sequence[Template], table: NDArray[np.float64], good: Bits, most: int) -> DecisionList:
+def learn_list(
+    templates: Sequence[Template], table: NDArray[np.float64], good: Bits, most: int
+) -> DecisionList:
     """Return a decision list of at most so many rules: each rule leaves the fewest errors, until none leaves fewer.
 
     Errors of a rule itself count twice where more rules may follow, which mend only those of the rest. A threshold in a

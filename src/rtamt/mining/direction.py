@@ -76,11 +76,11 @@ def directions(
     {'limit': 'larger', 'within': 'larger', 'level': 'unknown'}
     """
     named = {1: "larger", -1: "smaller", None: "unknown"}
-    chosen = [name for name in spec.parameters if name in used(spec)]
+    chosen = [name for name in spec.parameters if name in used_parameters(spec)]
     return {role.name: named[role.direction] for role in roles_of(spec, chosen, ranges or {})}
 
 
-def used(spec: Specification) -> frozenset[str]:
+def used_parameters(spec: Specification) -> frozenset[str]:
     """Return the parameters that occur in the formula of a specification."""
     found: set[str] = set()
     for node in postorder(spec.formula):
@@ -172,7 +172,7 @@ def _bounds(spec: Specification, names: Iterable[str]) -> dict[str, list[_Side]]
     for name in names:
         if name not in bounding(spec.document):
             continue
-        other, value = _elsewhere(spec, name)
+        other, value = _move_parameter(spec, name)
         change = exact(str(value)) - exact(str(spec.parameters[name]))
         every: list[_Side] = []
         for old, new in zip(postorder(spec.formula), postorder(other.formula), strict=True):
@@ -211,7 +211,7 @@ def _of_window(node: Apply, *, end: bool) -> int | None:
     return None
 
 
-def _elsewhere(spec: Specification, name: str) -> tuple[Specification, float]:
+def _move_parameter(spec: Specification, name: str) -> tuple[Specification, float]:
     """Return the specification with another value of a parameter that bounds an interval, and the value."""
     value, step = spec.parameters[name], spec.period or Fraction(1)
     tried = [2 * value, 0.0, *(float(step / unit) for unit in UNITS.values())]
@@ -246,15 +246,15 @@ def _fold(
         found: dict[str, int | None] = {}
         for move, operand in zip(_moves(node, constants), below, strict=True):
             for name, direction in operand.items():
-                _joined(found, name, direction * move if direction and move else None)
+                _join(found, name, direction * move if direction and move else None)
         for side in sides.get(id(node.interval), ()) if node.interval is not None else ():
-            _joined(found, side.name, side.direction)
+            _join(found, side.name, side.direction)
         return found
 
     return fold(core, step)
 
 
-def _joined(found: dict[str, int | None], name: str, direction: int | None) -> None:
+def _join(found: dict[str, int | None], name: str, direction: int | None) -> None:
     found[name] = direction if found.get(name, direction) == direction else None
 
 
@@ -297,7 +297,7 @@ def _constants(
 
 def require(spec: Specification, names: Iterable[str] | None) -> tuple[str, ...]:
     """Return the parameters to mine, in the given order; by default those in the formula."""
-    known, there = tuple(spec.parameters), used(spec)
+    known, there = tuple(spec.parameters), used_parameters(spec)
     if not known:
         raise UsageError(
             "the specification declares no parameter to mine; declare one, such as parameter float limit = 30"

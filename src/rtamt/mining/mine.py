@@ -23,7 +23,7 @@ from rtamt.mining.parameter_ranges import (
 )
 from rtamt.mining.pareto_front import front
 from rtamt.mining.region import Budget, Region, Spent, number, require_count, written
-from rtamt.mining.search import searched
+from rtamt.mining.search import search_values
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ def mine(
     bare = Mined(spec, (), tuple(roles), {}, {}, tuple(named))
     try:
         if any(role.direction is None for role in roles):
-            return searched(bare, region, work.all_grids(), optimizer, seed)
+            return search_values(bare, region, work.all_grids(), optimizer, seed)
         grids = work.grids()
         bare = replace(
             bare,
@@ -309,14 +309,14 @@ def _one(bare: Mined, region: Region, grids: list[Grid]) -> Mined:
                 return region.holds(_values(grids, [*places[:place], k, *places[place + 1 :]]))
 
             places[place] = hardest(holds, grid.last)
-        alone = _alone(bare, region, grids[0]) if len(grids) == 1 else {}
+        alone = _tight_alone(bare, region, grids[0]) if len(grids) == 1 else {}
         point = _point(region, grids, places)
     except Spent:
         finished, alone, point = False, {}, Point(_values(grids, places), {}, {})
     return replace(bare, points=(point,), alone=alone, finished=finished)
 
 
-def _alone(bare: Mined, region: Region, grid: Grid) -> dict[str, float]:
+def _tight_alone(bare: Mined, region: Region, grid: Grid) -> dict[str, float]:
     """Return the tight value for each recording alone."""
     found = {}
     for name in bare.recordings:

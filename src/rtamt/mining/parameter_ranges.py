@@ -163,7 +163,7 @@ class Finder:
             if hard is None:
                 raise UsageError(
                     f"no recording restricts '{role.name}': the hardest value that was tried, "
-                    f"{number(self._moved(role, -FARTHEST))}, satisfies the specification; "
+                    f"{number(self._move(role, -FARTHEST))}, satisfies the specification; "
                     f"give a range, or leave it out"
                 )
             step = resolutions.get(role.name) or self._step(role, easy, hard, others)
@@ -178,7 +178,7 @@ class Finder:
         Where the value is far smaller than the range, the bracket is divided in the same way; a value that is then
         still no larger than its bracket counts as 0.
         """
-        ends, parts = (Fraction(self._moved(role, easy)), Fraction(self._moved(role, -hard))), 2**14
+        ends, parts = (Fraction(self._move(role, easy)), Fraction(self._move(role, -hard))), 2**14
         values = self._at(role, easy, others)
 
         def value(k: int) -> float:
@@ -197,11 +197,11 @@ class Finder:
         return sizes[0]
 
     def _grid(self, role: Role, easy: float, hard: float, step: Fraction) -> Grid:
-        ends = Fraction(self._moved(role, easy)), Fraction(self._moved(role, -hard))
+        ends = Fraction(self._move(role, easy)), Fraction(self._move(role, -hard))
         low, high = Fraction(floor(min(ends) / step)) * step, Fraction(ceil(max(ends) / step)) * step
         return Grid(role.name, high, low, step) if role.direction == 1 else Grid(role.name, low, high, step)
 
-    def _moved(self, role: Role, distance: float) -> float:
+    def _move(self, role: Role, distance: float) -> float:
         """Return a value that is so much easier than the one in use, in units of its size."""
         start = self._start[role.name]
         assert role.direction is not None
@@ -213,8 +213,8 @@ class Finder:
 
     def _at(self, role: Role, distance: float, others: float) -> dict[str, float]:
         """Return a value of one role that is so much easier than the one in use; of the others, easy ones."""
-        values = {**self._easiest, **{each.name: self._moved(each, others) for each in self._free}}
-        values[role.name] = self._moved(role, distance)
+        values = {**self._easiest, **{each.name: self._move(each, others) for each in self._free}}
+        values[role.name] = self._move(role, distance)
         return {name: values[name] for name in self._order}
 
 

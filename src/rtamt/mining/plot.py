@@ -76,7 +76,7 @@ def _front(found: Mined, axes: Any) -> Any:
         color=style.QUIET,
         loc="right",
     )
-    return style.styled(axes)
+    return style.apply_style(axes)
 
 
 def _limits(points: Any, names: Sequence[str], found: Mined) -> tuple[list[float], list[float]]:
@@ -110,7 +110,7 @@ def _by_recording(found: Mined, axes: Any) -> Any:
     axes.set_ylim(-0.7, len(names) - 0.3)
     axes.set_xlabel(_label(found, 0))
     axes.set_title(f"{role.name} = {tight:.6g}", fontsize=9, color=style.FAILS, loc="right")
-    return style.styled(axes)
+    return style.apply_style(axes)
 
 
 def _search(found: Mined, axes: Any) -> Any:
@@ -140,7 +140,7 @@ def _search(found: Mined, axes: Any) -> Any:
     axes.set_title(
         f"{len(margins)} values tried, not proven tight", fontsize=9, color=style.QUIET, loc="right"
     )
-    return style.styled(axes)
+    return style.apply_style(axes)
 
 
 def strips(found: Classifier, figure: Any = None) -> Any:
@@ -183,10 +183,10 @@ def strips(found: Classifier, figure: Any = None) -> Any:
             family="monospace",
         )
         axes.set_xlabel("threshold that the recording needs" if rule is found.rules[-1] else "")
-        style.styled(axes)
+        style.apply_style(axes)
     if not found.rules:
         panels[0].set_title("no rule is better than the majority", fontsize=9, loc="left")
-        style.styled(panels[0])
+        style.apply_style(panels[0])
     return figure
 
 

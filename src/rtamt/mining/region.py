@@ -82,14 +82,14 @@ class Region:
         spec = self.spec.with_parameters(**values)
         results = []
         for name in self._order:
-            result = self._evaluated(spec, name, values)
-            with _named(name, values):  # missing samples may leave both open
+            result = self._evaluate(spec, name, values)
+            with _prefix_error(name, values):  # missing samples may leave both open
                 results.append((result.robustness, result.satisfied))
         return min(robustness for robustness, _ in results), all(satisfied for _, satisfied in results)
 
     def trace(self, name: str) -> DomainTrace:
         """Return a recording as the template reads it."""
-        return self._evaluated(self._reading_only, name, {}).trace
+        return self._evaluate(self._reading_only, name, {}).trace
 
     @cached_property
     def _reading_only(self) -> Specification:
@@ -110,8 +110,8 @@ class Region:
     def _first_violator(self, values: Mapping[str, float]) -> str | None:
         spec = self.spec.with_parameters(**values)
         for name in self._order:
-            result = self._evaluated(spec, name, values)
-            with _named(name, values):
+            result = self._evaluate(spec, name, values)
+            with _prefix_error(name, values):
                 satisfied = result.satisfied
             if not satisfied:
                 # The recording that decides one value mostly decides the next, too.
@@ -120,14 +120,14 @@ class Region:
                 return name
         return None
 
-    def _evaluated(self, spec: Specification, name: str, values: Mapping[str, float]) -> Result:
+    def _evaluate(self, spec: Specification, name: str, values: Mapping[str, float]) -> Result:
         self.budget.take()
-        with _named(name, values):
+        with _prefix_error(name, values):
             return spec.evaluate(self._recordings[name], **self._reading)
 
 
 @contextmanager
-def _named(name: str, values: Mapping[str, float]) -> Iterator[None]:
+def _prefix_error(name: str, values: Mapping[str, float]) -> Iterator[None]:
     """Put the name of a recording, and the values, before an error."""
     try:
         yield

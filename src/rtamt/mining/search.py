@@ -26,7 +26,7 @@ ROUNDS = 4
 _VIOLATED = 1e12
 
 
-def searched(bare: Mined, region: Region, grids: list[Grid], optimizer: str | None, seed: int) -> Mined:
+def search_values(bare: Mined, region: Region, grids: list[Grid], optimizer: str | None, seed: int) -> Mined:
     """Return the values with the least robustness that satisfy the template on every recording, of those tried."""
     from rtamt.mining.mine import Point
 
@@ -34,7 +34,7 @@ def searched(bare: Mined, region: Region, grids: list[Grid], optimizer: str | No
     finished = True
     try:
         if optimizer is None:
-            _refined(tries, len(grids))
+            _refine(tries, len(grids))
         else:
             from rtamt.search.optimizers import optimizer as named
 
@@ -95,7 +95,7 @@ class _Tries:
         return self._known[key]
 
 
-def _refined(tries: _Tries, dimensions: int) -> None:
+def _refine(tries: _Tries, dimensions: int) -> None:
     """Evaluate a grid of the unit cube, then one around its best point, and so on."""
     per_axis = max(3, int((TRIED / ROUNDS) ** (1 / dimensions)))
     low, high = np.zeros(dimensions), np.ones(dimensions)

@@ -44,14 +44,14 @@ class Keys:
 
     def of(self, formula: Formula) -> int:
         """Return the key of a formula."""
-        grounded = ground(fold(formula, self._unquantified), self._step, continuous=self._continuous)
+        grounded = ground(fold(formula, self._replace_quantifier), self._step, continuous=self._continuous)
         core = desugar(replaced(grounded, truth))
         known: dict[int, int] = {}
         for node in postorder(core):
             known[id(node)] = self._key(node, known)
         return known[id(core)]
 
-    def _unquantified(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
+    def _replace_quantifier(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
         """Return a quantified formula as a variable, which the quantifier and the key of what it ranges over name."""
         if not isinstance(node, Apply):
             return node

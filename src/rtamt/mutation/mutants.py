@@ -11,7 +11,7 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.substitution import substituted
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.mutation.equal_formulas import Keys
-from rtamt.mutation.operators import changes_of, described
+from rtamt.mutation.operators import changes_of, describe_change
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula
@@ -96,7 +96,7 @@ def _of_one(name: str, spec: Specification, step: Fraction | None, before: int) 
                 seen.add(key)
                 place = _place(spec, change.old)
                 number = before + len(found) + 1
-                found.append(Mutant(number, name, change.kind, described(change), *place, new))
+                found.append(Mutant(number, name, change.kind, describe_change(change), *place, new))
     return found
 
 

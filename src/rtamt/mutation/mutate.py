@@ -110,7 +110,7 @@ def mutate(
     """
     if not isinstance(spec, Specification):
         raise UsageError(f"mutate takes a specification, got {shown(spec)}; rtamt.parse reads text")
-    named = _named(recordings)
+    named = _name_recordings(recordings)
     suite = Suite(spec, select=["satisfied"], **reading)
     verdicts: dict[str, dict[str, bool | None]] = {}
     for name, data in named.items():
@@ -119,7 +119,7 @@ def mutate(
             if found.error is not None:
                 raise TraceError(f"{name}: {found.error}")
         verdicts[name] = {each: row.satisfied for each, row in zip(spec.requirements, rows, strict=True)}
-    timed = _timed(spec, reading)
+    timed = _choose_domain(spec, reading)
     mutants = mutants_of(timed, _step(timed, named, verdicts, reading))
     killed = np.zeros((len(mutants), len(named)), bool)
     if mutants:
@@ -130,7 +130,7 @@ def mutate(
     return Mutation(spec, tuple(mutants), tuple(named), killed)
 
 
-def _named(recordings: Any) -> dict[str, Any]:
+def _name_recordings(recordings: Any) -> dict[str, Any]:
     if isinstance(recordings, Mapping):
         named = {str(name): data for name, data in recordings.items()}
     elif isinstance(recordings, Iterable) and not isinstance(recordings, str):
@@ -144,7 +144,7 @@ def _named(recordings: Any) -> dict[str, Any]:
     return named
 
 
-def _timed(spec: Specification, reading: Mapping[str, Any]) -> Specification:
+def _choose_domain(spec: Specification, reading: Mapping[str, Any]) -> Specification:
     """Return the specification in the time domain that the settings choose."""
     chosen = {name: reading[name] for name in ("time", "period", "resolution") if name in reading}
     domain = spec._domain_for(**chosen)

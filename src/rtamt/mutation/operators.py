@@ -98,7 +98,7 @@ def _similar(op: Operator) -> list[Operator]:
         found += [other for other in STL if is_predicate(other) and not other.equates and other is not op]
         found = [other for other in dict.fromkeys(found) if op.equates == other.equates]
     elif not found:
-        found += [other for other in STL if other is not op and _alike(op, other)]
+        found += [other for other in STL if other is not op and _is_exchangeable(op, other)]
     return found
 
 
@@ -113,7 +113,7 @@ def _other_quantifier(op: Operator) -> list[Operator]:
     return [quantified(name, op.binder) for name in others]
 
 
-def _alike(op: Operator, other: Operator) -> bool:
+def _is_exchangeable(op: Operator, other: Operator) -> bool:
     """Return whether two operators without duals have the same operands, the same tense, and are similar."""
     same = _shape(op) == _shape(other)
     if not same or op.presence or other.presence:
@@ -174,14 +174,14 @@ def _intervals(node: Apply, step: Fraction | None) -> Iterator[Interval]:
     if node.op.bounds is Bounds.DURATION:
         for changed in _durations(begin, step):
             if changed > 0 or not node.op.positive:
-                yield _changed(interval, changed, changed)
+                yield _change_interval(interval, changed, changed)
         return
     for changed in _durations(begin, step) if begin else ():
         if end is None or changed <= end:
-            yield _changed(interval, changed, end)
+            yield _change_interval(interval, changed, end)
     for changed in () if end is None else _durations(end, step):
         if changed >= begin:
-            yield _changed(interval, begin, changed)
+            yield _change_interval(interval, begin, changed)
     if interval.share is not None:
         for share in _shares(interval.share, step):
             yield replace(interval, share=share)
@@ -208,7 +208,7 @@ def _shares(share: Share, step: Fraction | None) -> Iterator[Share]:
             yield replace(share, amount=Fraction(amount), span=None)
 
 
-def _changed(interval: Interval, begin: Fraction, end: Fraction | None) -> Interval:
+def _change_interval(interval: Interval, begin: Fraction, end: Fraction | None) -> Interval:
     """Return an interval with other bounds, in the units in which it was written."""
     return replace(interval, begin=begin, end=end, constants=(), written=None)
 
@@ -216,12 +216,12 @@ def _changed(interval: Interval, begin: Fraction, end: Fraction | None) -> Inter
 # ---- what a change looks like --------------------------------------------------------------------
 
 
-def described(change: Change) -> str:
+def describe_change(change: Change) -> str:
     """Return a change for a table: what was there, an arrow, and what is there now; of long parts the operator alone.
 
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> for each in list(changes_of(parse_formula("always[0:9](speed >= 30 and gap > 2 and brake < 0.5)"), None))[:3]:
-    ...     print(described(each))
+    ...     print(describe_change(each))
     'always[0:9]' → 'eventually[0:9]' in always[0:9](speed >= 30 and gap > 2 and brake < 0.5)
     'always[0:9]' removed from always[0:9](speed >= 30 and gap > 2 and brake < 0.5)
     'always[0:9]' → 'always[0:9.9]' in always[0:9](speed >= 30 and gap > 2 and brake < 0.5)

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 _TOLERANCE = 1e-6
 
 
-def sampled(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> dict[str, Any]:
+def sample_signals(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> dict[str, Any]:
     """Return samples of discrete time: from 0 to ``duration``, one every ``period``.
 
     >>> from fractions import Fraction
     >>> from rtamt.play.messages import Drawn
     >>> steps = {"x": Drawn(((0.0, 1.0), (0.3, 5.0)), hold=True), "y": Drawn(((0.0, 0.0), (0.4, 4.0)), hold=False)}
-    >>> data = sampled(steps, Fraction(1, 10), 0.4)
+    >>> data = sample_signals(steps, Fraction(1, 10), 0.4)
     >>> data["x"], data["y"].round(9)
     (array([1., 1., 1., 5., 5.]), array([0., 1., 2., 3., 4.]))
     """
@@ -35,7 +35,7 @@ def sampled(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> 
     return {"time": times, **{name: _values(each, times, float(period)) for name, each in signals.items()}}
 
 
-def points(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> dict[str, Any]:
+def signal_points(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> dict[str, Any]:
     """Return signals of dense time: values hold from point to point; lines are sampled every ``period``."""
     found = {}
     for name, each in signals.items():

@@ -13,7 +13,7 @@ from rtamt.language.units.durations import format_duration
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
 from rtamt.play.downsampling import line, number
-from rtamt.play.drawn_signals import points, sampled
+from rtamt.play.drawn_signals import sample_signals, signal_points
 from rtamt.play.recent import Recent
 from rtamt.plot.panels import groups
 from rtamt.plot.x_axis import XAxis
@@ -52,7 +52,7 @@ class Sources:
     replays: Recent[Replay] = field(default_factory=Recent)
 
 
-def parsed(request: Request, sources: Sources) -> Specification:
+def parse_request(request: Request, sources: Sources) -> Specification:
     """Return the specification of a request; raises :class:`SpecificationError`.
 
     A sampling period that the text declares counts, and not that of the request.
@@ -69,7 +69,7 @@ def data_of(request: Request, spec: Specification, sources: Sources) -> Any:
     """Return the data that a request names, as ``evaluate`` takes it."""
     if request.recording is None:
         period = spec.period or request.period or Fraction(1)
-        make = points if request.dense else sampled
+        make = signal_points if request.dense else sample_signals
         return make(request.signals, period, request.duration)
     if sources.file is None:
         raise UsageError("the recording is no longer here: load it again")
@@ -103,7 +103,7 @@ def inner(spec: Specification) -> Specification:
     return spec
 
 
-def chosen(request: Request, result: Result) -> tuple[str, Result]:
+def select_requirement(request: Request, result: Result) -> tuple[str, Result]:
     """Return the requirement that is explained and monitored: the wanted one, or the first that is violated."""
     parts = result.requirements
     if request.focus is not None and request.focus in parts:
@@ -112,29 +112,33 @@ def chosen(request: Request, result: Result) -> tuple[str, Result]:
     return names[0], parts[names[0]]
 
 
-def evaluated(request: Request, sources: Sources) -> dict[str, Any]:
+def evaluate_request(request: Request, sources: Sources) -> dict[str, Any]:
     """Answer a request; a mistake in the text or in the data is an answer with ``error``."""
     answer: dict[str, Any] = {"error": None}
     try:
-        spec = parsed(request, sources)
+        spec = parse_request(request, sources)
         answer |= _facts(spec, request)
         if answer["missing"] and request.recording is None:
             return answer
         result = sources.results.keep(request, result_of(request, spec, sources))
-        name, part = chosen(request, result)
-        answer |= _shown(name, part) | _drawn(result, part, request, None)
-        answer["near"] = None if request.view is None else _drawn(result, part, request, request.view)
+        name, part = select_requirement(request, result)
+        answer |= _requirement_facts(name, part) | _requirement_lines(result, part, request, None)
+        answer["near"] = (
+            None if request.view is None else _requirement_lines(result, part, request, request.view)
+        )
         answer["requirements"] = [_row(each, one) for each, one in result.requirements.items()]
     except StlError as error:
         answer["error"] = error_as_data(error, sources)
     return answer
 
 
-def redrawn(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return what is seen of the last evaluation, as ``near`` of :func:`evaluated`."""
+def redraw(request: Request, sources: Sources) -> dict[str, Any]:
+    """Return what is seen of the last evaluation, as ``near`` of :func:`evaluate_request`."""
     try:
-        result = sources.results.of(request, lambda: result_of(request, parsed(request, sources), sources))
-        near = _drawn(result, chosen(request, result)[1], request, request.view)
+        result = sources.results.of(
+            request, lambda: result_of(request, parse_request(request, sources), sources)
+        )
+        near = _requirement_lines(result, select_requirement(request, result)[1], request, request.view)
     except StlError as error:
         return {"error": error_as_data(error, sources)}
     return {"error": None, "near": near}
@@ -144,7 +148,7 @@ def error_as_data(error: StlError, sources: Sources) -> dict[str, Any]:
     """Return an error as data: the sentence, and its place in the text."""
     message = error.message if isinstance(error, SpecificationError) else str(error)
     span = error.span if isinstance(error, SpecificationError) else None
-    for path, name in _private(sources):
+    for path, name in _private_paths(sources):
         message = message.replace(path, name)
     return {
         "message": message,
@@ -153,7 +157,7 @@ def error_as_data(error: StlError, sources: Sources) -> dict[str, Any]:
     }
 
 
-def _private(sources: Sources) -> list[tuple[str, str]]:
+def _private_paths(sources: Sources) -> list[tuple[str, str]]:
     """Return the paths that no sentence contains, and what replaces them."""
     found = [] if sources.file is None else [(sources.file.path, sources.file.name)]
     return found if sources.folder is None else [*found, (sources.folder, ".")]
@@ -200,7 +204,7 @@ def _interval(result: Result) -> list[Any]:
     return [number(result.interval.lower), number(result.interval.upper)]
 
 
-def _shown(name: str, result: Result) -> dict[str, Any]:
+def _requirement_facts(name: str, result: Result) -> dict[str, Any]:
     """Return what is said of one requirement."""
     x_axis, spec = XAxis.of(result.trace), result.specification
     period = result.trace.domain.period
@@ -225,11 +229,11 @@ def _shown(name: str, result: Result) -> dict[str, Any]:
     violation = first_violation(result)
     return answer | {
         "first": None if violation is None else x_axis.position(violation),
-        "explanation": _explained(result.explain(), x_axis),
+        "explanation": _explanation(result.explain(), x_axis),
     }
 
 
-def _drawn(result: Result, part: Result, request: Request, view: View | None) -> dict[str, Any]:
+def _requirement_lines(result: Result, part: Result, request: Request, view: View | None) -> dict[str, Any]:
     """Return the lines of one requirement, as far as they are seen: robustness, signals, and where it is violated."""
     signal = part.signal
     positions = XAxis.of(part.trace).positions(signal.times)
@@ -239,11 +243,11 @@ def _drawn(result: Result, part: Result, request: Request, view: View | None) ->
         "robustness": line(positions, first, request.width, view),
         "upper": line(positions, rest[0], request.width, view) if rest else None,
         "lines": _lines(result, part, request.width, view),
-        "fails": _fails(part, view),
+        "fails": _violation_runs(part, view),
     }
 
 
-def _fails(part: Result, view: View | None) -> list[list[float]]:
+def _violation_runs(part: Result, view: View | None) -> list[list[float]]:
     """Return the runs of instants at which the monitored formula does not hold, each until the next instant."""
     if part.trace.bounds:
         return []
@@ -298,7 +302,7 @@ def _thresholds(spec: Specification) -> dict[str, list[float]]:
     return found
 
 
-def _explained(explanation: Explanation, x_axis: XAxis) -> dict[str, Any]:
+def _explanation(explanation: Explanation, x_axis: XAxis) -> dict[str, Any]:
     shown, point = explanation.shown(_CAUSES), explanation.critical
     ranking = explanation.ranking[:_STRETCHES]
     return {
@@ -310,7 +314,7 @@ def _explained(explanation: Explanation, x_axis: XAxis) -> dict[str, Any]:
         ],
         "more": len(explanation.causes) - len(shown),
         "critical": None if point.predicate is None else x_axis.position(point.time),
-        "because": _because([explanation.implicant[k] for k in ranking], x_axis),
+        "because": _cause_intervals([explanation.implicant[k] for k in ranking], x_axis),
     }
 
 
@@ -319,7 +323,7 @@ def _place(stretch: Stretch, x_axis: XAxis) -> dict[str, float]:
     return {"start": start, "end": x_axis.end if stretch.end is None else x_axis.position(stretch.end)}
 
 
-def _because(stretches: Sequence[Stretch], x_axis: XAxis) -> Mapping[str, list[list[float]]]:
+def _cause_intervals(stretches: Sequence[Stretch], x_axis: XAxis) -> Mapping[str, list[list[float]]]:
     """Return the intervals of each signal that the cause reads."""
     found: dict[str, list[list[float]]] = {}
     for stretch in stretches:
@@ -336,12 +340,12 @@ def name_of(spec: Specification) -> str:
 
 __all__ = [
     "Sources",
-    "chosen",
     "data_of",
     "error_as_data",
-    "evaluated",
+    "evaluate_request",
     "name_of",
-    "parsed",
-    "redrawn",
+    "parse_request",
+    "redraw",
     "result_of",
+    "select_requirement",
 ]

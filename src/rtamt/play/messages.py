@@ -142,10 +142,10 @@ def _signals(given: Any) -> dict[str, Drawn]:
         raise MessageError("'signals' must map names to drawn signals")
     if len(given) > MOST_SIGNALS:
         raise MessageError(f"there are {len(given)} signals; at most {MOST_SIGNALS} are allowed")
-    return {name: _drawn(name, each) for name, each in given.items()}
+    return {name: _drawn_signal(name, each) for name, each in given.items()}
 
 
-def _drawn(name: str, given: Any) -> Drawn:
+def _drawn_signal(name: str, given: Any) -> Drawn:
     if not isinstance(given, dict) or not isinstance(given.get("points"), list):
         raise MessageError(f"the signal '{name}' must have a list of points")
     points = given["points"]

@@ -9,7 +9,7 @@ from rtamt.errors import StlError, UsageError
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.play.downsampling import kept_in, number, numbers, parts
-from rtamt.play.evaluation import chosen, error_as_data, inner, name_of, parsed, result_of
+from rtamt.play.evaluation import error_as_data, inner, name_of, parse_request, result_of, select_requirement
 from rtamt.plot.band import band
 from rtamt.plot.x_axis import XAxis
 
@@ -42,20 +42,20 @@ class Replay:
     runs: list[Run]
 
 
-def replayed(request: Request, sources: Sources) -> dict[str, Any]:
+def replay_request(request: Request, sources: Sources) -> dict[str, Any]:
     """Return what was known after each sample: bounds at the start, and when each instant was decided."""
     try:
         replay = sources.replays.keep(request, _replay(request, sources))
-        return {"error": None, "formula": name_of(replay.watched), **_seen(replay, request, None)}
+        return {"error": None, "formula": name_of(replay.watched), **_visible(replay, request, None)}
     except StlError as error:
         return {"error": error_as_data(error, sources)}
 
 
-def rewatched(request: Request, sources: Sources) -> dict[str, Any]:
+def redraw_replay(request: Request, sources: Sources) -> dict[str, Any]:
     """Return ``near``: what is seen of the last replay."""
     try:
         replay = sources.replays.of(request, lambda: _replay(request, sources))
-        return {"error": None, "near": _seen(replay, request, request.view)}
+        return {"error": None, "near": _visible(replay, request, request.view)}
     except StlError as error:
         return {"error": error_as_data(error, sources)}
 
@@ -66,11 +66,11 @@ def _replay(request: Request, sources: Sources) -> Replay:
     return Replay(result, watched, band(result), _runs(watched, result, XAxis.of(result.trace)))
 
 
-def _seen(replay: Replay, request: Request, view: View | None) -> dict[str, Any]:
+def _visible(replay: Replay, request: Request, view: View | None) -> dict[str, Any]:
     return {
         "view": view,
         "bounds": _bounds(replay.band, request.width, view),
-        "runs": _merged(_in_view(replay.runs, view), request.width),
+        "runs": _merge_runs(_in_view(replay.runs, view), request.width),
     }
 
 
@@ -123,7 +123,7 @@ def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | Non
 
 
 def _result(request: Request, sources: Sources) -> Result:
-    result = chosen(request, result_of(request, parsed(request, sources), sources))[1]
+    result = select_requirement(request, result_of(request, parse_request(request, sources), sources))[1]
     if result.trace.bounds:
         raise UsageError("a recording with missing samples is not replayed; evaluate it as a whole")
     if result.trace.size > MOST_SAMPLES:
@@ -191,7 +191,7 @@ def _in_view(found: list[Run], view: View | None) -> list[Run]:
     return [each for each in found if each[1] >= view[0] and each[0] <= view[1]]
 
 
-def _merged(found: list[Run], width: int) -> list[list[Any]]:
+def _merge_runs(found: list[Run], width: int) -> list[list[Any]]:
     """Return few runs: of those in one pixel, whether all are satisfied, and when that was known."""
     if len(found) <= 2 * width:
         return [list(each) for each in found]

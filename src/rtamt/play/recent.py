@@ -25,15 +25,15 @@ class Recent(Generic[T]):
 
     def keep(self, request: Request, found: T) -> T:
         """Keep what was computed for a request in place of what was kept; return it."""
-        self._kept = _asked(request), found
+        self._kept = _without_view(request), found
         return found
 
     def of(self, request: Request, compute: Callable[[], T]) -> T:
         """Return what is kept of a request, else compute and keep it."""
-        if self._kept is not None and self._kept[0] == _asked(request):
+        if self._kept is not None and self._kept[0] == _without_view(request):
             return self._kept[1]
         return self.keep(request, compute())
 
 
-def _asked(request: Request) -> Request:
+def _without_view(request: Request) -> Request:
     return replace(request, width=0, view=None, at=None)

@@ -6,19 +6,23 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError
 from rtamt.lazy_dataclasses import replace
-from rtamt.play.evaluation import Sources, evaluated, redrawn
+from rtamt.play.evaluation import Sources, evaluate_request, redraw
 from rtamt.play.messages import MessageError, Request
-from rtamt.play.online import known_at, replayed, rewatched
+from rtamt.play.online import known_at, redraw_replay, replay_request
 from rtamt.play.recordings import File, Recordings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: What the page may ask a worker for.
-KINDS = ("evaluate", "redraw", "replay", "rewatch", "moment", "question", "recording")
+KINDS = ("evaluate", "redraw", "replay", "redraw_replay", "cursor", "find_trace", "recording")
 _ANSWERS = {
-    "evaluate": evaluated, "redraw": redrawn, "replay": replayed, "rewatch": rewatched, "moment": known_at,
-}  # fmt: skip
+    "evaluate": evaluate_request,
+    "redraw": redraw,
+    "replay": replay_request,
+    "redraw_replay": redraw_replay,
+    "cursor": known_at,
+}
 
 
 class RequestHandler:
@@ -53,12 +57,12 @@ class RequestHandler:
             return {"error": {"message": str(error), "start": None, "end": None}}
         if kind in _ANSWERS:
             return _ANSWERS[kind](request, sources)
-        if kind == "question":
-            from rtamt.play.witnesses import WANTED, found
+        if kind == "find_trace":
+            from rtamt.play.witnesses import WANTED, find_trace
 
             if message.get("wanted") not in WANTED:
                 raise MessageError(f"'wanted' must be {' or '.join(WANTED)}")
-            return found(request, message["wanted"], sources)
+            return find_trace(request, message["wanted"], sources)
         raise MessageError(f"there is no request '{kind}'; requests: {', '.join(KINDS)}")
 
     def _recording(self, file: File | None) -> dict[str, Any]:

@@ -92,14 +92,14 @@ def application(place: Place) -> Any:
     def answer(status: int, body: bytes, kind: str = "application/json") -> Any:
         return response(body, status_code=status, media_type=kind)
 
-    def refused(status: int, sentence: str) -> Any:
+    def refuse(status: int, sentence: str) -> Any:
         return answer(status, json.dumps({"sentence": sentence}).encode())
 
     async def page(request: Any) -> Any:
         name = request.path_params.get("name", "index.html")
         found = _page_file(name)
         if found is None:
-            return refused(404, f"there is no file '{name}'")
+            return refuse(404, f"there is no file '{name}'")
         return answer(200, found, _TYPES[os.path.splitext(name)[1]])
 
     async def start(_request: Any) -> Any:
@@ -108,13 +108,13 @@ def application(place: Place) -> Any:
     async def ask(request: Any) -> Any:
         kind = request.path_params["kind"]
         if kind not in KINDS:
-            return refused(404, f"there is no request '{kind}'")
+            return refuse(404, f"there is no request '{kind}'")
         body = await _body(request, MOST_BYTES)
         if body is None:
-            return refused(413, f"the request has more than {MOST_BYTES} bytes")
+            return refuse(413, f"the request has more than {MOST_BYTES} bytes")
         message = _message(body)
         if message is None:
-            return refused(400, "the request must be a JSON object")
+            return refuse(400, "the request must be a JSON object")
         file = place.files.get(message["recording"]) if type(message.get("recording")) is int else None
         return answer(*await place.workers.ask(kind, message, file))
 
@@ -126,7 +126,7 @@ def application(place: Place) -> Any:
         name = os.path.basename(unquote(request.headers.get("x-name", ""))).strip()[:200]
         suffix = os.path.splitext(name)[1].lower()
         if suffix not in SUFFIXES:
-            return refused(400, f"'{name}' is no recording: its name ends in none of {', '.join(SUFFIXES)}")
+            return refuse(400, f"'{name}' is no recording: its name ends in none of {', '.join(SUFFIXES)}")
         path = os.path.join(place.folder, f"{place.newest + 1}-{secrets.token_hex(4)}{suffix}")
         whole = False
         try:
@@ -136,16 +136,16 @@ def application(place: Place) -> Any:
             if not whole:
                 os.unlink(path)
         if not whole:
-            return refused(413, f"'{name}' has more than {MOST_UPLOAD} bytes; give it on the command line")
+            return refuse(413, f"'{name}' has more than {MOST_UPLOAD} bytes; give it on the command line")
         found = place.add(path, name, ours=True)
         return answer(*await place.workers.ask("recording", {}, found))
 
     async def file(request: Any) -> Any:
         found = place.files.get(request.path_params["number"])
         if found is None:
-            return refused(404, "there is no recording of that number")
+            return refuse(404, "there is no recording of that number")
         if not os.path.isfile(found["path"]) or os.path.getsize(found["path"]) > _MOST_IN_LINK:
-            return refused(413, f"'{found['name']}' is too large for a link")
+            return refuse(413, f"'{found['name']}' is too large for a link")
         with open(found["path"], "rb") as opened:
             return answer(200, opened.read(), "application/octet-stream")
 

@@ -25,9 +25,9 @@ def vocabulary() -> list[dict[str, str]]:
     for operator in STL:
         for spelling in operator.spellings:
             if is_word(spelling):
-                found.setdefault(spelling, _described(operator))
+                found.setdefault(spelling, _describe(operator))
     return [{"word": word, **facts} for word, facts in sorted(found.items())]
 
 
-def _described(operator: Operator) -> dict[str, str]:
+def _describe(operator: Operator) -> dict[str, str]:
     return {"kind": kind_of(operator), "doc": meaning_of(operator), "example": operator.example}

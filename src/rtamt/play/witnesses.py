@@ -6,25 +6,25 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.analysis import satisfiable, valid
 from rtamt.errors import StlError, UsageError
-from rtamt.play.evaluation import error_as_data, parsed
+from rtamt.play.evaluation import error_as_data, parse_request
 
 if TYPE_CHECKING:
     from rtamt.play.evaluation import Sources
     from rtamt.play.messages import Request
 
-#: What can be wanted, and the question about the specification.
+#: What can be requested, and the query that answers it.
 WANTED = {"witness": satisfiable, "counterexample": valid}
 
-#: The longest trace, in samples, and the time of a question, in seconds.
+#: The longest trace, in samples, and the time limit of a query, in seconds.
 _SAMPLES, _LIMIT = 100, 8.0
 
 
-def found(request: Request, wanted: Any, sources: Sources) -> dict[str, Any]:
+def find_trace(request: Request, wanted: Any, sources: Sources) -> dict[str, Any]:
     """Look for a trace that satisfies a requirement (``"witness"``), or violates it (``"counterexample"``)."""
     if wanted not in WANTED:
         raise UsageError(f"'wanted' must be {' or '.join(WANTED)}")
     try:
-        answer = WANTED[wanted](parsed(request, sources), samples=_SAMPLES, limit=_LIMIT)
+        answer = WANTED[wanted](parse_request(request, sources), samples=_SAMPLES, limit=_LIMIT)
     except StlError as error:
         return {"error": error_as_data(error, sources)}
     witness = answer.witness

@@ -28,14 +28,14 @@ def reply(handler: RequestHandler, line: bytes) -> bytes:
     except StlError as error:
         return _line(200, {"error": {"message": str(error), "start": None, "end": None}})
     except MemoryError:
-        return _failed("not enough memory: are the bounds of a window as large as they should be?")
+        return _failure("not enough memory: are the bounds of a window as large as they should be?")
     except RecursionError:
-        return _failed("the formula is nested too deeply")
+        return _failure("the formula is nested too deeply")
     except Exception as error:  # noqa: BLE001 - a mistake of ours; the page shows a sentence and goes on
-        return _failed(f"internal error, please report it: {type(error).__name__}: {error}")
+        return _failure(f"internal error, please report it: {type(error).__name__}: {error}")
 
 
-def _failed(sentence: str) -> bytes:
+def _failure(sentence: str) -> bytes:
     return _line(200, {"error": {"message": sentence, "start": None, "end": None}})
 
 

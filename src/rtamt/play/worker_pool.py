@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 #: How long a request may take, in seconds, by its kind; others as ``evaluate``.
-SECONDS = {"evaluate": 20.0, "recording": 120.0, "question": 30.0}
+SECONDS = {"evaluate": 20.0, "recording": 120.0, "find_trace": 30.0}
 _LATE = b'{"late": true}'
 #: The longest answer, in bytes.
 _LONGEST = 256_000_000
@@ -40,14 +40,14 @@ class Worker:
                 line = await asyncio.wait_for(self._exchange(request), seconds)
             except asyncio.TimeoutError:
                 await self.end()
-                return _failed(f"the request took more than {seconds:g} s and was ended; use fewer samples")
+                return _failure(f"the request took more than {seconds:g} s and was ended; use fewer samples")
             except asyncio.CancelledError:
                 await self.end()
                 raise
         status, _, body = line.partition(b" ")
         if not body:
             await self.end()
-            return _failed("the request was ended")
+            return _failure("the request was ended")
         return int(status), body
 
     async def _exchange(self, request: Mapping[str, Any]) -> bytes:
@@ -91,8 +91,8 @@ class WorkerPool:
 
     def __init__(self, room: str, folder: str | None = None) -> None:
         self._quick, self._replaying, self._thorough = (Worker(room, folder) for _ in range(3))
-        replays = dict.fromkeys(("replay", "rewatch", "moment"), self._replaying)
-        self._workers = {**replays, "question": self._thorough}
+        replays = dict.fromkeys(("replay", "redraw_replay", "cursor"), self._replaying)
+        self._workers = {**replays, "find_trace": self._thorough}
         self._newest: dict[tuple[str, str], int] = {}
 
     async def ask(
@@ -106,15 +106,15 @@ class WorkerPool:
                 self._newest.clear()
             self._newest[key] = max(number, self._newest.get(key, number))
 
-        def still_wanted() -> bool:
+        def is_newest() -> bool:
             return not isinstance(number, int) or self._newest.get(key, number) <= number
 
         worker = self._workers.get(kind, self._quick)
         request = {"kind": kind, "message": message, "file": file}
-        return await worker.ask(request, SECONDS.get(kind, SECONDS["evaluate"]), still_wanted)
+        return await worker.ask(request, SECONDS.get(kind, SECONDS["evaluate"]), is_newest)
 
     async def cancel(self) -> None:
-        """End the question that is being answered."""
+        """Stop the search for a trace."""
         await self._thorough.end()
 
     async def close(self) -> None:
@@ -123,7 +123,7 @@ class WorkerPool:
             await worker.end()
 
 
-def _failed(sentence: str) -> tuple[int, bytes]:
+def _failure(sentence: str) -> tuple[int, bytes]:
     return 200, json.dumps({"error": {"message": sentence, "start": None, "end": None}}).encode()
 
 

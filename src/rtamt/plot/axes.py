@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.extras import library
 from rtamt.lazy_numpy import np
 from rtamt.plot import style
-from rtamt.plot.texts import shortened
+from rtamt.plot.texts import shorten
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
@@ -31,10 +31,10 @@ def names_of(lines: Sequence[Line]) -> Mapping[float, str]:
     return lines[0].names if lines and all(line.names == lines[0].names for line in lines) else {}
 
 
-def _apart(values: Sequence[float], distance: float) -> list[float]:
+def _thin_out(values: Sequence[float], distance: float) -> list[float]:
     """Return those of increasing values that are far enough from the one before.
 
-    >>> _apart([0, 1, 2, 9], 2)
+    >>> _thin_out([0, 1, 2, 9], 2)
     [0, 2, 9]
     """
     found: list[float] = []
@@ -58,12 +58,12 @@ class Edges:
         limits = [low - (4 if infinite[0] else 1) * pad, high + (4 if infinite[1] else 1) * pad]
         names = names_of(lines)
         if names:
-            ticks = _apart(merged([finite]).tolist(), (high - low) / _NAMES)
+            ticks = _thin_out(merged([finite]).tolist(), (high - low) / _NAMES)
         else:
             ticks = [
                 t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high
             ]
-        labels = [shortened(names.get(t, style.number(t)), _LONGEST) for t in ticks]
+        labels = [shorten(names.get(t, style.number(t)), _LONGEST) for t in ticks]
         for is_above, there in enumerate(infinite):
             if there:
                 ticks.append(self._ends[is_above])

@@ -10,7 +10,7 @@ from rtamt.lazy_numpy import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges, matplotlib
 from rtamt.plot.lines import Line
-from rtamt.plot.texts import in_lines, names_height, room, shortened, wrapped
+from rtamt.plot.texts import in_lines, label_width, names_height, shorten, wrap_formula
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class _Drawing:
         self._scene = scene
         self._figure = figure
         self._chosen = scene.chosen(rows)
-        self._title = wrapped(scene.explanation.formula)
+        self._title = wrap_formula(scene.explanation.formula)
         self._marks: dict[str, Any] = {}
         margin = 0.015 * (window[1] - window[0]) or 1.0
         self._window = window
@@ -150,10 +150,10 @@ class _Drawing:
     # ---- signals -----------------------------------------------------------------------------------
 
     def _panel(self, panel: Panel, axis: Any) -> None:
-        lines = [self._seen(line).decimated(_COLUMNS) for line in panel.lines]
+        lines = [self._in_view(line).decimated(_COLUMNS) for line in panel.lines]
         finite = [line.values[np.isfinite(line.values)] for line in lines]
         edges = Edges(axis, np.concatenate([*finite, panel.thresholds]), lines)
-        self._because(axis, panel.because)
+        self._draw_causes(axis, panel.because)
         for limit in panel.thresholds:
             if isfinite(limit):
                 axis.axhline(limit, color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
@@ -171,7 +171,7 @@ class _Drawing:
         low, high = axis.get_ylim()
         names = [in_lines(name) for _, name, _ in labels]
         tall = axis.figure.get_size_inches()[1] * axis.get_position().height
-        space = room(names) / tall * (high - low)
+        space = label_width(names) / tall * (high - low)
         y = low - space
         places = []
         for (value, _, color), name in sorted(zip(labels, names, strict=True)):
@@ -203,11 +203,11 @@ class _Drawing:
 
     def _row(self, number: int, axis: Any) -> None:
         node = self._scene.nodes[number]
-        line = self._seen(node.line).decimated(_COLUMNS)
+        line = self._in_view(node.line).decimated(_COLUMNS)
         finite = line.values[np.isfinite(line.values)]
         edges = Edges(axis, np.append(finite, 0.0), [line])
         self._fails(axis, node)
-        self._because(axis, node.because)
+        self._draw_causes(axis, node.because)
         axis.axhline(0.0, color=style.QUIET, linewidth=0.9)
         values = edges.shown(line.values)
         step = "post" if self._scene.dense else None
@@ -222,7 +222,7 @@ class _Drawing:
         self._trace(axis, line, edges, style.INK)
         title = f"{node.name} = {node.text}" if node.name else node.text
         axis.set_title(
-            shortened(title, 92),
+            shorten(title, 92),
             loc="left",
             fontsize=8.5,
             family="monospace",
@@ -236,7 +236,7 @@ class _Drawing:
         at = self._scene.shown_at(number)
         value, fails = node.line.at(at), node.fails_at(at)
         when = f"at {self._scene.x_axis.text(at)}"
-        self._beside(
+        self._annotate(
             axis,
             f"{style.SIGNS[not fails]} {style.number(value)}",
             when,
@@ -250,7 +250,7 @@ class _Drawing:
             position = self._scene.critical[1]
             self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
 
-    def _beside(self, axis: Any, text: str, moment: str, color: str) -> None:
+    def _annotate(self, axis: Any, text: str, moment: str, color: str) -> None:
         """Write what holds, and when, beside a row."""
         axis.annotate(
             text,
@@ -282,7 +282,7 @@ class _Drawing:
     def _bounds(self, band: Band, axis: Any) -> None:
         """Draw what was known of the robustness at the start after each sample, and what it was in the end."""
         both = [
-            self._seen(Line(end, band.positions, values)).decimated(_COLUMNS)
+            self._in_view(Line(end, band.positions, values)).decimated(_COLUMNS)
             for end, values in (("lower", band.lower), ("upper", band.upper))
         ]
         every = np.concatenate([line.values for line in both])
@@ -312,11 +312,11 @@ class _Drawing:
         if band.decided is not None and self._sees(band.decided):
             axis.axvline(self._place(band.decided), color=kind, linewidth=1.2)
         when = "at the end" if band.decided is None else f"at {self._scene.x_axis.text(band.decided)}"
-        self._beside(axis, "decided", when, kind)
+        self._annotate(axis, "decided", when, kind)
 
     # ---- marks -------------------------------------------------------------------------------------
 
-    def _because(self, axis: Any, stretches: Sequence[tuple[float, float]]) -> None:
+    def _draw_causes(self, axis: Any, stretches: Sequence[tuple[float, float]]) -> None:
         for start, end in self._visible(stretches):
             patch = axis.axvspan(
                 self._place(start),
@@ -378,7 +378,7 @@ class _Drawing:
         axis.plot(self._places(line.positions), values, color=color, linewidth=width, **style_of)
         return values
 
-    def _seen(self, line: Line) -> Line:
+    def _in_view(self, line: Line) -> Line:
         return line.between(*self._window, dense=self._scene.dense)
 
     def _sees(self, position: float) -> bool:

@@ -222,12 +222,12 @@ class _Painter:
             ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._x_axis.end),
             numbers,
             len(numbers) < len(operands),
-            self._because([s for s in self._explanation.implicant if s.formula == formula]),
+            self._cause_intervals([s for s in self._explanation.implicant if s.formula == formula]),
         )
 
     def _panels(self, formulas: Sequence[Formula]) -> tuple[Panel, ...]:
         trace = self._result.trace
-        lines = {name: self._recorded(name) for name in trace.columns}
+        lines = {name: self._recorded_line(name) for name in trace.columns}
         found = []
         for group in groups(lines, filter(is_predicate, formulas), trace.units):
             members = set(group.names)
@@ -238,17 +238,17 @@ class _Painter:
                 elif members & set(variables(stretch.formula)):
                     stretches.append(stretch)
             drawn = tuple(lines[name] for name in group.names)
-            found.append(Panel(drawn, group.thresholds, self._because(stretches)))
+            found.append(Panel(drawn, group.thresholds, self._cause_intervals(stretches)))
         return tuple(found)
 
-    def _recorded(self, name: str) -> Line:
+    def _recorded_line(self, name: str) -> Line:
         unit, names = self._result.trace.units.get(name, ""), value_names(self._spec.types.get(name))
         return Line(name, *self._x_axis.recorded(name), unit, names)
 
     def _line(self, name: str, signal: Signal) -> Line:
         return Line(name, self._x_axis.positions(signal.times), signal.values)
 
-    def _because(self, stretches: Sequence[Stretch | Reading]) -> tuple[Range, ...]:
+    def _cause_intervals(self, stretches: Sequence[Stretch | Reading]) -> tuple[Range, ...]:
         """Return intervals of the implicant, or of what it reads, as they are drawn, within the recording."""
         half = float(self._result.trace.domain.period or 0) / 2  # around a sample
         x_axis = self._x_axis

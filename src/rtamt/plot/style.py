@@ -30,7 +30,7 @@ def number(value: float) -> str:
     return f"{value + 0.0:.4g}".replace("-", "−")
 
 
-def styled(axes: Any) -> Any:
+def apply_style(axes: Any) -> Any:
     """Apply the common style of all plots to matplotlib's axes, and return them."""
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)

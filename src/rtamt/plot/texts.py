@@ -29,10 +29,10 @@ def in_lines(name: str) -> str:
     breaks = [i + 1 for i, character in enumerate(name[:-1]) if character in "._/ "] or [middle]
     dots = [i for i in breaks if name[i - 1] == "."]
     at = min(dots or breaks, key=lambda i: abs(i - middle))
-    return f"{shortened(name[:at], _SMALL)}\n{shortened(name[at:], _SMALL)}"
+    return f"{shorten(name[:at], _SMALL)}\n{shorten(name[at:], _SMALL)}"
 
 
-def room(names: Sequence[str]) -> float:
+def label_width(names: Sequence[str]) -> float:
     """Return the inches from one name beside a panel to the next."""
     return 0.26 if any("\n" in name for name in names) else 0.17
 
@@ -40,15 +40,15 @@ def room(names: Sequence[str]) -> float:
 def names_height(panel: Panel) -> float:
     """Return the inches that the names of a panel's signals need."""
     names = [in_lines(line.label) for line in panel.lines]
-    return room(names) * (len(names) + 0.5)
+    return label_width(names) * (len(names) + 0.5)
 
 
-def wrapped(text: str) -> list[str]:
+def wrap_formula(text: str) -> list[str]:
     """Return the lines of a formula, at most four."""
     lines = textwrap.wrap(text, _TEXT)
-    return lines if len(lines) <= 4 else [*lines[:3], shortened(lines[3], _TEXT - 2) + " …"]
+    return lines if len(lines) <= 4 else [*lines[:3], shorten(lines[3], _TEXT - 2) + " …"]
 
 
-def shortened(text: str, most: int) -> str:
+def shorten(text: str, most: int) -> str:
     """Return a text of at most so many characters."""
     return text if len(text) <= most else text[: most - 1] + "…"

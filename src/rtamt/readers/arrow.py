@@ -35,7 +35,7 @@ def open_parquet(path: str) -> Source:
     schema = _flat(file.schema_arrow, arrow)
     texts = _texts(schema, arrow)
     first = next(file.iter_batches(_SAMPLE, columns=texts), None) if texts else None
-    fields = _fields(schema, arrow, _dated(first, texts, arrow))
+    fields = _fields(schema, arrow, _date_columns(first, texts, arrow))
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         return _raws(_flattened(file.read(columns=_columns(wanted)), arrow), wanted)
@@ -62,7 +62,7 @@ def open_arrow(path: str) -> Source:
     schema = _flat(reader.schema, arrow)
     first = next(batches, None)
     batches = chain(() if first is None else (first,), batches)
-    fields = _fields(schema, arrow, _dated(first, _texts(schema, arrow), arrow))
+    fields = _fields(schema, arrow, _date_columns(first, _texts(schema, arrow), arrow))
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         yield from _of_batches(batches, wanted, arrow)
@@ -137,7 +137,7 @@ def _texts(schema: Any, arrow: Any) -> list[str]:
     return [name for name in texts if schema.names.count(name) == 1]
 
 
-def _dated(first: Any, texts: Sequence[str], arrow: Any) -> set[str]:
+def _date_columns(first: Any, texts: Sequence[str], arrow: Any) -> set[str]:
     """Return which columns of texts hold dates, from the first text that is not missing."""
     if first is None or not texts:
         return set()

@@ -149,7 +149,7 @@ def select(source: Source, choice: Choice) -> list[Selection]:
             _Columns(source, everything).find(choice.time)  # raises
     of_table: dict[int, list[tuple[str, Field]]] = defaultdict(list)
     skipped = set(choice.skip_nan)
-    for name, table, field in _wanted(source, choice):
+    for name, table, field in _wanted_signals(source, choice):
         of_table[id(table)].append(
             (name, lazy_dataclasses.replace(field, skip_nan=name in skipped, type=choice.types.get(name)))
         )
@@ -164,7 +164,7 @@ def select(source: Source, choice: Choice) -> list[Selection]:
     return found
 
 
-def _wanted(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
+def _wanted_signals(source: Source, choice: Choice) -> list[tuple[str, Table, Field]]:
     everything = [(table, field) for table in source.tables for field in table.fields]
     columns = _Columns(source, everything)
     if choice.columns is None:

@@ -91,7 +91,7 @@ class Cells:
         for text, line in given:
             code = enumeration.code(text)
             if code is None and not is_number(text):
-                problem = f"'{self._name}' is {shown(text)}, which is {enumeration.stranger(text)}"
+                problem = f"'{self._name}' is {shown(text)}, which is {enumeration.unknown_member(text)}"
                 raise self._header.error(line, problem, self._name)
             values.append(self._number(text, line) if code is None else float(code))
         self._whole = False

@@ -65,7 +65,7 @@ def open_csv(path: str) -> Source:
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
         parts = list(chunks(wanted))
-        return [_joined([part[i] for part in parts]) for i in range(len(wanted))]
+        return [_join([part[i] for part in parts]) for i in range(len(wanted))]
 
     return Source(path, (Table(tuple(fields), load, chunks, fresh=True),))
 
@@ -122,7 +122,7 @@ def _blocks(
         yield [column.take() for column in cells]
 
 
-def _joined(parts: Sequence[Raw]) -> Raw:
+def _join(parts: Sequence[Raw]) -> Raw:
     if any(map(is_masked, parts)):
         joined: Raw = np.ma.concatenate(parts)  # type: ignore[no-untyped-call] # of NumPy
         return joined

@@ -35,7 +35,7 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         for page in book.worksheets:
             page.reset_dimensions()  # what the file claims them to be, not what they are
         name = _choose(path, found, sheet)
-        rows = _filled(found[name], path)
+        rows = _filled_rows(found[name], path)
         header = next(rows, None)
         if header is None:
             raise TraceError(f"{path} is empty: it needs a row of column names, then a row for each sample")
@@ -64,7 +64,7 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
         if sheet not in found:
             raise TraceError(f"{path} has no sheet '{sheet}'{choices(sheet, found, 'sheets')}")
         return sheet
-    full = [name for name, page in found.items() if next(_filled(page, path), None) is not None]
+    full = [name for name, page in found.items() if next(_filled_rows(page, path), None) is not None]
     if len(full) > 1:
         raise TraceError(
             f"{path} has several sheets: {', '.join(full)}; choose one with sheet=, or on the command line --sheet"
@@ -74,7 +74,7 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
     return full[0] if full else next(iter(found))
 
 
-def _filled(page: Any, path: str) -> Iterator[Sequence[Any]]:
+def _filled_rows(page: Any, path: str) -> Iterator[Sequence[Any]]:
     """Yield the rows that have a value in them, all as long as the first one."""
     width, cells = None, 0
     for number, whole in enumerate(page.iter_rows(values_only=True), 1):

@@ -30,7 +30,7 @@ def source_of(data: Any) -> Source | None:
             return opener(data)
     if isinstance(data, Mapping):
         return _dict(data)
-    return _structured(data) if isinstance(data, np.ndarray) else None
+    return _read_structured(data) if isinstance(data, np.ndarray) else None
 
 
 def field_of(column: str, kind: str = "") -> Field:
@@ -118,7 +118,7 @@ def _is_dense(value: Any) -> bool:
     return isinstance(value, (list, np.ndarray)) and np.ndim(value) == 2 and np.shape(value)[1:] == (2,)
 
 
-def _structured(data: np.ndarray[Any, Any]) -> Source:
+def _read_structured(data: np.ndarray[Any, Any]) -> Source:
     if data.dtype.names is None:
         raise TraceError(
             f"an array of {data.ndim} dimensions does not say what is in it: give a dict from name to values, "

@@ -150,14 +150,14 @@ def _whole_records(chunk: bytes) -> list[tuple[int, bytes]]:
     """Return the whole records of a chunk that was cut off."""
     try:
         compression, _, _, data, _ = _contents(chunk)
-        records = _unpacked(data, compression)
+        records = _decompress(data, compression)
     except Exception:  # noqa: BLE001 - each decompressor has errors of its own
         return []
     found = _records(BytesIO(records), len(records))
     return [(kind, content) for kind, content, complete in found if complete and kind != _CHUNK]
 
 
-def _unpacked(data: bytes, compression: str) -> bytes:
+def _decompress(data: bytes, compression: str) -> bytes:
     """Return as much of compressed data as can be decoded without its end."""
     if not compression:
         return data

@@ -48,7 +48,7 @@ def open_mdf(path: str) -> Source:
     enumeration, whose members are found by these texts.
     """
     asammdf = library("asammdf", "MDF")
-    with _complaints() as complaints:
+    with _collect_warnings() as complaints:
         try:
             file = asammdf.MDF(path)
         except Exception as error:
@@ -97,7 +97,7 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
 
 
 @contextmanager
-def _complaints() -> Iterator[list[str]]:
+def _collect_warnings() -> Iterator[list[str]]:
     """Collect what asammdf would print to stderr of a damaged file: it leaves out the rest of it, and goes on."""
     complaints: list[str] = []
 

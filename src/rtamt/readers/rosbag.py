@@ -175,7 +175,7 @@ class _Rows:
 
     def take(self, recorded: int, message: Any) -> None:
         """Take a message; of several with one stamp the first."""
-        stamp = _stamp(message) or recorded
+        stamp = _header_time(message) or recorded
         row = [_at(message, path) for path in self._paths]
         if self._last is not None and stamp <= self._last[0]:
             if stamp == self._last[0]:  # a signal has one value at an instant: the first
@@ -204,7 +204,7 @@ class _Rows:
     def columns(self) -> list[Raw]:
         """Return the messages since the last call."""
         table = self._topic.table
-        table.losses[:] = [] if not self._others else [_repeated(self._topic.name, self._others)]
+        table.losses[:] = [] if not self._others else [_repeated_note(self._topic.name, self._others)]
         assert table.time_field is not None
         rows = [list(row) for row in self._rows] if self._recodings else self._rows
         for place, recoding in self._recodings.items():
@@ -226,7 +226,7 @@ def _together(reader: Any, wanted: Sequence[tuple[_Topic, Sequence[Field]]]) -> 
         yield [each.columns() for each in rows.values()]
 
 
-def _repeated(topic: str, count: int) -> str:
+def _repeated_note(topic: str, count: int) -> str:
     some = "1 message" if count == 1 else f"{count} messages"
     it, its = ("it is", "has") if count == 1 else ("they are", "have")
     return (
@@ -305,7 +305,7 @@ def _at(message: Any, path: Steps) -> Any:
     return message
 
 
-def _stamp(message: Any) -> int:
+def _header_time(message: Any) -> int:
     """Return the time in a message's header in nanoseconds, 0 where there is none."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     return 0 if stamp is None else int(stamp.sec) * 10**9 + int(stamp.nanosec)

@@ -139,7 +139,7 @@ def opening(path: str, what: str, remedy: str = "copy or export it again") -> It
     except Exception as error:
         if isinstance(error, OSError) and error.errno not in _WRONG_NUMBERS:
             raise TraceError(f"cannot read '{path}': {error.strerror or error}") from None
-        if isinstance(error, _BUGS) and raised_by_us(error):
+        if isinstance(error, _BUGS) and is_our_error(error):
             raise
         raise TraceError(
             f"'{path}' cannot be read as {what}: {reason(error)}; "
@@ -163,12 +163,12 @@ def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -
 
     return replace(
         source,
-        tables=tuple(_guarded(table, guard) for table in source.tables),
+        tables=tuple(_guard(table, guard) for table in source.tables),
         in_one_pass=None if in_one_pass is None else side_by_side,
     )
 
 
-def _guarded(table: Table, guard: Callable[[], AbstractContextManager[None]]) -> Table:
+def _guard(table: Table, guard: Callable[[], AbstractContextManager[None]]) -> Table:
     chunked = table.chunks
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
@@ -183,7 +183,7 @@ def _guarded(table: Table, guard: Callable[[], AbstractContextManager[None]]) ->
     return replace(table, load=load, chunks=None if chunked is None else chunks)
 
 
-def raised_by_us(error: BaseException) -> bool:
+def is_our_error(error: BaseException) -> bool:
     """Return whether an exception was raised by code of this package, and not in a library that it called."""
     name = ""
     for frame, _ in walk_tb(error.__traceback__):

@@ -79,13 +79,13 @@ class TimestampColumn:
         why = "by its name" if is_stamps(field.name) else "the one column of dates"
         self.notes = [f"time is '{field.column}', {why}"] if guessed else []
         #: Of numbers; None where neither the caller nor the column names one.
-        self._unit = self._named_unit(said)
+        self._unit = self._find_unit(said)
         #: Whether numbers become timedelta64 of nanoseconds, and not float64 seconds; None before the first.
         self._exact: bool | None = None
         #: Reads objects that are dates, once the first of them was one.
         self._dates: Dates | None = None
 
-    def _named_unit(self, said: str | None) -> str | None:
+    def _find_unit(self, said: str | None) -> str | None:
         text = said if said is not None else self.field.unit
         if not text:
             return unit_of(self.field.name)

@@ -40,8 +40,8 @@ def open_ulog(path: str) -> Source:
     said = StringIO()
     with open(path, "rb") as opened, redirect_stdout(said):
         file = _Watched(opened)
-        log = _limited(core, path)(file)
-    losses = _damage(log, said.getvalue(), file)
+        log = _make_reader(core, path)(file)
+    losses = _damage_note(log, said.getvalue(), file)
     topics = sorted(log.data_list, key=lambda topic: (topic.name, topic.multi_id))
     if losses and not topics:
         raise TraceError(f"'{path}' cannot be read as PX4 ULog: {losses[0]}, and no sample comes before that")
@@ -53,7 +53,7 @@ def open_ulog(path: str) -> Source:
     return Source(path, tuple(map(_table, topics)), losses=(*_dropouts(log), *losses))
 
 
-def _limited(core: Any, path: str) -> Any:
+def _make_reader(core: Any, path: str) -> Any:
     """Return pyulog's reader, which does not spell out formats of nested arrays without end."""
     left = _MOST_FIELDS
 
@@ -122,7 +122,7 @@ def _dropouts(log: Any) -> tuple[str, ...]:
     return (f"{len(log.dropouts)} dropouts of the logger, {lost:g} s in all: nothing was recorded in them",)
 
 
-def _damage(log: Any, said: str, file: _Watched) -> tuple[str, ...]:
+def _damage_note(log: Any, said: str, file: _Watched) -> tuple[str, ...]:
     until = f"up to {log.last_timestamp / 1e6:.9g} s"
     complaints = said.splitlines() or ["messages were skipped"] * log.file_corruption
     if file.cut and not complaints:

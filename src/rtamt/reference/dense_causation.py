@@ -123,13 +123,13 @@ def _sides(
             good, bad = (_Side(_where(limit, lambda t, _: new.at(t) > 0, new), limit) for limit in limits)
             return good, bad
         was = _limits(bounds(node, _unseen(now) if before is None else before, tick))
-        good, bad = (_Side(_grown(limit, old), limit) for limit, old in zip(limits, was, strict=True))
+        good, bad = (_Side(_increase(limit, old), limit) for limit, old in zip(limits, was, strict=True))
         return good, bad
     if isinstance(node.op.kernel, Pointwise) and node.op.kernel.opcode == "neg":
         return operands[0][1], operands[0][0]
     window = _window(node, tick)
     good, bad = (
-        _Side(_caused(node, side, [each[side] for each in operands], limits[side], window), limits[side])
+        _Side(_cause_of(node, side, [each[side] for each in operands], limits[side], window), limits[side])
         for side in (0, 1)
     )
     return good, bad
@@ -167,7 +167,7 @@ def _where(limit: Steps, moved: Callable[[int, float], bool], *others: Steps) ->
     return merged(times, [limit.at(t) if moved(t, limit.at(t)) else NOTHING for t in times])
 
 
-def _grown(limit: Steps, before: Steps) -> Steps:
+def _increase(limit: Steps, before: Steps) -> Steps:
     """Return a bound where the event has raised it, and nothing elsewhere."""
     return _where(limit, lambda t, value: value > before.at(t), before)
 
@@ -180,7 +180,7 @@ def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
     return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS
 
 
-def _caused(
+def _cause_of(
     node: Apply, side: int, operands: list[_Side], limit: Steps, window: tuple[int, int | None]
 ) -> Steps:
     """Return how good the event makes an operator on one side, from how good it makes its operands there."""
@@ -197,12 +197,12 @@ def _caused(
         all_together = (kernel.reduce == "min") == (side == 0)
     else:
         assert isinstance(kernel, Pointwise)
-        result = _joined(max, *sats)
+        result = _join(max, *sats)
         all_together = (kernel.opcode == "min") == (side == 0)
-    return _joined(min, result, limit) if all_together else result
+    return _join(min, result, limit) if all_together else result
 
 
-def _joined(operation: Callable[..., float], *operands: Steps) -> Steps:
+def _join(operation: Callable[..., float], *operands: Steps) -> Steps:
     times = sorted({t for steps in operands for t in steps.times})
     return merged(times, [operation(*(steps.at(t) for steps in operands)) for t in times])
 

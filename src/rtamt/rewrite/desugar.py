@@ -100,15 +100,15 @@ def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:
         return node
     if node.op.expansion is None or node.op.kernel is not None:
         return rebuilt(node, args)
-    return _expanded(node.op.expansion(*args, node.interval), {id(arg): arg for arg in args}, node.span)
+    return _expand_node(node.op.expansion(*args, node.interval), {id(arg): arg for arg in args}, node.span)
 
 
-def _expanded(node: Formula, done: dict[int, Formula], span: Span | None) -> Formula:
+def _expand_node(node: Formula, done: dict[int, Formula], span: Span | None) -> Formula:
     """Expand a node of an expansion, which has few; ``done``: what is known, by the identity of nodes."""
     found = done.get(id(node))
     if found is None:
         if isinstance(node, Apply):
-            below = tuple([_expanded(child, done, span) for child in node.args])
+            below = tuple([_expand_node(child, done, span) for child in node.args])
             found = expand(Apply(node.op, below, node.interval, span), below)
         else:
             found = node

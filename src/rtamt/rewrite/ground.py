@@ -45,7 +45,7 @@ def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = F
     def changed(node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply):
             return node
-        interval = _grounded(node, step, continuous=continuous)
+        interval = _ground(node, step, continuous=continuous)
         if interval is node.interval:
             return rebuilt(node, args)
         return Apply(node.op, args, interval, node.span)
@@ -80,7 +80,7 @@ def _implied(op: Operator, *, continuous: bool) -> bool:
     return op.one_tick if continuous else op.bounds is Bounds.DURATION
 
 
-def _grounded(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
+def _ground(node: Apply, step: Fraction, *, continuous: bool) -> Interval | None:
     if node.interval is not None:
         return closed(node.interval, step)
     if not _implied(node.op, continuous=continuous):

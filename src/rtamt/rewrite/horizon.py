@@ -24,13 +24,13 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     Fraction(15, 1)
     """
     formula = spelled_out(formula)
-    parts, found = _counted(formula, period)
+    parts, found = _count_horizons(formula, period)
     return _seconds(found[id(formula)], parts)
 
 
 def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
     """Return the horizon of each sub-formula by its identity; ``formula``: see :func:`spelled_out`."""
-    parts, found = _counted(formula, period)
+    parts, found = _count_horizons(formula, period)
     return {key: _seconds(depth, parts) for key, depth in found.items()}
 
 
@@ -38,7 +38,7 @@ def _seconds(depth: float, parts: int) -> Fraction | None:
     return Fraction(depth, parts) if isinstance(depth, int) else None
 
 
-def _counted(formula: Formula, period: Fraction) -> tuple[int, dict[int, float]]:
+def _count_horizons(formula: Formula, period: Fraction) -> tuple[int, dict[int, float]]:
     """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add.
 
     They are integers, and inf where they are unbounded.

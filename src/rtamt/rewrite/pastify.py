@@ -175,7 +175,7 @@ class _Pastifier:
             if len(node.op.guards) != len(args):
                 raise _no_rule(node, "guards", self.text)
             args = tuple(
-                self._guarded(arg, _guard(node, how), delay, sort)
+                self._guard_operand(arg, _guard(node, how), delay, sort)
                 for arg, how, sort in zip(args, node.op.guards, node.op.operands, strict=True)
             )
         elif delay:
@@ -189,7 +189,7 @@ class _Pastifier:
         instead = {} if typed else harmless(node.op, known)
         meant = self.shifted(STL["true"](), delay)
         return tuple(
-            _chosen(meant, arg, Const(instead[k])) if k in instead else arg for k, arg in enumerate(args)
+            _choose(meant, arg, Const(instead[k])) if k in instead else arg for k, arg in enumerate(args)
         )
 
     def shifted(self, formula: Formula, delay: Fraction) -> Formula:
@@ -215,7 +215,7 @@ class _Pastifier:
             interval = Interval(self.period, self.period, implied=True)
         return node.op.pastified(args, interval, _Delayed(self, delay))
 
-    def _guarded(self, operand: Formula, how: str | None, delay: Fraction, sort: Sort) -> Formula:
+    def _guard_operand(self, operand: Formula, how: str | None, delay: Fraction, sort: Sort) -> Formula:
         if how is None or delay == 0:
             return operand
         meant = self.shifted(STL["true"](), delay)
@@ -225,7 +225,7 @@ class _Pastifier:
         return Apply(STL[how], pair, None, operand.span)
 
 
-def _chosen(condition: Formula, operand: Formula, instead: Formula) -> Formula:
+def _choose(condition: Formula, operand: Formula, instead: Formula) -> Formula:
     """Return the operand of an operation on numbers where a condition is true, else another one."""
     if is_number(operand):
         return Apply(STL["if"], (condition, operand, instead), None, operand.span)

@@ -163,7 +163,7 @@ class Scope(Known):
 
     def _inside(self, binder: Binder, member: str) -> Scope:
         here = None if member in self.bound.values() else self._present(member)
-        present = self.present if here is None else _both(self.present, here)
+        present = self.present if here is None else _conjunction(self.present, here)
         return Scope(self.members, {**self.bound, binder.variable: member}, present)
 
     def _present(self, member: str) -> Formula | None:
@@ -184,23 +184,23 @@ class Scope(Known):
         op = node.op
         if op.tense is Tense.NONE:
             if op.definition is None and op.expansion is not None:
-                return self._expanded(node, args)
-            return rebuilt(node, self._guarded(op, args) if self._needs_guards(op, args) else args)
+                return self._expand(node, args)
+            return rebuilt(node, self._guard(op, args) if self._needs_guards(op, args) else args)
         rules = op.absent or op.guards
         if rules:
             assert len(rules) == len(args)
-            cut = [self._counted(*each, node) for each in zip(args, rules, op.operands, strict=True)]
+            cut = [self._count_absent(*each, node) for each in zip(args, rules, op.operands, strict=True)]
             return Apply(op, tuple(cut), node.interval, node.span)
         if op.pastified is not None:
             return located(op.pastified(args, node.interval, self), node.span)
         if op.expansion is not None:
-            return self._expanded(node, args)
+            return self._expand(node, args)
         raise UsageError(
             f"'{op.spellings[0]}' reads other instants than its own and has no rule for absent members; "
             f"take it out of the quantifier"
         )
 
-    def _expanded(self, node: Apply, args: tuple[Formula, ...]) -> Formula:
+    def _expand(self, node: Apply, args: tuple[Formula, ...]) -> Formula:
         """Return the expansion of an operator over operands that are resolved already."""
         assert node.op.expansion is not None
         places = {id(arg): arg for arg in args}
@@ -216,7 +216,7 @@ class Scope(Known):
 
         return cut(node.op.expansion(*args, node.interval))
 
-    def _counted(self, operand: Formula, rule: str | None, sort: Sort, node: Apply) -> Formula:
+    def _count_absent(self, operand: Formula, rule: str | None, sort: Sort, node: Apply) -> Formula:
         """Return an operand that counts as a rule says where a member is absent."""
         if node.op.share:
             assert node.interval is not None
@@ -229,7 +229,7 @@ class Scope(Known):
         if sort is Sort.NUMBER:
             instead = {"zero": 0.0, "implies": inf, "and": -inf}[rule]
             return Apply(STL["if"], (self.now, operand, Const(instead)), None, operand.span)
-        return _implies(self.present, operand) if rule == "implies" else _both(self.present, operand)
+        return _implies(self.present, operand) if rule == "implies" else _conjunction(self.present, operand)
 
     def _needs_guards(self, op: Operator, args: tuple[Formula, ...]) -> bool:
         """Return whether an operation on numbers may have no value where a member is absent, whose fields are 1."""
@@ -239,7 +239,7 @@ class Scope(Known):
         """Return the members that may be absent."""
         return {member for member in self.bound.values() if member not in self.members.throughout}
 
-    def _guarded(self, op: Operator, args: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    def _guard(self, op: Operator, args: tuple[Formula, ...]) -> tuple[Formula, ...]:
         """Return operands that are 1, 2, 3 where a member is absent: there, every operation has a value."""
         instead = [
             arg.value if isinstance(arg, Const) else float(position) for position, arg in enumerate(args, 1)
@@ -274,7 +274,7 @@ def of_one(node: Apply, present: Formula | None, body: Formula) -> Formula:
     return node.op.expansion(guarded, None)
 
 
-def _both(present: Formula | None, formula: Formula) -> Formula:
+def _conjunction(present: Formula | None, formula: Formula) -> Formula:
     return formula if present is None else Apply(STL["and"], (present, formula), None, formula.span)
 
 

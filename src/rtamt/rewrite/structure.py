@@ -155,26 +155,26 @@ def in_cells(formula: Formula) -> Formula:
         begin, end = bounds_of(node)
         if isinstance(node.op.kernel, Since):
             later = replace(node, args=(args[0], STL["and"](*args)))
-            return later if begin else _stamped(STL["or"](args[1], later), node.span)
+            return later if begin else _set_span(STL["or"](args[1], later), node.span)
         if isinstance(node.op.kernel, Until) and begin:
             rest = replace(node, interval=Interval(Fraction(0), None if end is None else end - begin))
             if node.op.tense is Tense.PAST:
                 assert end is not None
-                return _both("historically", args[0], (end - begin, end), rest, node.span)
+                return _conjunction("historically", args[0], (end - begin, end), rest, node.span)
             moved = STL["eventually"](rest, interval=Interval(begin, begin))
-            return _both("always", args[0], (Fraction(0), begin), moved, node.span)
+            return _conjunction("always", args[0], (Fraction(0), begin), moved, node.span)
         return node
 
     return fold(formula, step)
 
 
-def _both(
+def _conjunction(
     window: str, hold: Formula, bounds: tuple[Fraction, Fraction], rest: Formula, span: Span | None
 ) -> Formula:
-    return _stamped(STL["and"](STL[window](hold, interval=Interval(*bounds)), rest), span)
+    return _set_span(STL["and"](STL[window](hold, interval=Interval(*bounds)), rest), span)
 
 
-def _stamped(node: Apply, span: Span | None) -> Apply:
+def _set_span(node: Apply, span: Span | None) -> Apply:
     return replace(node, span=span)
 
 

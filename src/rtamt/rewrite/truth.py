@@ -46,7 +46,7 @@ def is_predicate(formula: Formula) -> bool:
 
 def replaced(formula: Formula, replace: Callable[[Formula], Formula]) -> Formula:
     """Return the formula with each predicate replaced, other than in conditions and inside other predicates."""
-    return _replaced(formula, [formula], replace)[1]
+    return _replace(formula, [formula], replace)[1]
 
 
 def with_truths(formula: Formula) -> Formula:
@@ -60,7 +60,7 @@ def with_truths(formula: Formula) -> Formula:
     (<formula (if x >= 3 then x else y) > 0>, <operator holds_ge>)
     """
     conditions = _conditions(formula)
-    return _replaced(formula, conditions, truth)[0] if conditions else formula
+    return _replace(formula, conditions, truth)[0] if conditions else formula
 
 
 def is_part_of_a_condition(part: Formula, formulas: Sequence[Formula]) -> bool:
@@ -107,7 +107,7 @@ def _read_from(places: Iterable[Formula]) -> tuple[set[int], set[Formula]]:
     return set(found), set(found.values())
 
 
-def _replaced(
+def _replace(
     formula: Formula, places: Sequence[Formula], replace: Callable[[Formula], Formula]
 ) -> tuple[Formula, Formula]:
     """Return a formula with the predicates of ``places`` replaced: as a number, and as one of the places."""

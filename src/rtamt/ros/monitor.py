@@ -167,11 +167,11 @@ class RosMonitor:
         records = self._look_for_silence(now)
         if now == 0 and not self._timeless:
             self._timeless = True
-            self._say(Level.WARN, _NO_CLOCK)
+            self._log(Level.WARN, _NO_CLOCK)
         try:
             values = {name: read(message) for name, read in self._readers[topic]}
         except StlError as error:
-            self._broken(topic, str(error))
+            self._reject(topic, str(error))
             return records
         if self._skip_nan and any(map(isnan, values.values())):
             return records
@@ -183,7 +183,7 @@ class RosMonitor:
                 self._repeat(topic)
                 return records
             self._begin_anew(f"the timestamps on {topic} went back by {seconds_text(last - stamp)}")
-        self._arrived(topic, now)
+        self._note_arrival(topic, now)
         self._timestamps[topic] = stamp
         self._faults.pop(topic, None)
         self._repeated.discard(topic)
@@ -231,7 +231,7 @@ class RosMonitor:
         if foreign and topic not in self._foreign:
             self._foreign.add(topic)
             apart = f"{seconds_text(abs(stamp - now))} {'behind' if stamp < now else 'ahead of'}"
-            self._say(
+            self._log(
                 Level.WARN,
                 f"the timestamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
             )
@@ -252,7 +252,7 @@ class RosMonitor:
         except StlError as error:
             group.reset()
             if group.fault is None:
-                self._say(Level.ERROR, f"{begins_anew(group)} samples cannot be used: {error}")
+                self._log(Level.ERROR, f"{begins_anew(group)} samples cannot be used: {error}")
             group.fault = str(error)
             return []
         group.fault = None
@@ -281,7 +281,7 @@ class RosMonitor:
             self._silent.discard(topic)
         for group in self._sampled:
             group.leap(now)
-        self._say(
+        self._log(
             Level.WARN, f"the clock went forward by {seconds_text(by)} at once: all monitors begin anew"
         )
 
@@ -292,19 +292,19 @@ class RosMonitor:
         self._heard.clear()
         self._timestamps.clear()
         self._silent.clear()
-        self._say(Level.WARN, f"{why}: all monitors begin anew")
+        self._log(Level.WARN, f"{why}: all monitors begin anew")
 
-    def _broken(self, topic: str, problem: str) -> None:
+    def _reject(self, topic: str, problem: str) -> None:
         """Handle a message without a valid number: the previous value is no longer current."""
         if topic not in self._faults:
-            self._say(Level.ERROR, f"a message on {topic} cannot be used: {problem}")
+            self._log(Level.ERROR, f"a message on {topic} cannot be used: {problem}")
         self._faults[topic] = problem
         self._forget(topic)
 
     def _repeat(self, topic: str) -> None:
         """Handle a repeated timestamp: a signal has one value at an instant, the first."""
         if topic not in self._repeated:
-            self._say(Level.WARN, f"messages on {topic} with the stamp of the one before them are left out")
+            self._log(Level.WARN, f"messages on {topic} with the stamp of the one before them are left out")
         self._repeated.add(topic)
 
     def _forget(self, topic: str) -> None:
@@ -330,7 +330,7 @@ class RosMonitor:
                 )
         for topic in stale:
             self._silent.add(topic)
-            self._say(
+            self._log(
                 Level.WARN, f"{topic} is stale: no message for {seconds_text(now - self._heard[topic])}"
             )
             for group in self.groups:
@@ -338,20 +338,20 @@ class RosMonitor:
                     group.drop(topic)
         return records
 
-    def _arrived(self, topic: str, now: int) -> None:
+    def _note_arrival(self, topic: str, now: int) -> None:
         if topic in self._silent:
             self._silent.discard(topic)
-            self._say(Level.OK, f"{topic} has messages again: the monitors that read it begin anew")
+            self._log(Level.OK, f"{topic} has messages again: the monitors that read it begin anew")
         self._heard[topic] = now
 
-    def _say(self, level: Level, message: str) -> None:
+    def _log(self, level: Level, message: str) -> None:
         self._notices.append(Notice(level, message))
 
     # ---- notices and conditions ---------------------------------------------------------------------
 
     def note(self, message: str) -> None:
         """Add a warning to the notices."""
-        self._say(Level.WARN, message)
+        self._log(Level.WARN, message)
 
     def notices(self) -> list[Notice]:
         """Return the events since the last call; each is reported once."""

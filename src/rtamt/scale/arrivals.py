@@ -28,7 +28,7 @@ class Arrivals:
     >>> arrivals = Arrivals(60.0)
     >>> [arrivals.note("car-1", 0.0), arrivals.note("car-2", 61.0), arrivals.note("car-1", 61.0)]
     [False, False, True]
-    >>> arrivals.note("car-3", 122.0), arrivals.expired()
+    >>> arrivals.note("car-3", 122.0), arrivals.pop_expired()
     (False, ['car-2', 'car-1'])
     """
 
@@ -48,7 +48,7 @@ class Arrivals:
         self._last[key] = self._clock
         return last is not None and self._clock - last > self._lifetime
 
-    def expired(self) -> list[str]:
+    def pop_expired(self) -> list[str]:
         """Return the keys that have expired, and forget them."""
         found = []
         for key, last in self._last.items():
@@ -66,13 +66,13 @@ class Arrivals:
 
     # ---- state -----------------------------------------------------------------------------------
 
-    def packed(self, state: bytes) -> bytes:
+    def pack_state(self, state: bytes) -> bytes:
         """Return these times and the state of a fleet as bytes."""
         out = bytearray(_HEAD.pack(_MAGIC, _VERSION, 0, 0))
         _FIELDS.put(out, (self._clock, self._last, state))
         return bytes(out + struct.pack("<I", zlib.crc32(out)))
 
-    def unpacked(self, state: bytes) -> bytes:
+    def unpack_state(self, state: bytes) -> bytes:
         """Go on with the times in a state, if it has any; return the state of the fleet."""
         if not state.startswith(_MAGIC):
             return state

@@ -35,7 +35,7 @@ class AvroDecoder:
             raise UsageError(f"the schema '{path}' is not JSON") from None
         try:
             parsed = self._fastavro.parse_schema(given)
-            problem = _unbounded(given)
+            problem = _find_unbounded(given)
         except (self._fastavro.schema.SchemaParseException, ValueError, KeyError, TypeError) as error:
             raise UsageError(f"'{path}' is not a schema of Avro: {error}") from None
         if not isinstance(given, dict) or given.get("type") != "record":
@@ -72,29 +72,29 @@ def _sentence(error: Exception) -> str:
     return f"{type(error).__name__}{': ' + text[:100] if text else ''}"
 
 
-def _unbounded(schema: Any, named: dict[str, Any] | None = None, open_: tuple[str, ...] = ()) -> str:
+def _find_unbounded(schema: Any, named: dict[str, Any] | None = None, open_: tuple[str, ...] = ()) -> str:
     """Return what in a schema lets a short message decode to values of any size; empty if there is nothing."""
     named = {} if named is None else named
     if isinstance(schema, list):
-        return next(filter(None, (_unbounded(each, named, open_) for each in schema)), "")
+        return next(filter(None, (_find_unbounded(each, named, open_) for each in schema)), "")
     if isinstance(schema, str):
         return f"the type '{schema}' inside itself" if schema.rpartition(".")[2] in open_ else ""
     kind = schema.get("type")
     if isinstance(kind, (dict, list)):
-        return _unbounded(kind, named, open_)
+        return _find_unbounded(kind, named, open_)
     name = str(schema.get("name", "")).rpartition(".")[2]
     if name:
         named[name] = schema
     if kind == "array":
         if not _least(schema["items"], named):
             return "an array of items without bytes"
-        return _unbounded(schema["items"], named, open_)
+        return _find_unbounded(schema["items"], named, open_)
     if kind == "map":
-        return _unbounded(schema["values"], named, open_)
+        return _find_unbounded(schema["values"], named, open_)
     if kind == "record":
         fields = [field["type"] for field in schema["fields"]]
-        return next(filter(None, (_unbounded(each, named, (*open_, name)) for each in fields)), "")
-    return "" if kind in _PRIMITIVE | {"enum", "fixed"} else _unbounded(str(kind), named, open_)
+        return next(filter(None, (_find_unbounded(each, named, (*open_, name)) for each in fields)), "")
+    return "" if kind in _PRIMITIVE | {"enum", "fixed"} else _find_unbounded(str(kind), named, open_)
 
 
 def _least(schema: Any, named: Mapping[str, Any], depth: int = 0) -> int:

@@ -28,7 +28,7 @@ class Progress(NamedTuple):
     total: int
 
 
-def checked(
+def check_recordings(
     job: Job,
     recordings: Sequence[Recording],
     *,
@@ -50,7 +50,7 @@ def checked(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     for i in range(3):
     ...         _ = pathlib.Path(folder, f"{i}.csv").write_text(f"t,speed\n0,{5 + i}\n")
-    ...     found = [table.rows[0].robustness for table in checked(job, recordings_of([folder]), jobs=1)]
+    ...     found = [table.rows[0].robustness for table in check_recordings(job, recordings_of([folder]), jobs=1)]
     >>> found
     [25.0, 24.0, 23.0]
     """

@@ -88,7 +88,7 @@ class Worker:
         try:
             return (
                 self._kafka.Consumer(self._settings.consumer() | own),
-                self._kafka.Producer(self._settings.producer() | own | {"on_delivery": self._undelivered}),
+                self._kafka.Producer(self._settings.producer() | own | {"on_delivery": self._delivery_error}),
             )
         except (self._kafka.KafkaException, ValueError, TypeError) as error:
             raise UsageError(f"the settings of the client are wrong: {_text(error)}") from None
@@ -241,7 +241,7 @@ class Worker:
         try:
             return self._reader.read(message.value(), message.key())
         except TraceError as error:
-            self._bury(message, str(error), "rejected")
+            self._send_to_dead_letters(message, str(error), "rejected")
             return None
 
     def _send(self, results: Iterable[Result]) -> None:
@@ -251,9 +251,9 @@ class Worker:
             self.counts["violations"] += result.satisfied is False
 
     def _divert(self, message: Any, rejected: Rejected) -> None:
-        self._bury(message, rejected.error, "late" if rejected.late else "rejected")
+        self._send_to_dead_letters(message, rejected.error, "late" if rejected.late else "rejected")
 
-    def _bury(self, message: Any, error: str, reason: str) -> None:
+    def _send_to_dead_letters(self, message: Any, error: str, reason: str) -> None:
         """Send a message to the dead letters, as it came, with the error and its origin."""
         self._note_wrong(reason)
         origin = {"rtamt.partition": str(message.partition()), "rtamt.offset": str(message.offset())}
@@ -306,7 +306,7 @@ class Worker:
             return False
         return True
 
-    def _undelivered(self, error: Any, message: Any) -> None:
+    def _delivery_error(self, error: Any, message: Any) -> None:
         if error is None:
             return
         is_letter = message.topic() == self._settings.dead_letters and message.value() is not None

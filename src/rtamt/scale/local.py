@@ -49,7 +49,7 @@ def tables(
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
         for recording in running.values():  # one of them has ended its process
-            yield recording, _alone(job, recording)
+            yield recording, _check_alone(job, recording)
 
 
 def _run(
@@ -68,7 +68,7 @@ def _run(
             yield running.pop(future), table
 
 
-def _alone(job: Job, recording: Recording) -> VerdictTable:
+def _check_alone(job: Job, recording: Recording) -> VerdictTable:
     with _pool(job, 1) as pool:
         try:
             return pool.submit(_table, recording.path).result()

@@ -82,7 +82,7 @@ def decode_json(value: bytes) -> Mapping[str, Any]:
         raise TraceError(f"the message is not JSON to read: {str(error).partition(';')[0]}") from None
     if not isinstance(data, dict):
         raise TraceError(
-            f'the message is {_shown(data)}, expected a JSON object, such as {{"time": 0, "x": 1}}'
+            f'the message is {_format_value(data)}, expected a JSON object, such as {{"time": 0, "x": 1}}'
         )
     return data
 
@@ -178,7 +178,7 @@ class MessageReader:
             if found is _MISSING:
                 raise TraceError(f"the message has no '{self._key}', the field of the key")
             if isinstance(found, bool) or not isinstance(found, (str, int)):
-                raise TraceError(f"{what} is {_shown(found)}, expected text or an integer")
+                raise TraceError(f"{what} is {_format_value(found)}, expected text or an integer")
             key = found if isinstance(found, str) else _digits(found, what)
         problem = key_problem(key)
         if problem:
@@ -201,7 +201,7 @@ class MessageReader:
                 if not is_implausible(float(seconds)):
                     return float(seconds)
             raise TraceError(
-                f"'{name}' is {_shown(stamp)}, which is no time in seconds; is its unit another one?"
+                f"'{name}' is {_format_value(stamp)}, which is no time in seconds; is its unit another one?"
             )
         nanoseconds = None if stamp is None or isinstance(stamp, bool) else _nanoseconds(stamp)
         if nanoseconds is None:
@@ -245,7 +245,7 @@ def _number(data: Mapping[str, Any], name: str, columns: tuple[str, ...], type_:
         code = type_.code(value) if isinstance(type_, Enumeration) else _INFINITIES.get(value)
         if code is not None:
             return float(code)
-    raise TraceError(f"'{columns[0]}' is {_shown(value)}, expected a number", variable=name)
+    raise TraceError(f"'{columns[0]}' is {_format_value(value)}, expected a number", variable=name)
 
 
 def _digits(number: int, what: str) -> str:
@@ -254,7 +254,7 @@ def _digits(number: int, what: str) -> str:
     return str(number)
 
 
-def _shown(value: Any) -> str:
+def _format_value(value: Any) -> str:
     """Return a value as a message shows it: the text of JSON, abbreviated."""
     if isinstance(value, str):
         text = json.dumps(value[:100])

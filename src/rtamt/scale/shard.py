@@ -148,7 +148,7 @@ class Shard:
         if state is None:
             self._fleet: Fleet[Any] = Fleet(spec, capacity, lateness=lateness, **settings)
         else:
-            inner = (self._arrivals or Arrivals(inf)).unpacked(state)
+            inner = (self._arrivals or Arrivals(inf)).unpack_state(state)
             self._fleet = Fleet.restore(spec, inner, capacity=capacity, lateness=lateness, **settings)
         if self._arrivals is not None:
             self._arrivals.begin(self._fleet.keys())
@@ -159,7 +159,7 @@ class Shard:
     def snapshot(self) -> bytes:
         """Return the state of all keys."""
         state = self._fleet.snapshot()
-        return state if self._arrivals is None else self._arrivals.packed(state)
+        return state if self._arrivals is None else self._arrivals.pack_state(state)
 
     def take(self, samples: Sequence[Sample], arrivals: Sequence[float] = ()) -> Taken:
         """Take samples of any keys; those of one key in the order in which they came.
@@ -179,7 +179,7 @@ class Shard:
                     first = place
         self._take(batch, first, len(samples), taken)
         if self._arrivals is not None:
-            self._forget(self._arrivals.expired(), taken)
+            self._forget(self._arrivals.pop_expired(), taken)
         return taken
 
     def _forget(self, expired: Sequence[str], taken: Taken) -> None:

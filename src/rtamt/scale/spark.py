@@ -71,7 +71,7 @@ def check(
     columns = list(VerdictTable([], suite.select).columns)
     if results is None:
         return compute(frame, job).select(columns)
-    wanted = _keyed(frame.select("recording", "etag").distinct(), job)
+    wanted = _shared_columns(frame.select("recording", "etag").distinct(), job)
     known = _known(spark, results)
     if known is not None:
         frame = frame.join(
@@ -79,7 +79,7 @@ def check(
             ["recording", "etag"],
             "left_semi",
         )
-    _keyed(compute(frame, job), job).write.mode("append").parquet(results)
+    _shared_columns(compute(frame, job), job).write.mode("append").parquet(results)
     return _known(spark, results).join(wanted, [*_KEYS], "left_semi").select(columns)
 
 
@@ -138,7 +138,7 @@ def _known(spark: Any, results: str) -> Any:
     return frame
 
 
-def _keyed(frame: Any, job: Job) -> Any:
+def _shared_columns(frame: Any, job: Job) -> Any:
     """Return a data frame with the columns that all recordings of a job share."""
     from pyspark.sql.functions import lit
 
@@ -187,10 +187,10 @@ def _batches(job: Job) -> Callable[[Iterable[Any]], Iterator[Any]]:
 def _of_samples(frame: Any, job: Job) -> Any:
     """Return the rows of recordings whose samples are rows of a data frame, with their etags if these are known."""
     keys = ["recording", *(["etag"] if "etag" in frame.columns else [])]
-    return frame.groupBy(*keys).applyInArrow(_grouped(job), _schema(job, etag=len(keys) > 1))
+    return frame.groupBy(*keys).applyInArrow(_group(job), _schema(job, etag=len(keys) > 1))
 
 
-def _grouped(job: Job) -> Callable[[Any, Any], Any]:
+def _group(job: Job) -> Callable[[Any, Any], Any]:
     def run(key: tuple[Any, ...], samples: Any) -> Any:
         pa = library("pyarrow", "a table in Arrow", "data")
 

@@ -48,7 +48,7 @@ class Runs(AbstractContextManager["Runs"]):
         self._stop = stop
         self._whole = whole
         self._progress = progress
-        self._pickled = _pickled(problem) if workers > 1 else b""
+        self._pickled = _pickle(problem) if workers > 1 else b""
         self._pool: Executor | None = ProcessPoolExecutor(workers) if workers > 1 else None
 
     def __exit__(
@@ -62,7 +62,7 @@ class Runs(AbstractContextManager["Runs"]):
         first = len(self.made)
         points = points[: self._budget - first]
         known = [self._record.recorded(first + k, point) for k, point in enumerate(points)]
-        ahead = iter(self._simulated([(first + k, p) for k, p in enumerate(points) if known[k] is None]))
+        ahead = iter(self._run_jobs([(first + k, p) for k, p in enumerate(points) if known[k] is None]))
         found = []
         for evaluation in known:
             new = next(ahead) if evaluation is None else evaluation
@@ -75,7 +75,7 @@ class Runs(AbstractContextManager["Runs"]):
                 raise Enough
         return found
 
-    def _simulated(self, jobs: Sequence[tuple[int, Mapping[str, float]]]) -> Iterable[Evaluation]:
+    def _run_jobs(self, jobs: Sequence[tuple[int, Mapping[str, float]]]) -> Iterable[Evaluation]:
         if self._pool is None or len(jobs) < 2:
             return (self._problem.run(point, number, whole=self._whole) for number, point in jobs)
         futures = [self._pool.submit(_simulate, self._pickled, *job, self._whole) for job in jobs]
@@ -88,7 +88,7 @@ def _simulate(problem: bytes, number: int, point: Mapping[str, float], whole: bo
     return evaluation
 
 
-def _pickled(problem: Problem) -> bytes:
+def _pickle(problem: Problem) -> bytes:
     try:
         return pickle.dumps(problem)
     except (pickle.PicklingError, AttributeError, TypeError) as error:

@@ -28,7 +28,7 @@ def descent(found: Falsification, axes: Any = None) -> Any:
     axes.set_xlabel("simulation")
     axes.set_ylabel("robustness")
     axes.legend(frameon=False, fontsize=8, labelcolor=style.QUIET)
-    return style.styled(axes)
+    return style.apply_style(axes)
 
 
 def landscape(found: Sensitivity, axes: Any = None) -> Any:
@@ -62,7 +62,7 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
         axes.figure.colorbar(made, ax=axes, label="robustness")
         axes.set_ylabel(names[1])
     axes.set_xlabel(names[0])
-    return style.styled(axes)
+    return style.apply_style(axes)
 
 
 def _colors() -> Any:

@@ -86,7 +86,7 @@ def code_of(member: str, name: str, type_: Enumeration, where: str, index: int) 
     code = type_.code(member)
     if code is None:
         raise TraceError(
-            f"'{name}' is {shown(member)} at {where}, which is {type_.stranger(member)}",
+            f"'{name}' is {shown(member)} at {where}, which is {type_.unknown_member(member)}",
             variable=name,
             index=index,
         )

@@ -312,7 +312,7 @@ class DiscreteTrace(DomainTrace):
 
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
         """See :class:`DomainTrace`."""
-        own = isinstance(times, np.ndarray) and _same(
+        own = isinstance(times, np.ndarray) and _same_memory(
             times, self.timestamps
         )  # of a signal over this recording
         if own and not elapsed:
@@ -371,7 +371,7 @@ def record_discrete(
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))
 
 
-def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+def _same_memory(one: NDArray[Any], other: NDArray[Any]) -> bool:
     """Return whether two arrays are views of the same numbers."""
     return (one.ctypes.data, one.dtype, one.shape, one.strides) == (
         other.ctypes.data,

@@ -120,11 +120,11 @@ def fill_gaps(data: Any, names: Sequence[str], *, own_time_bases: bool) -> tuple
     if own_time_bases:
         filled: dict[str, Any] = {}
         for name, (times, values) in dense_arrays.columns_of(data, names).items():
-            filled[name] = times, _filled(values, name, missing)
+            filled[name] = times, _fill_gaps(values, name, missing)
         return filled, missing
     keys = list(data) if is_mapping(data) else list(data.columns)
     kept = [key for key in keys if key == TIME or key in names or is_mapping(data)]
-    return {key: _filled(data[key], key, missing) if key in names else data[key] for key in kept}, missing
+    return {key: _fill_gaps(data[key], key, missing) if key in names else data[key] for key in kept}, missing
 
 
 def _items(given: Any, what: str, example: str, names: Sequence[str]) -> list[tuple[str, Any]]:
@@ -141,7 +141,7 @@ def _items(given: Any, what: str, example: str, names: Sequence[str]) -> list[tu
     return list(given.items())
 
 
-def _filled(values: Any, name: str, missing: dict[str, Mask]) -> Any:
+def _fill_gaps(values: Any, name: str, missing: dict[str, Mask]) -> Any:
     """Return values with zeros in the gaps, which are put into ``missing``."""
     mask = gaps_of(values)
     if mask is None or not mask.any():

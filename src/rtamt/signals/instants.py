@@ -115,7 +115,7 @@ class Cells:
         i = int(np.searchsorted(self.starts, end, side="left")) - 1
         return i >= 0 and begin < int(self.ends[i])
 
-    def met_by(self, begins: Ints, ends: Ints) -> NDArray[np.bool_]:
+    def intersects(self, begins: Ints, ends: Ints) -> NDArray[np.bool_]:
         """Return, for each of several [begin, end), of which none is empty, whether any cell is in it."""
         last = np.searchsorted(self.starts, ends, side="left") - 1
         return begins < np.append(self.ends, -4 * NEVER)[last]  # of -1, the last: there is none

@@ -181,7 +181,7 @@ def on_one_time_base(
         data = {name: data[name] for name in data.columns}
     made, throughout = dict(data), []
     for each in members:
-        columns = {field: _recorded(data, each, field) for field in each.fields}
+        columns = {field: _field_values(data, each, field) for field in each.fields}
         absent = _union([gaps_of(values) for values in columns.values()])
         if absent is None or not absent.any():
             throughout.append(each.name)
@@ -195,7 +195,7 @@ def on_one_time_base(
     return made, throughout
 
 
-def _recorded(data: Mapping[str, Any], member: Member, field: str) -> Any:
+def _field_values(data: Mapping[str, Any], member: Member, field: str) -> Any:
     """Return the values of a field: a column of its own, or in the objects that the member's column has."""
     column = member.column(field)
     return data[column] if column in data else in_objects(data[member.name], member.name, field)

@@ -156,8 +156,8 @@ class BoundedSignal(Signal):
         lower, upper = float(self.lower[i]), float(self.upper[i])
         if lower != upper:
             raise EvaluationError(
-                f"the robustness at {_shown(self.times[i])} is only known to lie between {lower:g} and {upper:g}, "
-                f"because samples are missing or uncertain; read result.interval or result.intervals"
+                f"the robustness at {_format_time(self.times[i])} is only known to lie between {lower:g} and "
+                f"{upper:g}, because samples are missing or uncertain; read result.interval or result.intervals"
             )
         return lower
 
@@ -173,5 +173,5 @@ class BoundedSignal(Signal):
         return f"BoundedSignal(times={self.times!r}, lower={self.lower!r}, upper={self.upper!r})"
 
 
-def _shown(time: Any) -> str:
+def _format_time(time: Any) -> str:
     return str(time) if isinstance(time, np.datetime64 | np.timedelta64) else f"time {time:.15g}"

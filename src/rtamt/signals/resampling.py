@@ -63,12 +63,12 @@ def resampled(
     if how == "hold" and hold_for is not None:
         _check_ages(name, times[places], grid, hold_for)
     if how == "hold":
-        return values[places], _passed_over(name, places, len(times))
+        return values[places], _skipped_note(name, places, len(times))
     # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
     found = np.interp(_plain(grid - times[0]), _plain(times - times[0]), values)
     between = times[places] != grid
     both = np.concatenate((places, places[between] + 1))
-    return found, _passed_over(name, both, len(times))
+    return found, _skipped_note(name, both, len(times))
 
 
 class Sampler:
@@ -155,7 +155,7 @@ class Sampler:
         return grid, found
 
 
-def _passed_over(name: str, places: NDArray[np.intp], count: int) -> list[str]:
+def _skipped_note(name: str, places: NDArray[np.intp], count: int) -> list[str]:
     """Return the note on samples that were skipped by resampling, after the first one used."""
     read = merged([places])
     left_out = count - int(read[0]) - len(read)

@@ -80,7 +80,7 @@ def infer_period(times: FloatArray) -> Fraction:
     if len(times) < 2:
         return Fraction(1)
     gap = float(np.median(np.diff(times)))
-    blur = _blur(gap, times)
+    blur = _precision(gap, times)
     for digits in range(1, 17):
         short = float(f"{gap:.{digits}g}")
         if abs(short - gap) <= blur:
@@ -88,7 +88,7 @@ def infer_period(times: FloatArray) -> Fraction:
     return Fraction(repr(gap))
 
 
-def _blur(gap: float, times: FloatArray) -> float:
+def _precision(gap: float, times: FloatArray) -> float:
     """Return the precision of a gap between timestamps."""
     return max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
 
@@ -104,7 +104,7 @@ def has_period(times: FloatArray, period: Fraction) -> bool:
     if len(times) < 2:
         return True
     gap, gaps = float(period), np.diff(times)
-    blur = _blur(gap, times)
+    blur = _precision(gap, times)
     same = np.abs(gaps - gap) <= blur
     # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is none of them.
     step = coarse_place(gap)

@@ -191,14 +191,14 @@ def _finding(name: str, key: str, result: Result, variable_keys: Mapping[str, st
         )
     trace, spec = result.trace, result.specification
     robustness, truth = spec._signals_of(spec._outputs(result.semantics), trace.in_steps())
-    verdicts = tuple(_changes(_bounded(truth, result)))
+    verdicts = tuple(_changes(_bounded_steps(truth, result)))
     violated = None if trace.bounds else first_violation(result)
     return Finding(
         name,
         key,
         str(spec.formula),
         tuple(variable_keys[each] for each in spec.input_names if each in trace.columns),
-        _bounded(robustness, result),
+        _bounded_steps(robustness, result),
         verdicts,
         _known(result) if bounds else None,
         {SATISFIED: True, VIOLATED: False}.get(verdicts[0][1]) if trace.bounds else result.satisfied,
@@ -214,7 +214,7 @@ def _nanoseconds(result: Result, position: int) -> int:
     return int(result.trace.nanoseconds([position])[0])
 
 
-def _bounded(signal: Signal, result: Result) -> Bounded:
+def _bounded_steps(signal: Signal, result: Result) -> Bounded:
     """Return a signal over the trace in steps."""
     lower, upper = (
         (signal.lower, signal.upper) if isinstance(signal, BoundedSignal) else (signal.values, signal.values)

@@ -41,7 +41,7 @@ def layout_of(content: Content) -> dict[str, Any]:
             "activeTabIdx": 0,
             "tabs": [{"title": title, "layout": page} for title, page in pages],
         }
-    panels["StateTransitions!verdicts"] = _titled(
+    panels["StateTransitions!verdicts"] = _panel(
         "Verdicts",
         {
             "isSynced": True,
@@ -51,7 +51,7 @@ def layout_of(content: Content) -> dict[str, Any]:
             ],
         },
     )
-    panels["Table!summary"] = _titled("Requirements", {"topicPath": f"{SUMMARY}.requirements"})
+    panels["Table!summary"] = _panel("Requirements", {"topicPath": f"{SUMMARY}.requirements"})
     lower = [_violations(finding, panels) for finding in content.findings if finding.episodes]
     right = _stack(["StateTransitions!verdicts", "Table!summary", *lower[:1]])
     return {
@@ -89,7 +89,7 @@ def _fields(samples: Bounded) -> list[str]:
 
 
 def _plot(title: str, paths: Sequence[str]) -> dict[str, Any]:
-    return _titled(
+    return _panel(
         title,
         {
             "paths": [{"enabled": True, **_path(path)} for path in paths],
@@ -108,7 +108,7 @@ def _plot(title: str, paths: Sequence[str]) -> dict[str, Any]:
 def _violations(finding: Finding, panels: dict[str, Any]) -> str:
     """Add the messages about the violations of a requirement; return the name of the panel."""
     name = f"RawMessages!violations-{finding.key}"
-    panels[name] = _titled(
+    panels[name] = _panel(
         f"{finding.name}: violations",
         {
             "topicPath": topic(finding, "violations"),
@@ -121,7 +121,7 @@ def _violations(finding: Finding, panels: dict[str, Any]) -> str:
     return name
 
 
-def _titled(title: str, config: dict[str, Any]) -> dict[str, Any]:
+def _panel(title: str, config: dict[str, Any]) -> dict[str, Any]:
     return {"foxglovePanelTitle": title, **config}
 
 

@@ -124,10 +124,10 @@ def text(message: dict[str, Any]) -> bytes:
     return json.dumps(message, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
 
 
-def moment(nanoseconds: int) -> dict[str, int]:
+def foxglove_time(nanoseconds: int) -> dict[str, int]:
     """Return a time as Foxglove expects it.
 
-    >>> moment(1_700_000_000_000_000_001)
+    >>> foxglove_time(1_700_000_000_000_000_001)
     {'sec': 1700000000, 'nsec': 1}
     """
     seconds, rest = divmod(nanoseconds, _SECOND)
@@ -153,7 +153,7 @@ def _signal(variable: Variable) -> Channel:
                 yield time, number("lower", lower) | number("upper", upper)
 
     metadata = {"variable": variable.name} | ({"unit": variable.unit} if variable.unit else {})
-    return Channel(signal_topic(variable.key), "rtamt.Signal", metadata, _stamped(messages))
+    return Channel(signal_topic(variable.key), "rtamt.Signal", metadata, _with_time(messages))
 
 
 def _of(finding: Finding) -> list[Channel]:
@@ -182,16 +182,17 @@ def _of(finding: Finding) -> list[Channel]:
     if finding.known is not None:
         rows.append(("known", "rtamt.Interval", interval(finding.known)))
     return [
-        Channel(topic(finding, what), schema, metadata, _stamped(messages)) for what, schema, messages in rows
+        Channel(topic(finding, what), schema, metadata, _with_time(messages))
+        for what, schema, messages in rows
     ]
 
 
 def _violations(finding: Finding) -> Iterator[Message]:
     for episode in finding.episodes:
         whole = {
-            "begin": moment(episode.begin),
-            "end": moment(episode.end),
-            "at": moment(episode.at),
+            "begin": foxglove_time(episode.begin),
+            "end": foxglove_time(episode.end),
+            "at": foxglove_time(episode.at),
             **number("worst", episode.worst),
         }
         yield episode.begin, {"requirement": finding.name, "event": "begin", **whole}
@@ -211,17 +212,17 @@ def _summary(content: Content) -> Iterator[Message]:
                 **(number("robustness", lower) if lower == upper else {}),
                 **number("lower", lower),
                 **number("upper", upper),
-                **({} if first is None else {"first_violation": moment(first)}),
+                **({} if first is None else {"first_violation": foxglove_time(first)}),
                 "episodes": len(finding.episodes),
             }
         )
-    yield content.start, {"timestamp": moment(content.start), "requirements": rows}
+    yield content.start, {"timestamp": foxglove_time(content.start), "requirements": rows}
 
 
 def _points(bounded: Bounded) -> Iterator[tuple[int, float, float]]:
     return zip(bounded.times.tolist(), bounded.lower.tolist(), bounded.upper.tolist(), strict=True)
 
 
-def _stamped(messages: Callable[[], Iterator[Message]]) -> Callable[[], Iterator[Message]]:
+def _with_time(messages: Callable[[], Iterator[Message]]) -> Callable[[], Iterator[Message]]:
     """Return messages with their times as their first member."""
-    return lambda: ((time, {"timestamp": moment(time)} | message) for time, message in messages())
+    return lambda: ((time, {"timestamp": foxglove_time(time)} | message) for time, message in messages())

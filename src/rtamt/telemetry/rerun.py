@@ -113,7 +113,7 @@ class _Log:
 
     def content(self, content: Content) -> None:
         for variable in content.variables:
-            self._bounded(f"{ROOT}/signals/{variable.key}", variable.samples)
+            self._log_bounds(f"{ROOT}/signals/{variable.key}", variable.samples)
         for finding in content.findings:
             self._finding(finding)
 
@@ -138,7 +138,7 @@ class _Log:
             rows.append((episode.end, f"{finding.name}: violation ends, {worst}", "INFO"))
         self._texts(topic(finding, "violations"), rows)
 
-    def _bounded(self, entity: str, samples: Bounded) -> None:
+    def _log_bounds(self, entity: str, samples: Bounded) -> None:
         """Log what is known exactly as one line, and bounds of the rest as two."""
         self._scalars(entity, *samples.known)
         open_ = samples.lower != samples.upper

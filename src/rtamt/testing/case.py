@@ -47,7 +47,7 @@ class Case:
         )
         node = Apply(self.operator, operands, self.interval(draw, unbounded=unbounded))
         around = draw(formulas(2, ("x", _HOLE), **simple))
-        return fold(around, lambda n, args: _filled(n, args, node))
+        return fold(around, lambda n, args: _fill(n, args, node))
 
     def interval(self, draw: Callable[[Any], Any], *, unbounded: bool) -> Interval | None:
         """Draw an interval for the operator; None if it takes no interval, or sometimes if the interval is optional."""
@@ -71,8 +71,8 @@ class Case:
         """Return the counterexample as an error."""
         return AssertionError(
             f"the operator '{self.operator.name}' breaks the law \"{law}\" in '{to_text(formula, self.language)}':\n"
-            + "".join(f"  {name} = {_listed(values)}\n" for name, values in data.items())
-            + f"  expected {_listed(expected)}\n  got      {_listed(got)}"
+            + "".join(f"  {name} = {_format_list(values)}\n" for name, values in data.items())
+            + f"  expected {_format_list(expected)}\n  got      {_format_list(got)}"
         )
 
 
@@ -94,13 +94,13 @@ def hold(law: Callable[[Case, Any], None], case: Case, examples: int) -> None:
     holds()
 
 
-def _filled(node: Formula, args: tuple[Formula, ...], filling: Formula) -> Formula:
+def _fill(node: Formula, args: tuple[Formula, ...], filling: Formula) -> Formula:
     if isinstance(node, Apply):
         return Apply(node.op, args, node.interval)
     return filling if node == Var(_HOLE) else node
 
 
-def _listed(values: Any) -> str:
+def _format_list(values: Any) -> str:
     if values is None:
         return "no value (EvaluationError)"
     if isinstance(values, tuple):

@@ -33,7 +33,7 @@ def _trace(case: Case, draw: Callable[[Any], Any], formula: Formula) -> dict[str
     return {name: trace[name] for name in variables(formula)}
 
 
-def _stepped(times: Any, values: Any) -> tuple[list[int], list[float]]:
+def _changes_of(times: Any, values: Any) -> tuple[list[int], list[float]]:
     """Return the changes of a step function."""
     changes: list[tuple[int, float]] = []
     for time, value in zip(times, values, strict=True):
@@ -48,7 +48,7 @@ def _densely_defined(formula: Formula, trace: dict[str, Any]) -> tuple[list[int]
     except EvaluationError as error:
         check_own_code(error)
         return None
-    return _stepped(steps.times, steps.values)
+    return _changes_of(steps.times, steps.values)
 
 
 def _same_steps(case: Case, got: Any, expected: Any) -> bool:
@@ -77,7 +77,7 @@ def _fast_is_the_dense_definition(case: Case, draw: Callable[[Any], Any]) -> Non
     got: Any
     try:
         signal = Evaluators(BACKENDS[0])((formula,), recording)[0]
-        got = _stepped(signal.times, signal.values)
+        got = _changes_of(signal.times, signal.values)
     except EvaluationError as error:
         check_own_code(error)
         got = None
@@ -109,7 +109,7 @@ def _dense_online_is_offline(case: Case, draw: Callable[[Any], Any]) -> None:
             for signal in signals:
                 times += signal.times.astype(np.int64).tolist()
                 values += signal.values.tolist()
-            if times != sorted(set(times)) or not _same_steps(case, _stepped(times, values), expected):
+            if times != sorted(set(times)) or not _same_steps(case, _changes_of(times, values), expected):
                 law = f"online and finish is offline, in dense time ({backend})"
                 raise case.broken(law, formula, trace, expected, (times, values))
             monitor.reset()

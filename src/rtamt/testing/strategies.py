@@ -146,7 +146,7 @@ def formulas(
         for kept in reversed(range(len(operands))):
             if not np.isnan(drawn.probe).any() or chance(20):
                 break
-            operands[kept:] = [_suited(number(anywhere=False), operand) for operand in sorts[kept:]]
+            operands[kept:] = [_fit_sort(number(anywhere=False), operand) for operand in sorts[kept:]]
             drawn = apply(op, operands, window)
         if np.isnan(drawn.probe).any():
             # A formula on top of it would have no value to probe: start again from one that has.
@@ -155,14 +155,14 @@ def formulas(
         return drawn
 
     def draw_operand(depth: int, sort: Sort, *, strict: bool) -> _Drawn:
-        drawn = _suited(draw_one(depth, sort, strict=strict), sort)
+        drawn = _fit_sort(draw_one(depth, sort, strict=strict), sort)
         # A number as deep as this has no room for the comparison that makes it a condition.
-        return drawn if drawn.depth <= depth else _suited(leaf(sort), sort)
+        return drawn if drawn.depth <= depth else _fit_sort(leaf(sort), sort)
 
     return draw_one(max_depth, Sort.FORMULA).formula
 
 
-def _suited(drawn: _Drawn, sort: Sort) -> _Drawn:
+def _fit_sort(drawn: _Drawn, sort: Sort) -> _Drawn:
     """Return an operand of this sort: a condition is no number."""
     if sort is not Sort.CONDITION or not is_number(drawn.formula):
         return drawn

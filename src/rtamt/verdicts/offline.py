@@ -140,7 +140,7 @@ def _outputs(
     grounded = trace.domain.ground(*truths)
     found = [Trackers(anchor(truth), trace.step, trace.domain.continuous) for truth in grounded]
     trackers = [tracker for each in found for tracker in each.leaves]
-    signals, leaves = _settled_signals(formulas, trackers, trace, evaluate)
+    signals, leaves = _evaluate_settled(formulas, trackers, trace, evaluate)
     for tracker in trackers:
         signal = leaves[tracker.leaf]
         tracker.take(trace.positions(signal), signal.values)
@@ -162,7 +162,7 @@ def _signals(
     return [known[f] for f in formulas], {tracker.leaf: known[tracker.leaf.formula] for tracker in trackers}
 
 
-def _settled_signals(
+def _evaluate_settled(
     formulas: tuple[Formula, ...], trackers: Sequence[Tracker], trace: DomainTrace, evaluate: Evaluate
 ) -> tuple[list[Signal], dict[Leaf, Signal]]:
     """Return the same, of leaves in steps and as far as each is read after the last sample."""

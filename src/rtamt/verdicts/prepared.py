@@ -125,8 +125,8 @@ class Prepared:
             return self._together(trace)
         except EvaluationError:
             if len(self) == 1:
-                return [self._alone(trace)]
-            return [self.part([i])._alone(trace) for i in range(len(self))]
+                return [self._evaluate_alone(trace)]
+            return [self.part([i])._evaluate_alone(trace) for i in range(len(self))]
 
     def signals(self, trace: DomainTrace) -> list[Any]:
         """Return the robustness signal of each requirement; raise :class:`EvaluationError` where one is undefined."""
@@ -141,16 +141,16 @@ class Prepared:
             assert self.robustness is not None
             signals = self._run[0](trace)
             robustness = [_first(signals[output]) for output in self.outputs]
-            reduced = {i: _reduced(window, signals[window.output]) for i, window in self.windows.items()}
+            reduced = {i: _reduce(window, signals[window.output]) for i, window in self.windows.items()}
         else:
             robustness = self._robustness(trace)
-            reduced = self._settled(trace) if self.joined else {}
+            reduced = self._evaluate_settled(trace) if self.joined else {}
         truths = self._truths(reduced) if self.joined else [Found()] * len(robustness)
         if not self.outputs:
             return truths
         return [truth._replace(robustness=value) for value, truth in zip(robustness, truths, strict=True)]
 
-    def _alone(self, trace: DomainTrace) -> Found:
+    def _evaluate_alone(self, trace: DomainTrace) -> Found:
         """Return what is found of the only requirement, of which one part is undefined."""
         robustness = None
         try:
@@ -183,11 +183,11 @@ class Prepared:
             needed = [window.output for window in self.windows.values()]
             signals = self._evaluator(self.leaves.part(needed))(trace)
             return {
-                i: _reduced(window, signal)
+                i: _reduce(window, signal)
                 for (i, window), signal in zip(self.windows.items(), signals, strict=True)
             }
         try:
-            return self._settled(trace)
+            return self._evaluate_settled(trace)
         except EvaluationError:
             ends = {_end_of(window, trace) for window in self.windows.values()} | {trace.end}
             if len(ends) == 1:
@@ -202,7 +202,7 @@ class Prepared:
                     found.update(self._held(trace, end, self._evaluator(part), moved))
             return found
 
-    def _settled(self, trace: DomainTrace) -> dict[int, Reduced]:
+    def _evaluate_settled(self, trace: DomainTrace) -> dict[int, Reduced]:
         """Return the reduced leaves over a recording in dense time, which all hold until the last is read."""
         ends = [_end_of(window, trace) for window in self.windows.values()]
         return self._held(trace, max([*ends, trace.end]), self._run[1], self.windows) if ends else {}
@@ -269,10 +269,10 @@ class Prepared:
         """Return these requirements alone."""
         key = tuple(numbers)
         if key not in self._parts:
-            self._parts[key] = self._made_part(key)
+            self._parts[key] = self._make_part(key)
         return self._parts[key]
 
-    def _made_part(self, numbers: tuple[int, ...]) -> Prepared:
+    def _make_part(self, numbers: tuple[int, ...]) -> Prepared:
         joined = [self.joined[i] for i in numbers] if self.joined else []
         outputs = [self.outputs[i] for i in numbers] if self.outputs else []
         windows = {i: self.windows[i] for each in joined for i in each.windows}
@@ -317,7 +317,7 @@ def _end_of(window: Window, trace: DomainTrace) -> int:
     return max(trace.end, trace.start + window.end)
 
 
-def _reduced(window: Window, values: FloatArray) -> Reduced:
+def _reduce(window: Window, values: FloatArray) -> Reduced:
     """Return a leaf in discrete time, see :class:`Tracker`."""
     inside = values[window.begin : None if window.end is None else window.end + 1]
     if not len(inside):

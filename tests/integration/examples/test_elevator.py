@@ -15,7 +15,7 @@ def elevator(example):
     return example("elevator", "elevator")
 
 
-def told(elevator, faults, time=5.0):
+def modes_of(elevator, faults, time=5.0):
     return {name: mode.value for name, mode in elevator.modes(faults, time).items()}
 
 
@@ -37,7 +37,7 @@ def told(elevator, faults, time=5.0):
     ],
 )
 def test_modes_after_faults(elevator, faults, expected):
-    assert ", ".join(f"{name} {mode}" for name, mode in told(elevator, faults).items()) == expected
+    assert ", ".join(f"{name} {mode}" for name, mode in modes_of(elevator, faults).items()) == expected
 
 
 def test_every_single_fault_but_the_loss_of_a_control_unit_leaves_the_elevators_to_the_pilot(elevator):

@@ -76,9 +76,9 @@ class Process:
     def _read(self):
         for line in self.popen.stdout:
             self.lines.append(line)
-            self.heard(line)
+            self.on_line(line)
 
-    def heard(self, line):
+    def on_line(self, line):
         """Take a line of output."""
 
     @property
@@ -140,7 +140,7 @@ class Puppet(Process):
         super().__init__([env.get("RTAMT_PYTHON", sys.executable), str(HERE / script), *args], env)
         self._answer("its start")
 
-    def heard(self, line):
+    def on_line(self, line):
         """Take an answer or a message."""
         if not line.startswith("{"):
             return

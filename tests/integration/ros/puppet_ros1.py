@@ -48,7 +48,7 @@ class Puppet:
         self.subscribers = {}
         self.lock = threading.Lock()
 
-    def say(self, **event):
+    def report_event(self, **event):
         with self.lock:
             print(json.dumps(event), flush=True)
 
@@ -60,7 +60,7 @@ class Puppet:
         self.subscribers[topic] = rospy.Subscriber(
             topic,
             roslib.message.get_message_class(kind),
-            lambda message: self.say(event="message", topic=topic, data=plain(message)),
+            lambda message: self.report_event(event="message", topic=topic, data=plain(message)),
             tcp_nodelay=True,
         )
 
@@ -106,11 +106,11 @@ class Puppet:
 def main():
     rospy.init_node("puppet", anonymous=True)
     puppet = Puppet()
-    puppet.say(event="ready")
+    puppet.report_event(event="ready")
     for line in sys.stdin:
         command = json.loads(line)
         answer = getattr(puppet, command.pop("do"))(**command)
-        puppet.say(event="done", answer=answer)
+        puppet.report_event(event="done", answer=answer)
 
 
 main()

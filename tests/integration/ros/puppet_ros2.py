@@ -37,7 +37,7 @@ class Puppet:
         self.lock = threading.Lock()  # a participant is used by one thread at a time
         self.graph = None
 
-    def say(self, **event):
+    def report_event(self, **event):
         sys.stdout.write(json.dumps(event) + "\n")  # one write: two threads speak
         sys.stdout.flush()
 
@@ -84,19 +84,19 @@ class Puppet:
         while True:
             with self.lock:
                 for topic, message in self.participant.take():
-                    self.say(event="message", topic=topic, data=dataclasses.asdict(message))
+                    self.report_event(event="message", topic=topic, data=dataclasses.asdict(message))
             self.participant.wait(0.02)
 
 
 def main():
     puppet = Puppet(Quality(*sys.argv[1:]))
     threading.Thread(target=puppet.listen, daemon=True).start()
-    puppet.say(event="ready")
+    puppet.report_event(event="ready")
     for line in sys.stdin:
         command = json.loads(line)
         with puppet.lock:
             answer = getattr(puppet, command.pop("do"))(**command)
-        puppet.say(event="done", answer=answer)
+        puppet.report_event(event="done", answer=answer)
 
 
 main()

@@ -33,7 +33,7 @@ class Puppet:
             self.node.create_subscription(verdict, "rtamt/rob/verdict", self.judged.append, 10),
         ]
 
-    def speak(self):
+    def publish_value(self):
         """Publish a request that is never granted; take what came."""
         for publisher, value in zip(self.publishers, (5.0, 1.0), strict=True):
             publisher.publish(messages.FloatStamped(value=value))
@@ -73,11 +73,11 @@ def test_robustness_and_verdicts_come_every_period_from_arguments_or_parameters(
     node = start(*arguments)
     puppet = Puppet()
 
-    def told():
-        puppet.speak()
+    def received():
+        puppet.publish_value()
         return [m.value for m in puppet.heard][-1:] == [-2.0] and puppet.judged[-1:]
 
-    verdict = wait_for(told, "the violation")[0]
+    verdict = wait_for(received, "the violation")[0]
     assert (verdict.name, verdict.horizon) == ("rob.value", 15.0)
     timestamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in puppet.heard[-2:]]
     assert (timestamps[1] - timestamps[0]) % 10**8 == 0

@@ -22,13 +22,13 @@ UNKNOWN, SATISFIED, VIOLATED = 0, 1, 2
 SECOND = 10**9
 
 
-def connected(puppet, *topics):
+def wait_for_connection(puppet, *topics):
     """Wait until somebody is at the other end of each topic."""
     for topic in topics:
         wait_for(lambda topic=topic: puppet.ask(do="peers", topic=topic)["answer"], f"a peer on {topic}")
 
 
-def said(puppet, text):
+def wait_for_status(puppet, text):
     """Wait until /diagnostics has a status whose message has a text."""
 
     def found(arrays):
@@ -73,9 +73,9 @@ def publish(puppet, topic, value, stamp=0):
 
 def test_the_command_of_the_paper_on_its_listing_8(ros, puppet):
     node = ros.monitor(LISTING_8, "--period", "1", "--unit", "s")
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(puppet, "rtamt/req", 5.0)
-    said(puppet, "waiting for the first message on rtamt/gnt")
+    wait_for_status(puppet, "waiting for the first message on rtamt/gnt")
     assert puppet.messages("rtamt/rob") == []
     publish(puppet, "rtamt/gnt", 1.0)
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 2)[:2]
@@ -104,7 +104,7 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     node = ros.monitor(
         f"{LISTING_8.partition('rob.value')[0]} rob.value = {formula}", "--period", "1", "--unit", "s"
     )
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob", "rtamt/rob/verdict")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob", "rtamt/rob/verdict")
     # The puppet listens to the clock itself, as every node does in simulated time.
     wait_for(lambda: puppet.ask(do="peers", topic="/clock")["answer"] >= 2, "the monitor on /clock")
     told = []
@@ -142,7 +142,7 @@ def test_simulated_time_gives_the_offline_answer_one_horizon_later_and_again_aft
     assert verdicts == [UNKNOWN] * horizon + [
         SATISFIED if value > 0 else VIOLATED for value in once[horizon:]
     ]
-    said(puppet, "violated")
+    wait_for_status(puppet, "violated")
 
 
 @pytest.mark.parametrize("stale", ["0", "1e9"])
@@ -153,7 +153,7 @@ def test_a_forward_jump_of_simulated_time_kept_the_node_busy_for_ever_and_deaf_t
         puppet.ask(do="advertise", topic=topic, kind=kind)
     puppet.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
     node = ros.monitor(LISTING_8, "--period", "1ms", "--stale", stale)
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     wait_for(lambda: puppet.ask(do="peers", topic="/clock")["answer"] >= 2, "the monitor on /clock")
 
     def clock(seconds):
@@ -200,7 +200,7 @@ def test_dense_time_takes_the_stamps_of_messages_of_any_type_for_several_asserti
         "--stale",
         "0",
     )
-    connected(puppet, "/arm", "/odom", "/elbow", "/speed")
+    wait_for_connection(puppet, "/arm", "/odom", "/elbow", "/speed")
     finger = {"angle": 0.0, "torque": [0.0, 0.0, 0.0]}
 
     def arm(at, angle, torque):
@@ -239,20 +239,20 @@ def test_dense_time_takes_the_stamps_of_messages_of_any_type_for_several_asserti
 
 def test_a_topic_that_goes_silent_is_stale_on_diagnostics_and_nothing_is_published_meanwhile(ros, puppet):
     ros.monitor(LISTING_8, "--period", "100", "--unit", "ms", "--stale", "500ms")
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
 
-    def speak():
+    def publish_value():
         """Publish until robustness comes: on a busy machine one message may be stale before the other is there."""
         so_far = len(puppet.messages("rtamt/rob"))
 
-        def spoken():
+        def published():
             publish(puppet, "rtamt/req", 0.0)
             publish(puppet, "rtamt/gnt", 0.0)
             return len(puppet.messages("rtamt/rob")) > so_far
 
-        wait_for(spoken, "robustness")
+        wait_for(published, "robustness")
 
-    speak()
+    publish_value()
     silent = puppet.wait_for("/diagnostics", lambda arrays: arrays and statuses(arrays[-1]) == ["STALE"])[-1]
     assert "no message on rtamt/" in silent["status"][0]["message"]
     since = silent["header"]["stamp"]
@@ -260,12 +260,12 @@ def test_a_topic_that_goes_silent_is_stale_on_diagnostics_and_nothing_is_publish
         "/diagnostics", lambda arrays: arrays[-1]["header"]["stamp"] > since
     )  # a second of silence
     assert all(message["header"]["stamp"] <= since for message in puppet.messages("rtamt/rob"))
-    speak()
+    publish_value()
 
 
 def test_a_master_that_restarts_gets_the_node_back(ros, puppet):
     node = ros.monitor(LISTING_8, "--period", "100ms", "--stale", "0")
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     ros.master.stop(signal.SIGKILL)
     ros.start_master()
     node.wait_for_output("the master was restarted: registering again")
@@ -273,7 +273,7 @@ def test_a_master_that_restarts_gets_the_node_back(ros, puppet):
     for topic in ("rtamt/req", "rtamt/gnt"):
         late.ask(do="advertise", topic=topic, kind=FLOAT)
     late.ask(do="subscribe", topic="rtamt/rob", kind=FLOAT)
-    connected(late, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(late, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(late, "rtamt/req", 0.0)
     publish(late, "rtamt/gnt", 0.0)
     late.wait_for("rtamt/rob")
@@ -284,7 +284,7 @@ def test_the_launch_file_takes_parameters(ros, puppet):
     spec.write_text(LISTING_8)
     arguments = [f"spec:={spec}", "period:=200", "unit:=ms", "stale:=0"]
     node = ros.start("roslaunch", "rtamt4ros", "monitor.launch", *arguments)
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(puppet, "rtamt/req", 0.0)
     publish(puppet, "rtamt/gnt", 0.0)
     heard = puppet.wait_for("rtamt/rob", lambda messages: len(messages) >= 2)
@@ -307,7 +307,7 @@ def test_bounds_and_verdict_at_the_start_of_the_trace(ros, puppet):
     puppet.ask(do="subscribe", topic="rtamt/rob/bounds", kind=BOUNDS)
     text = LISTING_8[: LISTING_8.index("rob.value =")] + "rob.value = always(req.value >= 3)"
     ros.monitor(text, "--period", "100ms", "--stale", "0")
-    connected(puppet, "rtamt/req", "rtamt/rob/bounds")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/rob/bounds")
 
     def last(verdict):
         return puppet.wait_for(
@@ -320,4 +320,4 @@ def test_bounds_and_verdict_at_the_start_of_the_trace(ros, puppet):
     found = last(VIOLATED)
     assert (found["name"], found["upper"]) == ("rob.value", -2.0)
     assert found["decided_at"] > 0
-    said(puppet, "violated")
+    wait_for_status(puppet, "violated")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import rtamt
 from tests.integration.ros.processes import PATIENCE
-from tests.integration.ros.test_ros1 import FLOAT, LISTING_8, SECOND, connected, publish, puppet
+from tests.integration.ros.test_ros1 import FLOAT, LISTING_8, SECOND, publish, puppet, wait_for_connection
 
 __all__ = ["puppet"]
 
@@ -86,7 +86,7 @@ monitor(1, 's')
 def test_what_rosbag_records_is_checked_and_played_to_the_node(ros, puppet):
     # It ends by itself when it has so many messages of each topic.
     recorder = ros.start("rosbag", "record", "--limit=20", "-O", "drive.bag", "/rtamt/req", "/rtamt/gnt")
-    connected(puppet, "rtamt/req", "rtamt/gnt")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt")
     for i in range(20):
         publish(puppet, "rtamt/req", 5.0 if i in {2, 9} else 0.0, stamp=(100 + i) * SECOND)
         publish(puppet, "rtamt/gnt", 4.0 if i == 5 else 0.0, stamp=(100 + i) * SECOND)
@@ -99,7 +99,7 @@ def test_what_rosbag_records_is_checked_and_played_to_the_node(ros, puppet):
     assert (offline.robustness, offline.satisfied) == (-2, False)
 
     node = ros.monitor(LISTING_8, "--time", "dense", "--stale", "0")
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     # Alive past its end, so that nothing is lost that is still on its way.
     ros.start("rosbag", "play", "--wait-for-subscribers", "--keep-alive", "-r", "100", "drive.bag")
     heard = puppet.wait_for(
@@ -112,7 +112,7 @@ def test_what_rosbag_records_is_checked_and_played_to_the_node(ros, puppet):
 def test_listings_3_to_7_of_the_paper_run_as_a_script(ros, puppet):
     (ros.folder / "monitor.py").write_text(SCRIPT)
     ros.start(ros.env["RTAMT_PYTHON"], "monitor.py")
-    connected(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
+    wait_for_connection(puppet, "rtamt/req", "rtamt/gnt", "rtamt/rob")
     publish(puppet, "rtamt/req", 5.0)
     publish(puppet, "rtamt/gnt", 1.0)
     # A request is out five samples later: the grant is 2 short.

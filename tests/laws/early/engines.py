@@ -38,25 +38,25 @@ def agree(rng: Random, case: Case) -> None:
     t = 0
     for row in case.samples:
         values = {name: given(known) for name, known in row.items()}
-        failed = _alike(both, lambda each, t=t, values=values: each.update(t, **values))
-        _alike(both, DiscreteIntervalMonitor.changes)
+        failed = _same_results(both, lambda each, t=t, values=values: each.update(t, **values))
+        _same_results(both, DiscreteIntervalMonitor.changes)
         if failed.startswith("EvaluationError"):
             return
         prediction = {name: _supposed(rng, case, name) for name in case.names if rng.random() < 0.5}
         for instant in (None, *range(t + 6)):
-            _alike(both, lambda each, at=instant: each.interval(at))
+            _same_results(both, lambda each, at=instant: each.interval(at))
             if rng.random() < 0.2:
-                _alike(both, lambda each, at=instant, of=prediction: each.interval(at, prediction=of))
+                _same_results(both, lambda each, at=instant, of=prediction: each.interval(at, prediction=of))
         if rng.random() < 0.3:
             both = [copy.copy(each) for each in both]
             assert [each._backend.computes_zone for each in both] == [False, True]
         t += 1
         if rng.random() < 0.2:  # samples that never come
             t += rng.choice((1, 3, 40))
-            _alike(both, lambda each, t=t: each.watermark(t - 1))
-    _alike(both, DiscreteIntervalMonitor.finish)
+            _same_results(both, lambda each, t=t: each.watermark(t - 1))
+    _same_results(both, DiscreteIntervalMonitor.finish)
     for instant in (None, *range(max(0, t - 3), t)):
-        _alike(both, lambda each, at=instant: each.interval(at))
+        _same_results(both, lambda each, at=instant: each.interval(at))
 
 
 def _supposed(rng: Random, case: Case, name: str) -> Any:
@@ -68,7 +68,7 @@ def _supposed(rng: Random, case: Case, name: str) -> Any:
     return [low for low, _ in pairs], [high for _, high in pairs]
 
 
-def _alike(both: list[DiscreteIntervalMonitor], call: Any) -> str:
+def _same_results(both: list[DiscreteIntervalMonitor], call: Any) -> str:
     """Return what a call of both returns, or its error, as text: bit for bit."""
     first, second = (_text(call, each) for each in both)
     assert first == second

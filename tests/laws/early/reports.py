@@ -100,7 +100,7 @@ def _events(rng: Random, case: Case, names: tuple[str, ...]) -> Iterator[tuple[s
         yield "update", 0, dict.fromkeys(names, 1.0)
 
 
-def _tried(call: Callable[..., Any], *given: Any, **values: Any) -> Any:
+def _try(call: Callable[..., Any], *given: Any, **values: Any) -> Any:
     """Return what a call returns, or its error; of several undefined operations each back end names one."""
     try:
         return call(*given, **values)
@@ -119,28 +119,28 @@ def _after(monitor: Any, kind: str, time: Any, row: dict[str, Any]) -> tuple[Any
     given = [] if kind in {"finish", "reset"} else [time]
     if kind == "watermark" and not hasattr(monitor, "watermark"):
         return monitor, None
-    return monitor, _tried(getattr(monitor, kind), *given, **row)
+    return monitor, _try(getattr(monitor, kind), *given, **row)
 
 
 def _reports(monitor: Any, case: Case, tick: int, *, finished: bool) -> Iterator[Any]:
     """Yield all that a monitor reports."""
     yield monitor.samples
     for name in case.settings["watch"]:
-        yield _tried(monitor.__getitem__, name)
+        yield _try(monitor.__getitem__, name)
     verdict = case.settings["verdict"]
     if verdict == "eager":
         return
     ask = monitor.interval if verdict == "interval" else monitor.causation
-    yield _tried(ask)
-    yield _tried(monitor.changes if verdict == "interval" else monitor.runs)
+    yield _try(ask)
+    yield _try(monitor.changes if verdict == "interval" else monitor.runs)
     for asked in (0, tick, tick + 1)[: 2 if finished else 3]:
         time = case.times.given(asked)
-        yield _tried(ask, time)
+        yield _try(ask, time)
         if verdict == "interval":
-            yield _tried(ask, time, prediction={"x": (-1.0, 2.5)})
+            yield _try(ask, time, prediction={"x": (-1.0, 2.5)})
 
 
-def _alike(one: Any, other: Any) -> bool:
+def _same_reports(one: Any, other: Any) -> bool:
     forgotten = isinstance(one, tuple) and isinstance(one[-1], str) and FORGOTTEN in one[-1]
     return bool(one == other) or forgotten
 

@@ -274,7 +274,7 @@ def as_defined(rng: Random, backend: str) -> None:
         beyond = 0 if kind == "finish" else 3
         for t in (*range(low, newest + 1 + beyond), None):
             time = None if t is None else case.times.given(t)
-            asked = [_asked(monitor, verdict, time, names, every=every) for monitor in made]
+            asked = [_query(monitor, verdict, time, names, every=every) for monitor in made]
             assert asked[0] == asked[1]
         made[0] = _twin(rng, made[0])
 
@@ -307,7 +307,7 @@ def _after(monitor: Any, kind: str, time: Any, row: Mapping[str, Any]) -> Any:
         return type(error).__name__
 
 
-def _asked(monitor: Any, verdict: str, time: Any, names: list[str], *, every: bool) -> Any:
+def _query(monitor: Any, verdict: str, time: Any, names: list[str], *, every: bool) -> Any:
     """Return what a monitor reports of an instant, or of the start, and of what is watched."""
     found: list[Any] = [monitor[name] for name in names]
     if verdict == "eager":

@@ -10,7 +10,7 @@ from rtamt.analysis import NotCoveredError, analyze, diff, equivalent, implies, 
 from rtamt.errors import UsageError
 
 
-def said(spec, **settings):
+def sentence_of(spec, **settings):
     return [str(finding) for finding in analyze(rtamt.parse(spec), samples=20, **settings).findings]
 
 
@@ -73,13 +73,13 @@ def test_a_violation_that_needs_so_many_samples_is_found_with_them_and_not_with_
 
 
 def test_findings_name_the_requirements_of_a_contradiction():
-    assert said("require A: always(x > 3); require B: always(y > 3); require C: always(x < y and y < 3)") == [
-        "B, C: they contradict each other: no trace of 20 samples satisfies them together"
-    ]
+    assert sentence_of(
+        "require A: always(x > 3); require B: always(y > 3); require C: always(x < y and y < 3)"
+    ) == ["B, C: they contradict each other: no trace of 20 samples satisfies them together"]
 
 
 def test_findings_name_what_implies_a_redundant_requirement():
-    assert said("require A: always(x > 3); require B: always(y > x); require C: always(y > 2)") == [
+    assert sentence_of("require A: always(x > 3); require B: always(y > x); require C: always(y > 2)") == [
         "C: it is redundant, because A and B imply it: no counterexample up to 20 samples"
     ]
 
@@ -179,7 +179,7 @@ def test_a_requirement_without_a_value_on_any_trace_neither_holds_nor_implies(te
         assert answer.sentence == f"it has {NOTHING}"
     answer = implies(spec, rtamt.parse("x > 0"), samples=20)
     assert (answer.holds, answer.sentence) == (None, f"they have {NOTHING}")
-    assert said(f"require R: {text}") == [f"R: it has {NOTHING}"]
+    assert sentence_of(f"require R: {text}") == [f"R: it has {NOTHING}"]
     assert diff(spec, rtamt.parse(text), samples=20).conclusions[0].holds is True
 
 

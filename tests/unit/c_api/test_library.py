@@ -97,7 +97,7 @@ def test_requirements_over_different_inputs_share_a_start_in_a_dense_program():
     known = []
     for samples in ([(0, 1, 5.0)], [(0, 2, 1.0), (1, 1, 4.0)], [(1, 4, 0.0), (0, 4, 0.0)]):
         monitor.push(samples)
-        known += zip(*(column.tolist() for column in monitor.told(4)), strict=True)
+        known += zip(*(column.tolist() for column in monitor.last_output(4)), strict=True)
     result = spec.evaluate({"x": ([1.0, 2, 4], [5, 1, 0]), "y": ([1.0, 4], [4, 0])})
     assert known == result.requirements["B"].signal.points()
     alike = rtamt.parse(
@@ -106,4 +106,4 @@ def test_requirements_over_different_inputs_share_a_start_in_a_dense_program():
     monitor = c_api.Monitor(alike.compile().to_bytes())
     monitor.push([(0, 1, 5.0), (1, 2, 4.0)])  # one trace for all, which starts at 2 s
     monitor.finish()
-    assert monitor.told(2)[0].tolist() == [2]
+    assert monitor.last_output(2)[0].tolist() == [2]

@@ -14,7 +14,7 @@ import pytest
 import rtamt
 from rtamt import Interval
 from rtamt.cli.early_feeds import IntervalFeed
-from rtamt.cli.live_view import Live, rounded
+from rtamt.cli.live_view import Live, format_time
 
 LINES = "".join(f'{{"time": {t}, "x": {x}}}\n' for t, x in enumerate([5, 4, 1, 6]))
 
@@ -92,9 +92,9 @@ def test_a_title_draws_nothing_but_its_text(monkeypatch):
 
 
 def test_times_are_rounded_and_dates_keep_milliseconds():
-    assert rounded(0.30000000000000004) == "0.3 s"
-    assert rounded(np.timedelta64(1_700_000_000_100_000_001, "ns")) == "1700000000.1 s"
-    assert rounded(np.datetime64("2026-05-01T12:00:00.123456789")) == "2026-05-01T12:00:00.123"
+    assert format_time(0.30000000000000004) == "0.3 s"
+    assert format_time(np.timedelta64(1_700_000_000_100_000_001, "ns")) == "1700000000.1 s"
+    assert format_time(np.datetime64("2026-05-01T12:00:00.123456789")) == "2026-05-01T12:00:00.123"
 
 
 def test_without_rich_it_names_the_extra(run, monkeypatch):

@@ -6,13 +6,13 @@ import sys
 import pytest
 
 from rtamt.cli.parser import Parser
-from rtamt.cli.play import _given, configure
+from rtamt.cli.play import _page_state, configure
 
 
 def given(*arguments):
     parser = Parser()
     configure(parser)
-    return _given(parser.read(list(arguments)))
+    return _page_state(parser.read(list(arguments)))
 
 
 def test_a_file_gives_its_text_its_name_and_the_folder_of_its_imports(tmp_path, write, monkeypatch):

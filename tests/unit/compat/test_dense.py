@@ -28,7 +28,7 @@ def declared(text, names="x y", cls=rtamt.StlDenseTimeSpecification, unit="s"):
     return spec
 
 
-def said(call, *args):
+def message_of(call, *args):
     with pytest.raises(rtamt.RTAMTException) as info:
         call(*args)
     return str(info.value).removeprefix("RTAMT Exception: ")
@@ -192,14 +192,14 @@ def test_values_of_subformulas_online_are_what_the_update_made_known(monkeypatch
     spec.update()
     assert spec.get_value("low") == []
     spec.reset()
-    assert said(spec.get_value, "low") == "'low' has no value yet; call update() or evaluate() first"
+    assert message_of(spec.get_value, "low") == "'low' has no value yet; call update() or evaluate() first"
 
 
 def test_an_assertion_over_other_variables_is_not_watched():
     spec = declared("late = y >= 1; ahead = eventually(x >= 1); x >= 3")
     spec.update(["x", [[0, 5]]])
     for name, text in (("late", "(y)>=(1.0)"), ("ahead", "eventually((x)>=(1.0))")):
-        assert said(spec.get_value, name) == (
+        assert message_of(spec.get_value, name) == (
             f"'{text}' is no part of what is watched: the result, and past assertions that read no other "
             f"variables; evaluate the finished signals offline"
         )
@@ -261,16 +261,16 @@ def test_the_definition_serves_where_the_core_cannot_be_loaded(monkeypatch):
 )
 def test_messages_about_data(dataset, message):
     spec = declared("once[0:1](x)")
-    assert said(spec.evaluate, *dataset) == message
+    assert message_of(spec.evaluate, *dataset) == message
 
 
 def test_a_failed_update_leaves_the_monitor_as_it_was():
     spec = declared("once(x)")
     assert spec.update(["x", [[0, 5]]]) == [[0.0, 5.0]]
-    assert said(spec.update, ["x", [[1, 9], [1, 9]]]) == (
+    assert message_of(spec.update, ["x", [[1, 9], [1, 9]]]) == (
         "'x' has two samples at 1 s (sample 2 and the one before, with ticks of 1 ns): keep one of them"
     )
-    assert said(spec.update, ["q", []]) == "the formula has no variable 'q'; variables: x"
+    assert message_of(spec.update, ["q", []]) == "the formula has no variable 'q'; variables: x"
     assert spec.get_value("x") == [[0.0, 5.0]]
     assert spec.update(["x", [[1, 4]]]) == [[1.0, 5.0]]
 
@@ -278,7 +278,7 @@ def test_a_failed_update_leaves_the_monitor_as_it_was():
 @pytest.mark.parametrize("cls", ONLINE)
 def test_unpastified_future_is_refused_before_the_data_is_looked_at(cls):
     spec = declared("x and always[0:2](y)", cls=cls)
-    assert said(spec.update, "no data at all") == (
+    assert message_of(spec.update, "no data at all") == (
         "Always operator is not implemented in the STL online monitor. "
         "Call pastify() after parse(), or evaluate the finished trace offline\n"
         "  line 1, column 7:\n"
@@ -288,7 +288,7 @@ def test_unpastified_future_is_refused_before_the_data_is_looked_at(cls):
 
 
 def test_unbounded_future_cannot_be_pastified():
-    assert said(declared("always(x)").pastify) == (
+    assert message_of(declared("always(x)").pastify) == (
         "Cannot pastify an unbounded always. Give it an upper bound, such as always[0:10]\n"
         "  line 1, column 1:\n"
         "    always(x)\n"
@@ -301,7 +301,7 @@ def test_unbounded_future_cannot_be_pastified():
 def test_what_counts_samples_is_read_and_has_no_value(name, use):
     spec = declared(f"y or {name}(x)")
     dataset = () if use == "pastify" else (["x", [[0, 1], [1, 2]]], ["y", [[0, 1], [1, 2]]])
-    assert said(getattr(spec, use), *dataset) == (
+    assert message_of(getattr(spec, use), *dataset) == (
         f"'{name}' means one sample away, which dense time does not have; "
         f"use a window such as once[0:1], or discrete time\n"
         f"  line 1, column 6:\n"
@@ -313,11 +313,11 @@ def test_what_counts_samples_is_read_and_has_no_value(name, use):
 def test_an_assertion_that_counts_samples_does_not_keep_the_others_from_being_watched():
     spec = declared("a = prev(x); once(x)")
     assert spec.update(["x", [[0, 1], [1, 2]]]) == [[0, 1.0], [1, 2.0]]
-    assert said(spec.get_value, "a").startswith("'previous(x)' is no part of what is watched")
+    assert message_of(spec.get_value, "a").startswith("'previous(x)' is no part of what is watched")
 
 
 def test_a_bound_finer_than_a_nanosecond_is_refused():
-    assert said(declared, "once[0:0.5ns](x)").splitlines() == [
+    assert message_of(declared, "once[0:0.5ns](x)").splitlines() == [
         "The operator bound must be a multiple of the resolution: 0.5 ns is not a whole number of ticks of 1 ns; "
         "change the bound or the tick",
         "  line 1, column 5:",
@@ -328,11 +328,11 @@ def test_a_bound_finer_than_a_nanosecond_is_refused():
 
 def test_a_formula_without_variables_has_no_time():
     message = "the formula reads no variable, so in dense time nothing says when to evaluate it"
-    assert said(declared("true").evaluate) == said(declared("true").update) == message
+    assert message_of(declared("true").evaluate) == message_of(declared("true").update) == message
 
 
 def test_no_variable_is_called_time():
-    assert said(declared, "time + x >= 0", "time x") == (
+    assert message_of(declared, "time + x >= 0", "time x") == (
         "'time' means the timestamps; give the variable another name\n"
         "  line 1, column 1:\n"
         "    time + x >= 0\n"
@@ -343,7 +343,7 @@ def test_no_variable_is_called_time():
 def test_before_parse():
     message = "no specification has been read; set spec and call parse() first"
     spec = rtamt.StlDenseTimeSpecification()
-    assert said(spec.evaluate, ["x", [[0, 1]]]) == said(spec.update, ["x", [[0, 1]]]) == message
+    assert message_of(spec.evaluate, ["x", [[0, 1]]]) == message_of(spec.update, ["x", [[0, 1]]]) == message
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ CALLING: dict[str, Action] = {
 }
 
 
-def begun(domain: str, backend: str) -> Any:
+def start_monitor(domain: str, backend: str) -> Any:
     spec = rtamt.parse("once[0:2](x >= 3) or eventually[0:1](x >= 5)", backend=backend)
     options: dict[str, Any] = {"period": 1, "tolerance": 1e9} if domain == "discrete" else {"time": "dense"}
     monitor = spec.monitor(watch=["x >= 5"], **options)
@@ -110,7 +110,7 @@ def begun(domain: str, backend: str) -> Any:
     return monitor
 
 
-def seen(monitor: Any) -> list[str]:
+def observe(monitor: Any) -> list[str]:
     """Return all that can be seen of a monitor, by going on with it."""
     answers = [str(monitor.samples)]
     for call in (
@@ -124,7 +124,7 @@ def seen(monitor: Any) -> list[str]:
     return answers
 
 
-def tried(monitor: Any, *actions: Callable[[Any], Any]) -> Any:
+def after_actions(monitor: Any, *actions: Callable[[Any], Any]) -> Any:
     for action in actions:
         with suppress(StlError):
             action(monitor)

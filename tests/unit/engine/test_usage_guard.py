@@ -13,7 +13,16 @@ import pytest
 
 import rtamt
 from rtamt.errors import StlError
-from tests.unit.engine.meddling import BACKENDS, CALLING, TAKING, Meddler, Message, begun, seen, tried
+from tests.unit.engine.meddling import (
+    BACKENDS,
+    CALLING,
+    TAKING,
+    Meddler,
+    Message,
+    after_actions,
+    observe,
+    start_monitor,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,13 +39,15 @@ def test_a_value_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
     backend: str, domain: str, taking: str, calling: str
 ) -> None:
     take, call = TAKING[domain][taking], CALLING[calling]
-    monitor = begun(domain, backend)
+    monitor = start_monitor(domain, backend)
     value = Meddler(lambda: call(monitor))
-    tried(monitor, lambda m: take(m, value))
+    after_actions(monitor, lambda m: take(m, value))
     assert value.again
     plain: Action = lambda m: take(m, 2.0)  # noqa: E731 - one of several actions
     orders: tuple[tuple[Action, ...], ...] = ((call, plain), (plain, call), (call,), (plain,), ())
-    assert seen(monitor) in [seen(tried(begun(domain, backend), *order)) for order in orders]
+    assert observe(monitor) in [
+        observe(after_actions(start_monitor(domain, backend), *order)) for order in orders
+    ]
 
 
 @pytest.mark.parametrize("calling", ["update", "reset", "finish", "update_many", "copy"])
@@ -54,17 +65,20 @@ def test_a_field_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
 
     def fresh() -> Any:
         made = rtamt.parse("once[0:2](req.value >= 3)", backend=backend).monitor(**options)
-        return tried(made, lambda m: m.update(2.0, req=Message(1.0)))
+        return after_actions(made, lambda m: m.update(2.0, req=Message(1.0)))
 
     def after(m: Any) -> list[str]:
         return [
             str(m.samples),
-            *(repr(tried(m, lambda m, t=t: m.update(t, req=Message(t))).samples) for t in (50.0, 51.0)),
+            *(
+                repr(after_actions(m, lambda m, t=t: m.update(t, req=Message(t))).samples)
+                for t in (50.0, 51.0)
+            ),
         ]
 
     monitor = fresh()
     value = Meddler(lambda: call[calling](monitor))
-    tried(monitor, lambda m: m.update(3.0, req=Message(value)))
+    after_actions(monitor, lambda m: m.update(3.0, req=Message(value)))
     assert value.again
     plain: Action = lambda m: m.update(3.0, req=Message(2.0))  # noqa: E731 - one of several actions
     orders: tuple[tuple[Action, ...], ...] = (
@@ -72,7 +86,7 @@ def test_a_field_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
         (plain, call[calling]),
         (call[calling],),
     )
-    assert after(monitor) in [after(tried(fresh(), *order)) for order in orders]
+    assert after(monitor) in [after(after_actions(fresh(), *order)) for order in orders]
 
 
 @pytest.mark.parametrize("domain", ["discrete", "dense"])
@@ -80,8 +94,8 @@ def test_a_field_that_calls_its_monitor_leaves_it_as_one_call_after_the_other_wo
 def test_a_value_that_is_read_by_reading_itself_ends_and_spares_the_monitor(
     backend: str, domain: str
 ) -> None:
-    monitor = begun(domain, backend)
-    before = seen(copy.copy(monitor))
+    monitor = start_monitor(domain, backend)
+    before = observe(copy.copy(monitor))
 
     class Endless(Meddler):
         def __float__(self) -> float:
@@ -90,7 +104,7 @@ def test_a_value_that_is_read_by_reading_itself_ends_and_spares_the_monitor(
 
     with pytest.raises((RecursionError, StlError)):
         monitor.update(3.0, x=Endless(print))
-    assert seen(monitor) == before
+    assert observe(monitor) == before
 
 
 @pytest.mark.parametrize("domain", ["discrete", "dense"])
@@ -98,8 +112,8 @@ def test_a_value_that_is_read_by_reading_itself_ends_and_spares_the_monitor(
 def test_what_a_value_raises_by_itself_reaches_the_caller_and_spares_the_monitor(
     backend: str, domain: str
 ) -> None:
-    monitor = begun(domain, backend)
-    before = seen(copy.copy(monitor))
+    monitor = start_monitor(domain, backend)
+    before = observe(copy.copy(monitor))
 
     class Rude(Meddler):
         def __float__(self) -> float:
@@ -108,7 +122,7 @@ def test_what_a_value_raises_by_itself_reaches_the_caller_and_spares_the_monitor
     for call in TAKING[domain].values():
         with pytest.raises(LookupError, match=r"^'?mine'?$"):
             call(monitor, Rude(print))
-    assert seen(monitor) == before
+    assert observe(monitor) == before
 
 
 def test_a_list_that_is_emptied_while_it_is_read_is_no_danger() -> None:

@@ -16,7 +16,7 @@ import pytest
 
 import rtamt
 from rtamt.errors import StlError
-from tests.unit.engine.meddling import BACKENDS, CALLING, TAKING, Slow, begun, tried
+from tests.unit.engine.meddling import BACKENDS, CALLING, TAKING, Slow, after_actions, start_monitor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -113,7 +113,7 @@ def test_threads_that_share_a_monitor_never_mix_their_samples(
 def test_threads_that_do_all_there_is_to_do_raise_only_what_the_library_means(
     domain: str, backend: str
 ) -> None:
-    monitor = begun(domain, backend)
+    monitor = start_monitor(domain, backend)
     clock = count(20)
     actions: list[Action] = [
         *CALLING.values(),
@@ -125,7 +125,7 @@ def test_threads_that_do_all_there_is_to_do_raise_only_what_the_library_means(
 
     def work(k: int) -> None:
         for i in range(120 if backend == "cpp" else 40):
-            tried(monitor, actions[(k * 7 + i * (k + 1)) % len(actions)])
+            after_actions(monitor, actions[(k * 7 + i * (k + 1)) % len(actions)])
 
     at_once(work)
     monitor.reset()

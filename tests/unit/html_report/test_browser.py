@@ -35,7 +35,7 @@ def page(folder):
         yield page
 
 
-def opened(page, path, fragment=""):
+def open_page(page, path, fragment=""):
     page.errors.clear()
     page.requests.clear()
     page.open("about:blank")
@@ -88,7 +88,7 @@ def large(folder):
 
 
 def test_the_violated_card_is_open_and_the_others_are_drawn_when_they_are_opened(page, small):
-    opened(page, small)
+    open_page(page, small)
     assert page.run("document.querySelectorAll('details[open].card').length") == 1
     assert page.run("document.querySelectorAll('canvas').length") == 8
     page.run("document.querySelectorAll('details.card > summary')[1].click()")
@@ -99,7 +99,7 @@ def test_the_violated_card_is_open_and_the_others_are_drawn_when_they_are_opened
 
 
 def test_charts_zoom_together_and_double_click_shows_all(page, small):
-    opened(page, small)
+    open_page(page, small)
     assert page.run(BAR) == "0 s to 4 s"
     left, top, width, height = plot(page)
     page.drag(left + 0.4 * width, left + 0.6 * width, top + height / 2)
@@ -112,7 +112,7 @@ def test_charts_zoom_together_and_double_click_shows_all(page, small):
 
 
 def test_two_marks_have_a_difference_and_keys_go_from_sample_to_sample(page, small):
-    opened(page, small)
+    open_page(page, small)
     press(page, "violation")
     key(page, "a")
     for _ in range(2):
@@ -128,7 +128,7 @@ def test_two_marks_have_a_difference_and_keys_go_from_sample_to_sample(page, sma
 
 
 def test_a_legend_hides_its_line_and_any_signal_can_be_added(page, small):
-    opened(page, small)
+    open_page(page, small)
     page.run("document.querySelector('details[open] .legend .line').click()")
     assert (
         page.run("document.querySelector('details[open] .legend .line').getAttribute('aria-pressed')")
@@ -152,7 +152,7 @@ def test_a_legend_hides_its_line_and_any_signal_can_be_added(page, small):
 
 
 def test_a_signal_that_no_requirement_reads_can_be_added(page, small):
-    opened(page, small)
+    open_page(page, small)
     page.run("""(() => {
         const select = document.querySelector('details[open] .legend select');
         select.dispatchEvent(new Event('focus'));
@@ -171,7 +171,7 @@ def test_a_signal_that_no_requirement_reads_can_be_added(page, small):
 
 
 def test_a_zoom_into_many_samples_shows_each_of_them(page, large, folder):
-    opened(page, large)
+    open_page(page, large)
     assert all("samples a pixel: lowest and highest drawn" in note for note in page.run(NOTES))
     press(page, "violation")
     assert set(page.run(NOTES)) == {""}
@@ -196,9 +196,9 @@ def test_a_zoom_into_many_samples_shows_each_of_them(page, large, folder):
 
 
 def test_a_link_opens_its_card_at_its_time(page, small):
-    opened(page, small)
+    open_page(page, small)
     good = page.run("document.querySelectorAll('details.card')[1].id")
-    opened(page, small, f"#{good}@1..3")
+    open_page(page, small, f"#{good}@1..3")
     assert page.run("[...document.querySelectorAll('details.card')].map(c => c.open)") == [True, True]
     bars = page.run("[...document.querySelectorAll('.tools output')].map(o => o.textContent)")
     assert bars[1] == "1 s to 3 s"
@@ -214,7 +214,7 @@ def test_two_hundred_cards_load_quickly_and_are_filtered_searched_and_sorted(pag
     )
     paths = [str(folder / name) for name in ("many.stl", "sine.csv")]
     main(["check", "--quiet", *paths, "--html", str(folder / "many.html")])
-    opened(page, folder / "many.html")
+    open_page(page, folder / "many.html")
     (took,) = page.run("performance.getEntriesByType('navigation').map(entry => entry.loadEventEnd)")
     assert took < 5000  # 0.4 s on a machine without other work
     assert page.run("document.querySelectorAll('canvas').length") < 10
@@ -232,7 +232,7 @@ def test_two_hundred_cards_load_quickly_and_are_filtered_searched_and_sorted(pag
 
 
 def test_dark_and_light_and_paper(page, small):
-    opened(page, small)
+    open_page(page, small)
     background = "getComputedStyle(document.body).backgroundColor"
     assert page.run(background) == "rgb(255, 255, 255)"
     page.run("document.getElementById('theme').click()")
@@ -246,7 +246,7 @@ def test_dark_and_light_and_paper(page, small):
 
 
 def test_charts_are_described_to_those_who_do_not_see_them(page, small):
-    opened(page, small)
+    open_page(page, small)
     labels = page.run(
         "[...document.querySelectorAll('details[open] [role=img]')].map(chart => chart.ariaLabel)"
     )
@@ -259,7 +259,7 @@ def test_charts_are_described_to_those_who_do_not_see_them(page, small):
 
 
 def test_assistive_technology_finds_a_name_for_every_control(page, small):
-    opened(page, small)
+    open_page(page, small)
     nodes = [
         (node["role"]["value"], node.get("name", {}).get("value", "").strip())
         for node in page.send("Accessibility.getFullAXTree")["nodes"]
@@ -277,7 +277,7 @@ def test_assistive_technology_finds_a_name_for_every_control(page, small):
 
 
 def test_real_keys_reach_the_results_from_the_start_of_the_page(page, small):
-    opened(page, small)
+    open_page(page, small)
     for kind in ("rawKeyDown", "keyUp"):
         page.send("Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9)
     assert page.run("document.activeElement.textContent") == "Skip to the results"
@@ -288,7 +288,7 @@ def test_a_narrow_touch_screen_needs_no_horizontal_scrolling(page, small):
     page.send("Emulation.setDeviceMetricsOverride", width=390, height=800, deviceScaleFactor=2, mobile=True)
     page.send("Emulation.setTouchEmulationEnabled", enabled=True)
     try:
-        opened(page, small)
+        open_page(page, small)
         assert page.run("document.documentElement.scrollWidth") == 390
         left, _, width, _ = plot(page)
         assert 0 < left < left + width <= 390
@@ -305,7 +305,7 @@ def test_members_and_booleans_are_read_by_name(page, folder):
     (folder / "modes.csv").write_text("time,mode,p\n0,AUTO,1\n1,MANUAL,0\n2,MANUAL,1\n")
     paths = [str(folder / name) for name in ("modes.stl", "modes.csv")]
     assert main(["report", *paths, "-o", str(folder / "modes.html")]) == 1
-    opened(page, folder / "modes.html")
+    open_page(page, folder / "modes.html")
     labels = page.run("[...document.querySelectorAll('.plot')].map(plot => plot.getAttribute('aria-label'))")
     assert labels[:2] == ["p from false to true", "mode from MANUAL to AUTO"]
     press(page, "violation")

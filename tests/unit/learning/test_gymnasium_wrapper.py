@@ -23,7 +23,7 @@ ROWS = st.lists(st.tuples(NUMBERS, NUMBERS), min_size=2, max_size=12)
 RANGES = {"x": (-5, 5), "y": (-5, 5)}
 
 
-def played(env, seed=None):
+def play(env, seed=None):
     """Return what the steps of an episode returned."""
     env.reset(seed=seed)
     found = []
@@ -33,10 +33,10 @@ def played(env, seed=None):
 
 
 def rewards(env):
-    return [step[1] for step in played(env)]
+    return [step[1] for step in play(env)]
 
 
-def fed(monitor, rows):
+def feed(monitor, rows):
     names = monitor.input_names
     return [
         monitor.update(float(t), **{n: v for n, v in zip("xy", row, strict=True) if n in names})
@@ -47,7 +47,7 @@ def fed(monitor, rows):
 def finite(spec, rows):
     """Return the values of a plain monitor, of traces on which they are finite."""
     try:
-        values = fed(spec.monitor(), rows)
+        values = feed(spec.monitor(), rows)
     except EvaluationError:
         assume(False)
     assume(all(value is None or np.isfinite(value) for value in values))
@@ -86,7 +86,7 @@ def test_interval_rewards_of_a_terminated_episode_add_up_to_its_robustness(formu
     spec = rtamt.parse(str(formula), period=1)
     monitor = spec.monitor(verdict="interval", at="start", ranges={n: RANGES[n] for n in spec.input_names})
     try:
-        fed(monitor, rows[:1])
+        feed(monitor, rows[:1])
     except EvaluationError:
         assume(False)
     first = monitor.interval()
@@ -116,11 +116,11 @@ def test_an_episode_terminates_with_the_earliest_verdict(formula, around, rows):
     spec = rtamt.parse(text, period=1)
     monitor = spec.monitor(verdict="eager")
     try:
-        settled = fed(monitor, rows)
+        settled = feed(monitor, rows)
         verdicts = {v.time: v for news in settled for v in news}
         ranges = {n: RANGES[n] for n in spec.input_names}
         env = RobustnessReward(Replay(rows, truncates=True), spec, SIGNALS, reward="interval", ranges=ranges)
-        steps = played(env)
+        steps = play(env)
     except EvaluationError:
         assume(False)
     verdict = verdicts.get(0.0)
@@ -138,19 +138,19 @@ def test_of_always_each_step_is_rated_and_a_violation_terminates():
     env = RobustnessReward(
         Replay([(5, 0), (4, 0), (2, 0), (9, 0)]), rtamt.parse("always(x >= 3) and always(y <= 8)"), SIGNALS
     )
-    steps = played(env)
+    steps = play(env)
     assert [(step[1], step[2], step[3]) for step in steps] == [(1, False, False), (-1, True, False)]
     assert steps[-1][4] == {"y": 0.0, "robustness": -1.0, "satisfied": False}
 
 
 def test_truncation_stays_truncation():
     spec = rtamt.parse("always(x >= 3)")
-    assert played(RobustnessReward(Replay([(5, 0), (4, 0)], truncates=True), spec, SIGNALS))[-1][2:4] == (
+    assert play(RobustnessReward(Replay([(5, 0), (4, 0)], truncates=True), spec, SIGNALS))[-1][2:4] == (
         False,
         True,
     )
     both = RobustnessReward(Replay([(5, 0), (2, 0)], truncates=True), spec, SIGNALS)
-    assert played(both)[-1][2:4] == (True, True)
+    assert play(both)[-1][2:4] == (True, True)
 
 
 def test_a_trace_starts_with_the_first_step_if_a_variable_is_an_action():
@@ -173,7 +173,7 @@ def test_the_period_of_the_specification_is_the_time_between_steps():
 
 def test_seeds_reach_the_environment():
     env = Replay([(5, 0), (4, 0)])
-    played(RobustnessReward(env, rtamt.parse("always(x >= 3)"), SIGNALS), seed=3)
+    play(RobustnessReward(env, rtamt.parse("always(x >= 3)"), SIGNALS), seed=3)
     assert env.seeds == [3]
 
 
@@ -234,7 +234,7 @@ def test_errors():
 
     def run(spec, signals, **more):
         return message(
-            (EvaluationError, TraceError, UsageError), played, RobustnessReward(env, spec, signals, **more)
+            (EvaluationError, TraceError, UsageError), play, RobustnessReward(env, spec, signals, **more)
         )
 
     assert run(always, {"x": ("info", "x")}) == "the variable 'x' is not at ('info', 'x'): there is no 'x'"
@@ -257,7 +257,7 @@ def test_errors():
     )
     fresh = RobustnessReward(env, always, SIGNALS)
     assert message(UsageError, fresh.step, 0) == "there is no episode: call reset() before step()"
-    played(fresh)
+    play(fresh)
     assert message(UsageError, fresh.step, 0) == "there is no episode: call reset() before step()"
 
 

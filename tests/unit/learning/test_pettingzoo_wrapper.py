@@ -16,7 +16,7 @@ OWN = {"x": ("observation", 0)}
 SHARED = {"x": ("observation", "ann", 0), "y": ("observation", "bo", 0)}
 
 
-def played(env):
+def play(env):
     env.reset(seed=1)
     found = []
     while env.agents:
@@ -28,7 +28,7 @@ def test_all_agents_receive_the_rewards_of_a_shared_requirement_and_end_with_its
     env = ParallelRobustnessReward(
         Pair(ann=[5, 6, 7, 8], bo=[1, 2, 9, 3]), rtamt.parse("always(x - y >= 0)"), SHARED
     )
-    first, second = played(env)
+    first, second = play(env)
     assert first[0] == {"ann": 4.0, "bo": 4.0}
     assert first[1] == first[2] == {"ann": False, "bo": False}
     assert second[0] == {"ann": -2.0, "bo": -2.0}
@@ -40,7 +40,7 @@ def test_all_agents_receive_the_rewards_of_a_shared_requirement_and_end_with_its
 
 def test_a_violation_terminates_the_agent_and_truncates_the_others():
     specs = {"ann": rtamt.parse("always(x >= 3)"), "bo": rtamt.parse("always(x <= 4)")}
-    first, second = played(ParallelRobustnessReward(Pair(ann=[5, 6, 7, 8], bo=[1, 2, 9, 3]), specs, OWN))
+    first, second = play(ParallelRobustnessReward(Pair(ann=[5, 6, 7, 8], bo=[1, 2, 9, 3]), specs, OWN))
     assert first[0] == {"ann": 3.0, "bo": 2.0}
     assert second[0] == {"ann": 4.0, "bo": -5.0}
     assert second[1] == {"ann": False, "bo": True}
@@ -53,7 +53,7 @@ def test_an_episode_goes_on_until_all_requirements_are_satisfied():
     }
     ranges = {"x": (0, 10)}
     pair = Pair(ann=[5, 6, 7, 8], bo=[1, 2, 9, 3])
-    steps = played(ParallelRobustnessReward(pair, specs, OWN, reward="interval", ranges=ranges))
+    steps = play(ParallelRobustnessReward(pair, specs, OWN, reward="interval", ranges=ranges))
     assert [step[1] for step in steps] == [{"ann": False, "bo": False}, {"ann": True, "bo": True}]
     sums = {name: sum(step[0][name] for step in steps) for name in specs}
     # The robustness of ann's trace is that of x = 7, from the middle of [-1, 4]; bo's is 0, from that of [-8, 1].
@@ -61,7 +61,7 @@ def test_an_episode_goes_on_until_all_requirements_are_satisfied():
 
 
 def test_an_agent_without_a_requirement_keeps_its_rewards():
-    steps = played(
+    steps = play(
         ParallelRobustnessReward(Pair(ann=[5, 6], bo=[1, 2]), {"ann": rtamt.parse("always(x >= 3)")}, OWN)
     )
     assert steps[0][0] == {"ann": 3.0, "bo": 2.0}
@@ -73,7 +73,7 @@ def test_shaping_adds_to_the_rewards_of_each_agent():
     env = ParallelRobustnessReward(
         Pair(ann=[5, 6, 7], bo=[1, 2, 9]), spec, SHARED, reward="shaping", gamma=0.5, terminate=False
     )
-    assert [step[0] for step in played(env)] == [
+    assert [step[0] for step in play(env)] == [
         {"ann": 3 + 4 - 6, "bo": 2 + 4 - 6},
         {"ann": 3 + 8 - 8, "bo": 2},
     ]

@@ -122,7 +122,7 @@ class Editor:
         return self.run(getattr(self.client, f"text_document_{name}_async")(params))
 
 
-def edited(text, edits):
+def apply_edits(text, edits):
     """Return a text after edits of the protocol; lines end with a line feed, characters are of one unit."""
     starts = [0]
     for line in text.splitlines(keepends=True):

@@ -4,7 +4,7 @@ import pytest
 from pygls.exceptions import JsonRpcException
 
 import rtamt
-from tests.unit.lsp.client import Editor, edited
+from tests.unit.lsp.client import Editor, apply_edits
 
 TEXT = """\
 specification traffic
@@ -163,7 +163,7 @@ def place_of(text, line, name):
 )
 def test_every_use_of_a_name_changes_and_nothing_else(editor, path, line, name, new, changed):
     found = editor.ask("rename", path, *place_of(TEXT, line, name), new_name=new)
-    text = edited(TEXT, found.changes[path.as_uri()])
+    text = apply_edits(TEXT, found.changes[path.as_uri()])
     before = TEXT.splitlines(keepends=True)
     lines = [each for each in text.splitlines(keepends=True) if each not in before]
     assert [words for words in changed if not any(words in each for each in lines)] == []

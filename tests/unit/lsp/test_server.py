@@ -6,7 +6,7 @@ import pytest
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
 
-from tests.unit.lsp.client import Editor, edited
+from tests.unit.lsp.client import Editor, apply_edits
 
 TEXT = """\
 specification drive
@@ -93,7 +93,7 @@ def test_a_finding_has_a_code_a_link_and_fixes(editor, folder):
         "Ignore RT503 on this line",
         "Fix all findings that have a fix",
     ]
-    texts = [edited(text, each.edit.changes[path.as_uri()]) for each in actions]
+    texts = [apply_edits(text, each.edit.changes[path.as_uri()]) for each in actions]
     assert texts == [
         "always((x > 3))\n",
         "always(not not (x > 3)) // lint: ignore[RT503]\n",
@@ -124,7 +124,7 @@ def test_completion_has_names_words_patterns_and_columns(editor, path):
     assert items["response_within"].detail == "response_within(p, s, duration)"
     column = items["engine temp"]
     assert (column.text_edit.new_text, column.detail) == ('"engine temp"', "a column of the recording")
-    added = edited(TEXT, column.additional_text_edits)
+    added = apply_edits(TEXT, column.additional_text_edits)
     assert 'output float brake\nfloat "engine temp"\nconst float most' in added
     likeliest = ["speed", "engine temp", "response_within", "always", "enum"]
     assert sorted(likeliest, key=lambda label: items[label].sort_text) == likeliest
@@ -144,7 +144,7 @@ def test_a_column_is_declared_behind_the_variables(editor, folder, text, new):
     line = text.count("\n")
     items = editor.ask("completion", path, line, len(text.splitlines()[-1])).items
     (column,) = (each for each in items if each.label == "engine temp")
-    assert edited(text, column.additional_text_edits) == new
+    assert apply_edits(text, column.additional_text_edits) == new
     assert column.filter_text == "engine temp"
     editor.change(path, text.replace("(en", '("en'))
     items = editor.ask("completion", path, line, len(text.splitlines()[-1]) + 1).items
@@ -167,12 +167,12 @@ def test_definition_and_references(editor, path, folder):
 def test_rename_keeps_the_meaning_and_refuses_clashes(editor, path):
     line = line_of("fast =")
     edit = editor.ask("rename", path, line, 8, new_name="v")
-    new = edited(TEXT, edit.changes[path.as_uri()])
+    new = apply_edits(TEXT, edit.changes[path.as_uri()])
     assert 'input float v [m/s] = "speed"  // of the vehicle' in new
     assert "fast = v > most" in new
     assert "calm(v, limit=50)" in new
     edit = editor.ask("rename", path, line_of("def"), 12, new_name="bound")
-    new = edited(TEXT, edit.changes[path.as_uri()])
+    new = apply_edits(TEXT, edit.changes[path.as_uri()])
     assert "def calm(x, bound = 1) = abs(x) <= bound" in new
     assert "calm(speed, bound=50)" in new
     for name, sentence in (
@@ -273,7 +273,7 @@ def test_a_name_that_was_probably_meant_is_a_quick_fix(editor, folder, text, cor
     (found,) = editor.open(path, text)
     (action,) = editor.ask("code_action", path, range=found.range, context=lsp.CodeActionContext([found]))
     assert list(action.diagnostics) == [found]
-    assert edited(text, action.edit.changes[path.as_uri()]) == corrected
+    assert apply_edits(text, action.edit.changes[path.as_uri()]) == corrected
     assert [
         each for each in editor.change(path, corrected) if each.severity == lsp.DiagnosticSeverity.Error
     ] == []
@@ -292,7 +292,7 @@ def test_formatting_changes_white_space_only(editor, folder):
     path, text = folder / "layout.stl", "float x ;\n\n\nalways [0 : 5]( x>=3 )  // fast\n"
     options = lsp.FormattingOptions(tab_size=4, insert_spaces=True)
     editor.open(path, text)
-    new = edited(text, editor.ask("formatting", path, options=options))
+    new = apply_edits(text, editor.ask("formatting", path, options=options))
     assert new == "float x;\n\nalways[0:5](x >= 3)  // fast\n"
     editor.change(path, new)
     assert not editor.ask("formatting", path, options=options)

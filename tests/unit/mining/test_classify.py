@@ -7,7 +7,7 @@ import rtamt
 from rtamt.errors import TraceError, UsageError
 from rtamt.mining import classify
 from rtamt.mining.classifier_templates import Template
-from rtamt.mining.decision_list import DecisionList, Rule, learned
+from rtamt.mining.decision_list import DecisionList, Rule, learn_list
 
 
 def drives(seed=0, bad=20, good=24):
@@ -142,7 +142,7 @@ def test_the_first_rule_is_the_best_of_every_threshold():
     for _ in range(30):
         table, good = draw.integers(0, 6, (12, 3)).astype(float), draw.random(12) < 0.5
         templates = [Template(f"x{k} <= {{p}}", draw.choice([-1, 1])) for k in range(3)]
-        rules = learned(templates, table, good, 1)
+        rules = learn_list(templates, table, good, 1)
         fewest = min(good.sum(), (~good).sum())
         for column, template in enumerate(templates):
             for threshold in np.arange(0.5, 5):

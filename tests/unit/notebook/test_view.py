@@ -52,7 +52,7 @@ def browser(folder):
         yield page
 
 
-def opened(browser, folder, widget):
+def open_page(browser, folder, widget):
     """Show a widget as a notebook does."""
     state = {name: getattr(widget, name) for name in ("height", "zoom", "cursor")}
     state["_page"] = base64.b64encode(widget._page).decode()
@@ -92,7 +92,7 @@ def point_until(browser, x, condition):
 
 
 def test_the_page_reports_its_zoom_and_its_cursor(browser, folder, result):
-    page = opened(browser, folder, view(result))
+    page = open_page(browser, folder, view(result))
     wait(page, "model.get('zoom').length === 2")
     assert page.run("model.get('zoom')") == pytest.approx([-0.05, 5.05])
     assert page.run("model.get('cursor')") is None
@@ -103,7 +103,7 @@ def test_the_page_reports_its_zoom_and_its_cursor(browser, folder, result):
 
 
 def test_what_python_sets_moves_the_page(browser, folder, result):
-    page = opened(browser, folder, view(result))
+    page = open_page(browser, folder, view(result))
     wait(page, "model.get('zoom').length === 2")
     page.run("model.set('zoom', [1, 3]); model.set('cursor', 2)")
     point_until(page, 800, "![null, 2].includes(model.get('cursor'))")  # then the page reports what it shows
@@ -116,13 +116,13 @@ def test_what_python_sets_moves_the_page(browser, folder, result):
 def test_a_zoom_that_is_set_before_the_view_is_shown_is_kept(browser, folder, result):
     widget = view(result)
     widget.zoom, widget.cursor = [1.0, 3.0], 2.0
-    page = opened(browser, folder, widget)
+    page = open_page(browser, folder, widget)
     wait(page, "document.querySelector('iframe') !== null && model.get('zoom')[0] === 1")
     assert page.run("[model.get('zoom'), model.get('cursor')]") == [[1, 3], 2]
 
 
 def test_a_view_that_is_closed_listens_no_longer(browser, folder, result):
-    page = opened(browser, folder, view(result))
+    page = open_page(browser, folder, view(result))
     wait(page, "model.get('zoom').length === 2")
     page.run("window.end(); model.set('height', 111)")
     assert page.run("document.querySelector('iframe').clientHeight") != 111

@@ -54,10 +54,10 @@ def browser(folder):
 @pytest.fixture
 def page(browser, address):
     """The page as it starts, with the example evaluated."""
-    return opened(browser, address)
+    return open_page(browser, address)
 
 
-def opened(browser, url):
+def open_page(browser, url):
     browser.errors.clear()
     browser.requests.clear()
     browser.open("about:blank")
@@ -385,7 +385,7 @@ def test_the_view_follows_the_cursor_and_is_part_of_a_link(page, address):
     seen = page.run(SEEN)
     click(page, "#link")
     link = until(page, "document.documentElement.dataset.link")
-    opened(page, f"{address}#{link.partition('#')[2]}")
+    open_page(page, f"{address}#{link.partition('#')[2]}")
     until(page, f"{SEEN} === '{seen}'")
     assert page.errors == []
 
@@ -429,7 +429,7 @@ def test_a_recording_is_loaded_and_a_broken_one_is_a_sentence(page, folder):
     click(page, "#link")
     link = until(page, "document.documentElement.dataset.link")
     base = page.run("location.href").partition("#")[0]
-    opened(page, f"{base}#{link.partition('#')[2]}")
+    open_page(page, f"{base}#{link.partition('#')[2]}")
     assert page.run(TEXT) == "always(speed <= 48)"
     assert page.run(NUMBERS)["Robustness"] == "−1"
     assert page.run("document.getElementById('source').textContent") == "speeds.csv · 200 samples"
@@ -459,7 +459,7 @@ def test_a_link_contains_the_text_the_signals_and_the_settings(page):
     link = until(page, "document.documentElement.dataset.link")
     base = page.run("location.href").partition("#")[0]
     assert base.split("/")[3] not in link  # the token stays here
-    opened(page, f"{base}#{link.partition('#')[2]}")
+    open_page(page, f"{base}#{link.partition('#')[2]}")
     assert page.run(TEXT) == "always(level <= 2)"
     assert page.run("document.querySelector('input[name=time]:checked').value") == "dense"
     assert page.run(HANDLES) == handles
@@ -476,7 +476,7 @@ def test_a_link_that_the_browser_does_not_copy_is_shown(page):
 
 
 def test_a_damaged_link_is_a_sentence(browser, address):
-    opened(browser, f"{address}#1nonsense")
+    open_page(browser, f"{address}#1nonsense")
     assert (
         browser.run("document.getElementById('toast').textContent")
         == "The link is damaged: the page starts without it."
@@ -503,7 +503,7 @@ def link_of(text):
     ids=["number", "text", "no points", "disorder", "bytes", "view", "bomb"],
 )
 def test_a_link_with_other_data_leaves_no_broken_page(browser, address, text):
-    opened(browser, f"{address}{link_of(text)}")
+    open_page(browser, f"{address}{link_of(text)}")
     assert (
         browser.run("document.getElementById('toast').textContent")
         == "The link is damaged: the page starts without it."
@@ -527,29 +527,29 @@ def test_the_rules_of_axe_hold_in_every_state_of_the_page(page):
         "({id, nodes}) => [id, nodes.map(({html}) => html.slice(0, 200))]))"
     )
 
-    def audited(state):
+    def check_accessibility(state):
         assert (state, page.run(found)) == (state, [])
 
     until(page, "document.querySelectorAll('.run-bad').length === 3")
     page.run(f"{rules};0")
-    audited("start")
+    check_accessibility("start")
     click(page, "#zoom-in")
     page.run("(e => { e.value = 667; e.dispatchEvent(new Event('input')); })(document.getElementById('at'))")
     until(page, "document.querySelectorAll('.whisker').length > 0")
-    audited("zoomed, at an instant")
+    check_accessibility("zoomed, at an instant")
     write(page, "always(req >= 3 -> ev")
     until(page, "!document.getElementById('words').hidden")
     until(page, "document.getElementById('result').classList.contains('stale')")
-    audited("completion and an error")
+    check_accessibility("completion and an error")
     click(page, "#theme")
-    audited("dark")
+    check_accessibility("dark")
     write(page, "require A: always(req <= 5); require B: always(gnt <= 5)")
     until(page, "document.querySelectorAll('#requirements button').length === 2")
-    audited("two requirements")
+    check_accessibility("two requirements")
     page.run("navigator.clipboard.writeText = () => Promise.reject(new Error('not allowed'))")
     click(page, "#link")
     until(page, "document.getElementById('sharing').open")
-    audited("a dialog")
+    check_accessibility("a dialog")
     click(page, "#sharing button")
     page.run("sessionStorage.clear()")
 

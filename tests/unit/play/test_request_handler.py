@@ -243,7 +243,7 @@ def test_pending_instants_have_intervals_that_contain_their_value(handler):
     final = rtamt.parse("req >= 3 -> eventually[0:5](gnt >= 3)").evaluate(
         {"req": held(REQ, 31), "gnt": held(GNT, 31)}, period=1
     )
-    pending = handler.answer("moment", {**MESSAGE, "at": 20})["pending"]
+    pending = handler.answer("cursor", {**MESSAGE, "at": 20})["pending"]
     assert [time for time, _, _ in pending] == [16, 17, 18, 19, 20]
     for time, low, high in pending:
         assert float(low) <= final.signal.values[int(time)] <= float(high)
@@ -252,7 +252,7 @@ def test_pending_instants_have_intervals_that_contain_their_value(handler):
 def test_at_the_cursor_the_bounds_and_the_number_of_open_instants_are_those_of_the_replay(handler):
     replay = handler.answer("replay", MESSAGE)
     for at in (-1, 0, 3.5, 20, 30):
-        known = handler.answer("moment", {**MESSAGE, "at": at})
+        known = handler.answer("cursor", {**MESSAGE, "at": at})
         bounds = [
             list(pair)
             for x, *pair in zip(*(replay["bounds"][name] for name in ("x", "lower", "upper")), strict=True)
@@ -288,7 +288,7 @@ def test_a_part_of_the_time_is_drawn_in_full_detail(handler, time):
 
 def test_a_part_of_the_replay_is_drawn_in_full_detail(handler):
     whole = handler.answer("replay", VIEW)
-    near = handler.answer("rewatch", {**VIEW, "view": [20, 20.2]})["near"]
+    near = handler.answer("redraw_replay", {**VIEW, "view": [20, 20.2]})["near"]
     assert [begin for begin, *_ in near["runs"]] == pytest.approx([19.99 + k / 100 for k in range(22)])
     assert near["bounds"]["x"] == pytest.approx([19.99 + k / 100 for k in range(23)])
     assert near["bounds"]["decided"] == whole["bounds"]["decided"] == 4.01
@@ -302,9 +302,9 @@ def test_what_is_drawn_follows_the_text_and_the_signals(handler):
         near = handler.answer("redraw", view)["near"]
         assert near["fails"] == []
         assert near["robustness"]["y"][0] == pytest.approx(8 - 9 - (text[-2] == "7"))
-        assert handler.answer("rewatch", view)["near"]["bounds"]["lower"][-1] == "-Infinity"
+        assert handler.answer("redraw_replay", view)["near"]["bounds"]["lower"][-1] == "-Infinity"
     wrong = {**VIEW, "text": "always(x <= )"}
-    for kind in ("redraw", "rewatch", "moment"):
+    for kind in ("redraw", "redraw_replay", "cursor"):
         assert handler.answer(kind, wrong)["error"]["message"] == "expected an operand after '<=', got ')'"
 
 
@@ -325,7 +325,7 @@ def test_groups_and_enumerations_of_a_recording_are_evaluated_and_replayed(handl
         assert (answer["error"], answer["verdict"], answer["first"]) == (None, verdict, first)
         assert answer["fails"][0][0] == first
         assert handler.answer("replay", message, file)["bounds"]["decided"] == first
-        assert handler.answer("moment", message, file)["pending"] == []
+        assert handler.answer("cursor", message, file)["pending"] == []
 
 
 def test_missing_samples_leave_bounds_and_maybe_no_verdict(handler, tmp_path):
@@ -356,7 +356,7 @@ def test_a_found_trace_has_the_wanted_verdict_when_it_is_drawn(handler, wanted, 
         **MESSAGE,
         "text": "always[0:3](req >= 3 -> eventually[0:2](gnt >= 3)) and eventually[0:3](req >= 5)",
     }
-    found = handler.answer("question", {**message, "wanted": wanted})
+    found = handler.answer("find_trace", {**message, "wanted": wanted})
     assert found["error"] is None
     drawn = {**message, "signals": found["signals"], "duration": found["duration"]}
     assert handler.answer("evaluate", drawn)["verdict"] == verdict
@@ -364,9 +364,9 @@ def test_a_found_trace_has_the_wanted_verdict_when_it_is_drawn(handler, wanted, 
 
 def test_what_no_trace_violates_has_no_counterexample(handler):
     found = handler.answer(
-        "question", {**MESSAGE, "text": "always[0:3](req >= 3 or req <= 3)", "wanted": "counterexample"}
+        "find_trace", {**MESSAGE, "text": "always[0:3](req >= 3 or req <= 3)", "wanted": "counterexample"}
     )
     assert found["signals"] is None
     assert "always holds" in found["sentence"]
     with pytest.raises(MessageError, match="'wanted' must be witness or counterexample"):
-        handler.answer("question", {**MESSAGE, "wanted": "money"})
+        handler.answer("find_trace", {**MESSAGE, "wanted": "money"})

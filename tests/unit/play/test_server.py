@@ -229,7 +229,9 @@ def test_a_question_can_be_cancelled(client):
     hard = {**MESSAGE, "text": "always(x >= 3)", "wanted": "witness"}
 
     async def cancelled():
-        asked = asyncio.create_task(client.sending("POST", "/secret/ask/question", json.dumps(hard).encode()))
+        asked = asyncio.create_task(
+            client.sending("POST", "/secret/ask/find_trace", json.dumps(hard).encode())
+        )
         while client.place.workers._thorough._process is None:
             await asyncio.sleep(0)
         await client.sending("POST", "/secret/cancel")

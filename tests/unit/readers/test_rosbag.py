@@ -164,14 +164,14 @@ def test_the_samples_of_a_requirement_depended_on_the_requirements_beside_it(tmp
         assert main(["check", *given, str(bag.path), *options, "--json"]) == 0
         return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
 
-    def told(row):
+    def read_row(row):
         return row["robustness"], row["samples"]
 
     for options in (["--period", "1"], ["--time", "dense"]):
-        alone = [told(row) for spec in specs for row in rows(spec, options=options)]
-        assert [told(row) for row in rows(str(tmp_path / "both.stl"), options=options)] == alone
-    assert [told(row) for row in rows(*specs)] == [told(row) for spec in specs for row in rows(spec)]
-    assert [told(row) for row in rows(*specs)] == [(0, 10), (0, 10)]
+        alone = [read_row(row) for spec in specs for row in rows(spec, options=options)]
+        assert [read_row(row) for row in rows(str(tmp_path / "both.stl"), options=options)] == alone
+    assert [read_row(row) for row in rows(*specs)] == [read_row(row) for spec in specs for row in rows(spec)]
+    assert [read_row(row) for row in rows(*specs)] == [(0, 10), (0, 10)]
 
 
 def test_the_bag_is_written_again_with_topics_of_robustness_and_verdicts(drive, tmp_path):

@@ -73,7 +73,7 @@ def pair(request):
     return PAIRS[request.param]
 
 
-def told(verdict):
+def points_of(verdict):
     """Return what update() gave, for a comparison."""
     return [*map(np.asarray, verdict)] if isinstance(verdict, rtamt.Signal) else verdict
 

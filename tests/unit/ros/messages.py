@@ -35,5 +35,5 @@ def numbers(records):
     return [(record.stamp / SECOND, record.value) for record in records if isinstance(record, Robustness)]
 
 
-def said(watched):
+def log_of(watched):
     return [notice.message for notice in watched.notices()]

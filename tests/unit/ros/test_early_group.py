@@ -13,7 +13,7 @@ from rtamt.ros import Bounds, bind
 from rtamt.ros.diagnostics import Level
 from rtamt.ros.message_definitions import SATISFIED, UNKNOWN, VIOLATED
 from rtamt.ros.publisher import Publisher
-from tests.unit.ros.messages import HEAD, SECOND, message, monitor, numbers, said
+from tests.unit.ros.messages import HEAD, SECOND, log_of, message, monitor, numbers
 
 
 def follow(watched, values):
@@ -71,7 +71,7 @@ def test_a_trace_that_begins_anew_has_a_new_verdict():
 def test_a_sample_that_cannot_be_used_begins_anew():
     watched = monitor("rob.value = always(ln(req.value) >= 0)")
     follow(watched, [4, -1])
-    assert any("samples cannot be used" in sentence for sentence in said(watched))
+    assert any("samples cannot be used" in sentence for sentence in log_of(watched))
     assert [r.satisfied for r in watched.message("/req", message(5, at=3), 3 * SECOND)] == [None]
 
 

@@ -16,7 +16,7 @@ from rtamt.language.value_types import Enumeration
 from rtamt.ros import Robustness, RosMonitor, Verdict, bind
 from rtamt.ros.diagnostics import Level
 from rtamt.ros.fields import reader
-from tests.unit.ros.messages import HEAD, NO_CLOCK, SECOND, message, monitor, numbers, said
+from tests.unit.ros.messages import HEAD, NO_CLOCK, SECOND, log_of, message, monitor, numbers
 
 
 def verdicts(records):
@@ -83,7 +83,7 @@ def test_a_number_that_is_none_leaves_a_hole_and_is_said_once():
     assert watched.tick(SECOND) == []
     assert watched.tick(2 * SECOND) == []
     problem = "'req.value' is NaN at sample 1, time 1 s: fill the gap or leave the sample out"
-    assert said(watched) == [NO_CLOCK, f"'rob.value' begins anew, its samples cannot be used: {problem}"]
+    assert log_of(watched) == [NO_CLOCK, f"'rob.value' begins anew, its samples cannot be used: {problem}"]
     assert watched.conditions(0)[0].level == Level.ERROR
     watched.message("/req", message(3), 2 * SECOND)
     assert numbers(watched.tick(3 * SECOND)) == [(3, 3)]
@@ -105,12 +105,14 @@ def test_an_output_whose_sample_has_no_value_begins_anew_alone(time):
     assert by_name["rob.value"] == [(1, 0), (3, 0)]
     assert by_name["all.value"] == [(1, 1), (2, -1), (3, -1)]
     assert by_name["gnt.value"] == [(1, -8), (2, -8), (3, -8)]
-    (notice,) = said(watched)
+    (notice,) = log_of(watched)
     assert notice.startswith("'rob.value' begins anew, its samples cannot be used: ")
     assert len(watched.groups) == 2
     watched.message("/req", message(nan, at=4), 4 * SECOND)
     watched.tick(4 * SECOND)
-    assert "'all.value' and 'gnt.value' begin anew, their samples cannot be used: " in "".join(said(watched))
+    assert "'all.value' and 'gnt.value' begin anew, their samples cannot be used: " in "".join(
+        log_of(watched)
+    )
     assert [c.name.split()[-1] for c in watched.conditions(0)] == ["rob.value", "all.value", "gnt.value"]
 
 
@@ -132,7 +134,7 @@ def test_a_message_without_the_number_is_refused_and_the_old_one_is_no_value_of_
     watched.message("/req", SimpleNamespace(values=[1]), 1)
     assert watched.tick(SECOND) == []
     problem = "a message has no 'req.values[1]': the array is shorter"
-    assert said(watched) == [NO_CLOCK, f"a message on /req cannot be used: {problem}"]
+    assert log_of(watched) == [NO_CLOCK, f"a message on /req cannot be used: {problem}"]
     assert watched.conditions(0)[0].message == problem
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rtamt.ros import Verdict
-from tests.unit.ros.messages import NO_CLOCK, SECOND, message, monitor, numbers, said
+from tests.unit.ros.messages import NO_CLOCK, SECOND, log_of, message, monitor, numbers
 
 
 def test_dense_time_says_a_forward_jump_once():
@@ -11,7 +11,7 @@ def test_dense_time_says_a_forward_jump_once():
     for topic in ("/req", "/gnt"):
         watched.message(topic, message(1), SECOND)
     watched.tick(1_600_000_000 * SECOND)
-    assert said(watched) == ["the clock went forward by 1.6e+09 s at once: all monitors begin anew"]
+    assert log_of(watched) == ["the clock went forward by 1.6e+09 s at once: all monitors begin anew"]
 
 
 def test_dense_time_takes_the_stamps_of_the_headers_each_topic_on_its_own_clock():
@@ -34,9 +34,12 @@ def test_dense_stamps_that_go_back_begin_anew_and_equal_ones_are_left_out_once_s
     watched.message("/req", message(-1, at=50), 0)
     for _ in range(2):
         assert watched.message("/req", message(9, at=50), 1) == []
-    assert said(watched) == [NO_CLOCK, "messages on /req with the stamp of the one before them are left out"]
+    assert log_of(watched) == [
+        NO_CLOCK,
+        "messages on /req with the stamp of the one before them are left out",
+    ]
     assert numbers(watched.message("/req", message(3, at=2), 2)) == [(2, 3)]
-    assert said(watched) == ["the timestamps on /req went back by 48 s: all monitors begin anew"]
+    assert log_of(watched) == ["the timestamps on /req went back by 48 s: all monitors begin anew"]
 
 
 def test_dense_verdicts_are_unknown_until_the_horizon_has_passed():

@@ -52,7 +52,7 @@ def sample(key, at, speed):
     return key.encode(), json.dumps({"time": at, "speed": speed}).encode()
 
 
-def received(brokers, topic):
+def receive(brokers, topic):
     """Return all messages of a topic so far."""
     consumer = Consumer({"bootstrap.servers": brokers, "group.id": "reader", "enable.auto.commit": False})
     try:
@@ -72,7 +72,7 @@ def received(brokers, topic):
 
 
 def rows(brokers, topic):
-    return [json.loads(message.value()) for message in received(brokers, f"{topic}.robustness")]
+    return [json.loads(message.value()) for message in receive(brokers, f"{topic}.robustness")]
 
 
 def worker(brokers, topic, place, metrics=None, **changes):
@@ -143,7 +143,7 @@ def test_what_is_no_sample_goes_to_the_dead_letters(brokers, tmp_path):
     assert {(row["key"], row["time"], row["robustness"]) for row in rows(brokers, "wrong")} == {
         (key, float(t), 23.0 if t < 2 else -1.0) for key in "ab" for t in range(3)
     }
-    letters = received(brokers, "wrong.dead-letters")
+    letters = receive(brokers, "wrong.dead-letters")
     found = []
     for letter in letters:
         headers = {name: text.decode() for name, text in letter.headers()}
@@ -161,7 +161,7 @@ def test_a_message_too_large_for_the_dead_letters_does_not_end_the_worker(broker
     working = worker(brokers, "large", tmp_path)
     working.run()
     assert working.counts == Counter(samples=1, rejected=1)
-    (letter,) = received(brokers, "large.dead-letters")
+    (letter,) = receive(brokers, "large.dead-letters")
     headers = dict(letter.headers())
     assert (letter.key(), letter.value()) == (None, None)
     assert headers["rtamt.omitted"] == b"key and value: 1000101 bytes are too large for the topic"
@@ -181,7 +181,7 @@ def test_a_dead_letter_that_the_broker_finds_too_large_is_sent_without_its_value
     working = worker(brokers, "returned", tmp_path)
     working._undelivered(KafkaError(KafkaError.MSG_SIZE_TOO_LARGE), Returned)
     working.run()
-    (letter,) = received(brokers, "returned.dead-letters")
+    (letter,) = receive(brokers, "returned.dead-letters")
     omitted = ("rtamt.omitted", b"key and value: 101 bytes are too large for the topic")
     assert (letter.value(), letter.headers()) == (None, [("rtamt.offset", b"7"), omitted])
 

@@ -15,7 +15,7 @@ import pytest
 
 import rtamt
 from rtamt.cli import main
-from rtamt.scale.engines import Progress, checked
+from rtamt.scale.engines import Progress, check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 from tests.unit.scale.recorded import DeadlyJob, expected, suite, write_csv
@@ -36,14 +36,14 @@ def rows(tables):
 
 def test_the_table_has_the_values_of_each_recording_in_their_order(folder):
     recordings = recordings_of([str(folder / "*.csv")])
-    found = rows(checked(Job(suite()), recordings, jobs=2))
+    found = rows(check_recordings(Job(suite()), recordings, jobs=2))
     assert found == [row for i in range(6) for row in expected(i, str(folder / f"{i}.csv"))]
 
 
 def test_a_damaged_recording_is_rows_with_its_error_and_not_the_end(folder):
     (folder / "3.csv").write_bytes(b"time,x,y\n0,1,2\n0.5,nonsense,3\n")
     (folder / "9.parquet").write_bytes(b"PAR1 and no more")
-    found = rows(checked(Job(suite()), recordings_of([str(folder)]), jobs=1))
+    found = rows(check_recordings(Job(suite()), recordings_of([str(folder)]), jobs=1))
     errors = {os.path.basename(row.recording): row.error for row in found if row.error is not None}
     assert list(errors) == ["3.csv", "9.parquet"]
     assert "cannot be read as Parquet" in errors["9.parquet"]
@@ -53,7 +53,7 @@ def test_a_damaged_recording_is_rows_with_its_error_and_not_the_end(folder):
 
 def test_times_that_go_back_are_the_error_of_that_recording(folder):
     (folder / "2.csv").write_text("time,x,y\n0,1,2\n1,1,2\n0.5,1,2\n")
-    found = rows(checked(Job(suite()), recordings_of([str(folder)]), jobs=1))
+    found = rows(check_recordings(Job(suite()), recordings_of([str(folder)]), jobs=1))
     wrong = [row for row in found if row.error is not None]
     assert {os.path.basename(row.recording) for row in wrong} == {"2.csv"}
     assert len(wrong) == 3
@@ -62,7 +62,7 @@ def test_times_that_go_back_are_the_error_of_that_recording(folder):
 def test_a_recording_whose_process_dies_is_rows_with_an_error_and_the_others_are_checked(folder):
     write_csv(folder / "2_deadly.csv", 2)
     job = DeadlyJob(suite())
-    found = {row.recording: row for row in rows(checked(job, recordings_of([str(folder)]), jobs=2))}
+    found = {row.recording: row for row in rows(check_recordings(job, recordings_of([str(folder)]), jobs=2))}
     wrong = {path: row.error for path, row in found.items() if row.error is not None}
     deadly = str(folder / "2_deadly.csv")
     assert wrong == {
@@ -77,7 +77,7 @@ def test_a_recording_whose_process_dies_is_rows_with_an_error_and_the_others_are
 def computed(job, recordings, manifest):
     """Return how many recordings are computed, and the rows."""
     seen = []
-    found = rows(checked(job, recordings, manifest=str(manifest), jobs=1, progress=seen.append))
+    found = rows(check_recordings(job, recordings, manifest=str(manifest), jobs=1, progress=seen.append))
     return seen[-1].done, found
 
 
@@ -149,7 +149,7 @@ def test_a_damaged_line_of_a_manifest_is_reported(folder, tmp_path):
     damaged = b"".join([lines[0], lines[1][:30] + bytes(20) + lines[1][50:], *lines[2:]])
     manifest.write_bytes(damaged)
     with pytest.raises(rtamt.UsageError, match=f"is damaged at byte {len(lines[0])}: delete it"):
-        list(checked(Job(suite()), recordings, manifest=str(manifest)))
+        list(check_recordings(Job(suite()), recordings, manifest=str(manifest)))
     assert manifest.read_bytes() == damaged
 
 
@@ -157,7 +157,7 @@ def test_a_file_that_is_no_manifest_is_not_touched(folder, tmp_path):
     other = tmp_path / "notes.txt"
     other.write_text("my notes\n")
     with pytest.raises(rtamt.UsageError) as caught:
-        list(checked(Job(suite()), recordings_of([str(folder)]), manifest=str(other)))
+        list(check_recordings(Job(suite()), recordings_of([str(folder)]), manifest=str(other)))
     assert str(caught.value) == f"'{other}' is no manifest of rtamt: name another file"
     assert other.read_text() == "my notes\n"
 
@@ -167,7 +167,7 @@ def test_infinite_and_exact_numbers_come_back_from_the_manifest(tmp_path):
     path.write_text("time,x\n0,0.1\n0.3,0.30000000000000004\n")
     job = Job(rtamt.Suite([rtamt.parse("require A: true; require B: x >= 0.3", period="300ms")]))
     recordings = recordings_of([str(path)])
-    (table,) = checked(job, recordings, manifest=str(tmp_path / "m"), jobs=1)
+    (table,) = check_recordings(job, recordings, manifest=str(tmp_path / "m"), jobs=1)
     assert [row.robustness for row in table] == [np.inf, 0.1 - 0.3]
 
 
@@ -318,7 +318,7 @@ def test_remote_recordings_are_listed_and_fetched_by_fsspec(folder):
             "memory:///logs/0.csv",
             "memory:///logs/1.csv",
         ]
-        found = rows(checked(Job(suite()), recordings, jobs=1))
+        found = rows(check_recordings(Job(suite()), recordings, jobs=1))
         assert found == [row for i in range(2) for row in expected(i, f"memory:///logs/{i}.csv")]
         changed = recordings_of(["memory://logs/*.csv"])
         assert changed == recordings
@@ -338,5 +338,5 @@ def test_members_of_groups_and_recorded_names_are_read(tmp_path):
         "require GAP: always forall c in cars: c.x > 3; require V: always(v <= 9)",
         period=1,
     )
-    (table,) = checked(Job(rtamt.Suite(spec)), recordings_of([str(tmp_path)]), jobs=1)
+    (table,) = check_recordings(Job(rtamt.Suite(spec)), recordings_of([str(tmp_path)]), jobs=1)
     assert [(row.robustness, row.error) for row in table] == [(-1.0, None), (-1.0, None)]

@@ -29,7 +29,7 @@ def samples():
     return found
 
 
-def taken_in(batches, lateness=None):
+def feed(batches, lateness=None):
     shard, results, rejected, at = Shard(SPEC, lateness=lateness), [], [], 0
     for batch in batches:
         taken = shard.take(batch)
@@ -43,16 +43,16 @@ def taken_in(batches, lateness=None):
 
 def test_results_and_rejections_do_not_depend_on_batches():
     given = samples()
-    single = taken_in([each] for each in given)
+    single = feed([each] for each in given)
     assert len(single[1]) > 40
     assert {each[2] for each in single[1]} == {True, False}
-    assert taken_in([given]) == single
-    assert taken_in([given[:7], given[7:300], [], given[300:]]) == single
+    assert feed([given]) == single
+    assert feed([given[:7], given[7:300], [], given[300:]]) == single
 
 
 def test_what_is_left_equals_offline_robustness():
     given = samples()
-    results, rejected = taken_in([given])
+    results, rejected = feed([given])
     wrong = {index for index, _, _ in rejected}
     expected = set()
     for key in {sample.key for sample in given}:
@@ -77,12 +77,12 @@ def test_what_is_left_equals_offline_robustness():
 
 def test_samples_that_wait_do_not_depend_on_batches():
     given = samples()
-    results, rejected = taken_in(([each] for each in given), "4s")
+    results, rejected = feed(([each] for each in given), "4s")
     rejected.sort()
     assert len(results) > 50
     assert {position < 0 for position, _, _ in rejected} == {True, False}
     for batches in ([given], [given[:7], given[7:300], [], given[300:]]):
-        found = taken_in(batches, "4s")
+        found = feed(batches, "4s")
         assert sorted(found[0]) == sorted(results)
         assert sorted(found[1]) == rejected
 

@@ -7,7 +7,7 @@ import os
 import pytest
 
 import rtamt
-from rtamt.scale.engines import checked
+from rtamt.scale.engines import check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
 from tests.unit.scale.conftest import SPARK
@@ -37,9 +37,9 @@ def test_paths_have_the_same_table_as_the_local_engine(folder):
 
     frame = spark.check([str(folder)], suite())
     assert tuple(frame.columns) == ROWS
-    local = list(checked(Job(suite()), recordings_of([str(folder)]), jobs=1))
+    local = list(check_recordings(Job(suite()), recordings_of([str(folder)]), jobs=1))
     assert in_order(frame) == sorted(tuple(row) for table in local for row in table)
-    assert list(checked(Job(suite()), recordings_of([str(folder)]), engine="spark")) == local
+    assert list(check_recordings(Job(suite()), recordings_of([str(folder)]), engine="spark")) == local
 
 
 def test_results_that_are_known_are_not_computed_again(session, folder, tmp_path):

@@ -144,14 +144,14 @@ PERIODS, LIMITS = st.sampled_from(("1/10", "1/4", "1/3")), st.sampled_from((None
 
 @given(TIMES, TIMES, PERIODS, LIMITS, st.sampled_from("fM"))
 def test_a_stream_and_its_recording_have_the_same_samples(first, second, period, limit, kind):
-    def moment(k):
+    def date_of(k):
         return k / 20 if kind == "f" else np.datetime64(1_700_000_000_000_000_000 + k * 50_000_000, "ns")
 
     if kind == "M" and period == "1/3":
         period = "1/8"  # no whole number of nanoseconds
     hold_for = None if limit is None else Fraction(limit)
     channels = {
-        name: (np.array([moment(k) for k in times]), np.array(times) * weight)
+        name: (np.array([date_of(k) for k in times]), np.array(times) * weight)
         for name, times, weight in (("x", first, 1.0), ("y", second, -1.0))
     }
     trace = rtamt.read(channels)
@@ -162,7 +162,7 @@ def test_a_stream_and_its_recording_have_the_same_samples(first, second, period,
         )
         for k in sorted({*first, *second}):
             values = {"x": float(k)} if k in first else {}
-            yield from sampler.take(moment(k), values | ({"y": -float(k)} if k in second else {}))
+            yield from sampler.take(date_of(k), values | ({"y": -float(k)} if k in second else {}))
         yield from sampler.finish()
 
     try:

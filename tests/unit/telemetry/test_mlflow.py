@@ -32,7 +32,7 @@ def run(tmp_path, monkeypatch):
         yield run, Path(mlflow.get_artifact_uri().removeprefix("file://"))
 
 
-def stored(run):
+def stored_run(run):
     import mlflow
 
     return mlflow.get_run(run.info.run_id).data.metrics
@@ -41,7 +41,7 @@ def stored(run):
 def test_metrics_of_each_requirement_and_its_plot(run):
     run, artifacts = run
     log_mlflow(drive())
-    assert stored(run) == metrics(drive()) == DRIVE
+    assert stored_run(run) == metrics(drive()) == DRIVE
     assert sorted(path.name for path in (artifacts / "rtamt").iterdir()) == ["BRAKE.png", "SPEED.png"]
     assert (artifacts / "rtamt" / "SPEED.png").read_bytes().startswith(b"\x89PNG")
 
@@ -49,13 +49,13 @@ def test_metrics_of_each_requirement_and_its_plot(run):
 def test_names_that_mlflow_refuses_are_changed(run):
     run, _ = run
     log_mlflow({"wet & dry": rtamt.parse("x >= 3").evaluate({"x": [5]})}, plots=False)
-    assert stored(run) == {"wet_dry/robustness": 2.0, "wet_dry/satisfied": 1.0, "wet_dry/episodes": 0.0}
+    assert stored_run(run) == {"wet_dry/robustness": 2.0, "wet_dry/satisfied": 1.0, "wet_dry/episodes": 0.0}
 
 
 def test_infinite_robustness_is_stored(run):
     run, _ = run
     log_mlflow(rtamt.parse("require R: once[1:1](x >= 3)").evaluate({"x": [5]}), plots=False)
-    assert stored(run)["R/robustness"] == float("-inf")
+    assert stored_run(run)["R/robustness"] == float("-inf")
 
 
 def test_a_report_is_an_artifact(run, tmp_path):
@@ -70,7 +70,7 @@ def test_missing_samples_have_bounds_and_neither_a_verdict_nor_a_plot(run):
     result = rtamt.parse("x >= 3").evaluate({"x": [None]}, ranges={"x": (0, 10)})
     log_mlflow(result)
     name = "requirement_1"
-    assert stored(run) == {
+    assert stored_run(run) == {
         f"{name}/robustness_lower": -3.0,
         f"{name}/robustness_upper": 7.0,
         f"{name}/episodes": 0.0,

@@ -6,7 +6,7 @@ import os
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import CommandError, pack_named, short, write_output
+from rtamt.cli.command import CommandError, find_pack, short, write_output
 from rtamt.cli.reading_options import instant, whole_recording
 from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
@@ -110,18 +110,18 @@ class HtmlReport:
     def _files(self) -> Iterator[File]:
         for requirement in self._given:
             text = requirement.spec.text or printed(requirement.spec.formula)
-            name = pack_named(requirement.given)
+            name = find_pack(requirement.given)
             if name is not None:
-                yield File("Pack", name, text=_cut(text))
+                yield File("Pack", name, text=_abbreviate(text))
             elif not os.path.isfile(requirement.given):
-                yield File("Formula", "", text=_cut(requirement.given))
+                yield File("Formula", "", text=_abbreviate(requirement.given))
             else:
-                yield File("Specification", requirement.given, text=_cut(text))
+                yield File("Specification", requirement.given, text=_abbreviate(text))
         for trace, signals in self._traces.items():
             yield File("Trace", trace, facts="; ".join(filter(None, (_facts(trace), signals))))
 
 
-def _cut(text: str) -> str:
+def _abbreviate(text: str) -> str:
     return text if len(text) <= _TEXT else f"{text[:_TEXT]}\n… {len(text) - _TEXT} more characters"
 
 

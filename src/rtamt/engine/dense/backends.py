@@ -152,7 +152,7 @@ class EventProgram(CompiledSession):
                 program.code(), list(program.inputs), self._ignored, calls, self._types
             )
         except RuntimeError as error:
-            raise not_made(program, error) from None
+            raise creation_error(program, error) from None
 
     def part(self, monitor: Any, formula: Formula) -> Samples:
         """See :class:`Session`; for sessions with ``parts``."""

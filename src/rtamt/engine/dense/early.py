@@ -107,21 +107,21 @@ def _parts_of(query: EarlyQuery, domain: Dense) -> _Parts:
             traces.append(trace)
             formulas.append([])
         number = traces.index(trace)
-        places.append([(number, len(formulas[number]) - _hidden(query, number, required))])
+        places.append([(number, len(formulas[number]) - _count_hidden(query, number, required))])
         formulas[number].append(watched)
     groups = [
         group(
             each,
             trace,
             start=query.start and number < required,
-            hidden=_hidden(query, number, required),
+            hidden=_count_hidden(query, number, required),
         )
         for number, (each, trace) in enumerate(zip(formulas, traces, strict=True))
     ]
     return _Parts(groups, traces, required, places)
 
 
-def _hidden(query: EarlyQuery, group: int, required: int) -> int:
+def _count_hidden(query: EarlyQuery, group: int, required: int) -> int:
     """Return how many formulas of a group are not reported at every instant."""
     return query.hidden if group < required else 0
 

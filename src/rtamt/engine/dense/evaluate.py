@@ -136,7 +136,7 @@ class BoundsEvaluator(Evaluator):
                 lower, upper = (
                     core().dense_scan(scan.kind, *((each[0], each[k]) for each in operands)) for k in (1, 2)
                 )
-                columns[scan.name] = _joined(lower, upper)
+                columns[scan.name] = _join(lower, upper)
         found = self._run(plan.program, columns, recording)
         return [bounded_signal(recording, *each) for each in found]
 
@@ -153,7 +153,7 @@ class BoundsEvaluator(Evaluator):
         return found
 
 
-def _joined(lower: Samples, upper: Samples) -> StepBounds:
+def _join(lower: Samples, upper: Samples) -> StepBounds:
     """Return two step functions from the same instant on as one pair of bounds."""
     ticks = merged([lower[0], upper[0]])
     low, high = (values[own.searchsorted(ticks, "right") - 1] for own, values in (lower, upper))
@@ -175,7 +175,7 @@ def run(
             program.code(), [columns[name] for name in program.inputs], extra, calls_of(program)
         )
     except RuntimeError as error:
-        raise not_made(program, error) from None
+        raise creation_error(program, error) from None
     except _core.Undefined as error:
         raise _undefined(error, program, scale, plan, asked) from None
     return values

@@ -178,10 +178,10 @@ class DenseGroups:
         """Take a chunk, checked by the caller; return what became known of the minimum."""
         given = dict(zip(self._names, columns, strict=True))
 
-        def pushed(part: Part, backend: Any) -> list[Samples]:
+        def push_part(part: Part, backend: Any) -> list[Samples]:
             return _outputs(part, backend, backend.push([given[name] for name in part.names]))
 
-        news = self._run(pushed)
+        news = self._run(push_part)
         for name, (ticks, values) in given.items():
             if len(ticks):
                 self._last[name] = int(ticks[-1]), float(values[-1])
@@ -199,14 +199,14 @@ class DenseGroups:
         """End the trace; every requirement is known up to the last sample of any variable."""
         end = max(tick for tick, _ in self._last.values())
 
-        def finished(part: Part, backend: Any) -> list[Samples]:
+        def finish_part(part: Part, backend: Any) -> list[Samples]:
             last = [self._last[name] for name in part.names]
             held = [(np.array([end]), np.array([v])) if tick < end else _nothing() for tick, v in last]
             before = _outputs(part, backend, backend.push(held))
             rest = _outputs(part, backend, backend.finish())
-            return [changes(*_joined(*both)) for both in zip(before, rest, strict=True)]
+            return [changes(*_join(*both)) for both in zip(before, rest, strict=True)]
 
-        return self._known(self._run(finished, twice=True), end)
+        return self._known(self._run(finish_part, twice=True), end)
 
     def _run(self, step: Callable[[Part, Any], list[Samples]], *, twice: bool = False) -> list[list[Samples]]:
         """Run every part and return its outputs; where one fails, none has moved.
@@ -235,7 +235,7 @@ class DenseGroups:
         """Take what became known of every output; return the minimum up to ``until``, as far as that is new."""
         self._results = [_nothing(), *(news[part][i] for part, i in self._watched)]
         for number, (part, i) in enumerate(self._requirements):
-            self._pending[number] = _joined(self._pending[number], news[part][i])
+            self._pending[number] = _join(self._pending[number], news[part][i])
         if until is None or (self._until is not None and until <= self._until):
             return self._results[0]
         due = []
@@ -251,7 +251,7 @@ class DenseGroups:
             return self._results[0]
         self._until = until
         if not len(ticks) or ticks[-1] < until:
-            ticks, values = _joined((ticks, values), (np.array([until]), np.array([min(self._values)])))
+            ticks, values = _join((ticks, values), (np.array([until]), np.array([min(self._values)])))
         self._results[0] = changes(ticks, values, self._minimum)
         self._minimum = float(values[-1])
         return self._results[0]
@@ -306,5 +306,5 @@ def _outputs(part: Part, backend: Any, first: Samples) -> list[Samples]:
     return [first, *(backend.last_output(i) for i in range(1, len(part.formulas)))]
 
 
-def _joined(before: Samples, after: Samples) -> Samples:
+def _join(before: Samples, after: Samples) -> Samples:
     return np.concatenate((before[0], after[0])), np.concatenate((before[1], after[1]))

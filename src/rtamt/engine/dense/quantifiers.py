@@ -175,7 +175,7 @@ class DenseMemberMonitor(QuantifierMonitor):
 
     def _read(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Return the values of an update by variable and by field."""
-        found, given = self._parted(values)
+        found, given = self._partition(values)
         for name in values:
             if values[name] is None:
                 for group, fields in self._fields.values():
@@ -199,7 +199,7 @@ class DenseMemberMonitor(QuantifierMonitor):
         now = int(scale.ticks(list(times), arrays.TIME)[0]) if times else None
         with nan_of_members(self._fields):
             chunk = {name: self._samples(name, column, scale) for name, column in given.items()}
-        return self._signal(self._tried(chunk, now, scale))
+        return self._signal(self._try_update(chunk, now, scale))
 
     def _samples(self, name: str, column: tuple[Any, Any], scale: TimeScale) -> Samples:
         """Return the samples of a variable; of a field, NaN where a None ends the presence of its member."""

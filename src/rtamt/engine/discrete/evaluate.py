@@ -205,7 +205,7 @@ def failed(
 ) -> Exception:
     """Return the error for a failure of the core, which names the sub-formula and the sample."""
     if isinstance(error, RuntimeError):
-        return not_made(program, error)
+        return creation_error(program, error)
     sample = error.args[1]
     where = at_sample(sample, float(trace.times[sample]))
     if program.metadata is not None:

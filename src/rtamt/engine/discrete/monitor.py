@@ -451,6 +451,6 @@ def push_samples(
     return monitor._push(timestamps, columns, n)
 
 
-def settled_time(monitor: Monitor) -> float:
+def last_settled_time(monitor: Monitor) -> float:
     """Return the time that the value is for which the last sample made known."""
     return float(monitor._recent(monitor._lags[0] + 1)[0])

@@ -71,7 +71,7 @@ class SampledMembers(QuantifierMonitor):
 
     def _read(self, values: Mapping[str, Any], time: Any) -> tuple[Sample, dict[str, dict[str, Sample]]]:
         """Return the numbers of an update, and the members that are present."""
-        own, given = self._parted(values)
+        own, given = self._partition(values)
         for name in self.input_names:
             if name not in own:
                 raise missing_variable(name, tuple(values))
@@ -179,7 +179,7 @@ class MemberMonitor(SampledMembers):
         data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
         """
         numbers, present = self._read(values, time)
-        robustness: float | None = self._tried(time, numbers, present)
+        robustness: float | None = self._try_update(time, numbers, present)
         self._news = {}
         return robustness
 
@@ -206,7 +206,7 @@ class MemberMonitor(SampledMembers):
             for i in range(n):
                 numbers = {name: float(columns[name][i]) for name in self.input_names}
                 present = made.present(columns, i)
-                known.note(self._tried(float(times[i]), numbers, present), self._outer)
+                known.note(self._try_update(float(times[i]), numbers, present), self._outer)
         except Exception:
             self._restore(before)
             raise

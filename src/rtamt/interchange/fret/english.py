@@ -206,11 +206,11 @@ def expression_of(formula: Formula, step: Fraction, strength: int = 0) -> str:
         InexpressibleError: FRETish has no operator of that meaning.
     """
     if isinstance(formula, Const):
-        return _named(formula.name) if formula.name else _number(formula.value)
+        return _quote_name(formula.name) if formula.name else _number(formula.value)
     if isinstance(formula, Var):
         if formula.bound:
             raise InexpressibleError(f"'{formula}' is a field of a group's members, which FRET does not have")
-        return _named(formula.name)
+        return _quote_name(formula.name)
     assert isinstance(formula, Apply)
     name, args = formula.op.name, formula.args
 
@@ -220,9 +220,9 @@ def expression_of(formula: Formula, step: Fraction, strength: int = 0) -> str:
     if name in ("true", "false"):
         return name
     if name == "not":
-        return _bracketed(f"!{below(args[0], 8)}", 4, strength)
+        return _bracket(f"!{below(args[0], 8)}", 4, strength)
     if name == "neg":
-        return _bracketed(f"-{below(args[0], 9)}", 8, strength)
+        return _bracket(f"-{below(args[0], 9)}", 8, strength)
     if formula.op is TRUTH:
         return expression_of(args[0], step, strength)
     name = name.removeprefix("holds_")
@@ -230,7 +230,7 @@ def expression_of(formula: Formula, step: Fraction, strength: int = 0) -> str:
         _check_operands(formula)
         tightness, symbol = _SYMBOLS[name]
         text = f"{below(args[0], tightness)} {symbol} {below(args[1], tightness + 1)}"
-        return _bracketed(text, tightness, strength)
+        return _bracket(text, tightness, strength)
     if is_function(formula.op):
         return f"{_CALLS.get(name, name)}({', '.join(map(below, args))})"
     return _temporal(formula, step, strength)
@@ -264,16 +264,16 @@ def _temporal(formula: Apply, step: Fraction, strength: int) -> str:
     if name in ("prev", "s_prev"):
         return f"preBool({'true' if name == 'prev' else 'false'}, {inner()})"
     if name == "rise":
-        return _bracketed(f"{expression_of(args[0], step, 3)} & preBool(true, {negated()})", 3, strength)
+        return _bracket(f"{expression_of(args[0], step, 3)} & preBool(true, {negated()})", 3, strength)
     if name == "fall":
-        return _bracketed(f"preBool(true, {inner()}) & {negated()}", 3, strength)
+        return _bracket(f"preBool(true, {inner()}) & {negated()}", 3, strength)
     one_sample = interval is None or (interval.begin == interval.end == step)
     if name in ("delay", "diff", "rate") and one_sample:
         before = f"preReal({inner(args[1]) if len(args) > 1 else inner()}, {inner()})"
         change = f"{expression_of(args[0], step, 6)} - {before}"
         if name == "rate":
-            return _bracketed(f"({change}) / {decimal(step)}", 7, strength)
-        return before if name == "delay" else _bracketed(change, 6, strength)
+            return _bracket(f"({change}) / {decimal(step)}", 7, strength)
+        return before if name == "delay" else _bracket(change, 6, strength)
     if name in ("once", "eventually") and interval is not None and args[0] == STL["true"]():
         # So many samples exist before, or behind.
         samples = interval.begin / step
@@ -286,13 +286,13 @@ def _temporal(formula: Apply, step: Fraction, strength: int) -> str:
             some = "occurred" if past else "occurs"
             if name in ("once", "eventually"):
                 return f"{some}({end}, {inner()})"
-            return _bracketed(f"!{some}({end}, {negated()})", 4, strength)
+            return _bracket(f"!{some}({end}, {negated()})", 4, strength)
     raise InexpressibleError(
         f"FRETish has no '{formula.op.spellings[0]}' inside of an expression, as in '{formula}'"
     )
 
 
-def _bracketed(text: str, tightness: int, strength: int) -> str:
+def _bracket(text: str, tightness: int, strength: int) -> str:
     return f"({text})" if tightness < strength else text
 
 
@@ -302,7 +302,7 @@ def _number(value: float) -> str:
     return f"{Decimal(repr(value)):f}".removesuffix(".0")
 
 
-def _named(name: str) -> str:
+def _quote_name(name: str) -> str:
     if not _NAME.fullmatch(name) or name.lower() in KEYWORDS or name.lower() in INFIX:
         raise InexpressibleError(
             f"'{name}' cannot be a variable of FRETish: use letters, digits and underscores"

@@ -136,7 +136,7 @@ class DeclarationParser(ImportParser):
                 f"choose from {', '.join((*_SET_LATER, *self._enumerations))}",
                 type_name.span,
             )
-        name = self._taken(f"the name of a {_CALLED[kind]}", quotes=True)
+        name = self._take_name(f"the name of a {_CALLED[kind]}", quotes=True)
         name = self._with_slashes(name)
         self._declare(name, type_name.text, role, kind, optional)
         self.accept(";")
@@ -277,7 +277,7 @@ class DeclarationParser(ImportParser):
         elif self.accept(INFINITY):
             value = inf
         else:
-            raise self._expected("a number")
+            raise self._expected_error("a number")
         return -value if minus else value
 
     def _annotation(self) -> bool:
@@ -288,8 +288,8 @@ class DeclarationParser(ImportParser):
         if kind.text != "topic":
             raise self.error(f"expected 'topic' after '@', got {kind}", kind.span)
         if not self.accept("("):
-            raise self._expected("'(' after '@ topic'")
-        token = self._taken("the name of a variable", quotes=True)
+            raise self._expected_error("'(' after '@ topic'")
+        token = self._take_name("the name of a variable", quotes=True)
         name = token.name
         declared = self._declarations.get(name)
         if name not in self._given and (declared is None or declared.kind != "var"):
@@ -299,10 +299,10 @@ class DeclarationParser(ImportParser):
         if name in self._topics:
             raise self.error(f"'{name}' has two topics", token.span)
         if not self.accept(","):
-            raise self._expected(f"',' after '{name}'")
+            raise self._expected_error(f"',' after '{name}'")
         self._topics[name] = self._topic()
         if not self.accept(")"):
-            raise self._expected("')' after the topic")
+            raise self._expected_error("')' after the topic")
         self.accept(";")
         return True
 
@@ -313,7 +313,7 @@ class DeclarationParser(ImportParser):
         while self.token.text not in (")", "") and self.token.start == end:
             end = self.next().end
         if end == first.start:
-            raise self._expected("the name of a topic")
+            raise self._expected_error("the name of a topic")
         return self.text[first.start : end]
 
     # ---- looking ahead ---------------------------------------------------------------------------

@@ -60,7 +60,7 @@ class GroupParser(DeclarationParser):
                     f"{choices(type_name.text, types, 'types')}",
                     type_name.span,
                 )
-            token = self._taken(f"the name of a field of '{group}'", quotes=True)
+            token = self._take_name(f"the name of a field of '{group}'", quotes=True)
             if token.name in found:
                 raise self.error(f"'{group}' has two fields called '{token.name}'", token.span)
             unit = self._unit(token)

@@ -43,7 +43,7 @@ _KEPT = 32
 
 
 @lru_cache(_KEPT)
-def _parsed(key: _Key) -> Document:
+def _parse_file(key: _Key) -> Document:
     """Return the document of a file; raise :class:`ImportsOthersError` if it imports others."""
     parser, text, unit, truths = key
     return parser(text, STL, unit, Scope(), {}, NoLibrary(), truths).document(imported=True)
@@ -52,7 +52,7 @@ def _parsed(key: _Key) -> Document:
 @lru_cache(_KEPT)
 def _placed(key: _Key, span: Span) -> tuple[Mapping[str, Formula], Mapping[str, Template]]:
     """Return the definitions and templates of a file at the position of its import."""
-    return moved(_parsed(key), span)
+    return moved(_parse_file(key), span)
 
 
 class ImportParser(RequirementParser):
@@ -106,8 +106,8 @@ class ImportParser(RequirementParser):
         self.next()
         module = self.next()
         if not self.accept("import"):
-            raise self._expected(f"'import' after 'from {module.text}'")
-        name = self._taken("the name of a class")
+            raise self._expected_error(f"'import' after 'from {module.text}'")
+        name = self._take_name("the name of a class")
         if name.text in self._imports:
             raise self.error(f"'{name.text}' is imported twice", name.span)
         self._imports[name.text] = Import(module.text, name.text)
@@ -182,7 +182,7 @@ class ImportParser(RequirementParser):
             return None
         key = type(self), text, self.unit, self._truths
         try:
-            return Imported(_parsed(key), {}, partial(_placed, key))
+            return Imported(_parse_file(key), {}, partial(_placed, key))
         except ImportsOthersError:
             return None
 
@@ -210,8 +210,8 @@ class ImportParser(RequirementParser):
         """Return where a name comes from, for messages: "" if it is of this text."""
         return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
 
-    def _taken(self, what: str, *, quotes: bool = False) -> Token:
+    def _take_name(self, what: str, *, quotes: bool = False) -> Token:
         """Consume a name, or raise an error."""
         if self.token.kind != "name" and not (quotes and self.token.kind == "quoted"):
-            raise self._expected(what)
+            raise self._expected_error(what)
         return self.next()

@@ -47,7 +47,7 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
         return plain
     if opening != "[" and not (opening == "(" and _begins_open(parser, op)):
         if op.bounds is _REQUIRED:
-            raise _unbounded(parser, at, at, at)
+            raise _unbounded_error(parser, at, at, at)
         return None
     if op.bounds is _UNTIMED:
         raise parser.error(f"'{texts[at]}' takes no interval", _span(parser, first, first))
@@ -84,7 +84,7 @@ def parse_interval(parser: FormulaParser, op: Operator, at: int) -> Interval | N
             BoundError,
         )
     if end is None and op.bounds is _REQUIRED:
-        raise _unbounded(parser, at, *end_tokens)
+        raise _unbounded_error(parser, at, *end_tokens)
     default = "" if parser.unit == "s" else parser.unit
     begin_unit, end_unit = begin_unit or end_unit or default, end_unit or default
     if begin_unit:
@@ -173,7 +173,7 @@ def _behind_bound(parser: FormulaParser, at: int) -> int | None:
     return at + 1 if tokens[at].text in UNITS else at
 
 
-def _unbounded(parser: FormulaParser, at: int, first: int, last: int) -> SpecificationError:
+def _unbounded_error(parser: FormulaParser, at: int, first: int, last: int) -> SpecificationError:
     name = parser.texts[at]
     return parser.error(
         f"'{name}' needs an interval with an upper bound, such as {name}[0:5]",

@@ -153,7 +153,7 @@ class FormulaParser(LookaheadParser):
             if self.scope.free and after not in _AFTER_OTHERS:
                 self.index = at + 1
                 return Var(text, span_of((self.starts[at], self.ends[at])))
-            return (self._applied(at) if after in _OPENING else None) or self.name()
+            return (self._parse_application(at) if after in _OPENING else None) or self.name()
         if text in QUANTIFIERS and begins_quantifier(self):
             return parse_quantifier(self)
         after = self.texts[at + 1] if text else ""
@@ -169,7 +169,7 @@ class FormulaParser(LookaheadParser):
             if op.fixity is Fixity.CONDITIONAL and self._begins_choice(at):
                 return self.choice(op, power, under)
         if is_name(text) or is_quoted(text):
-            return (self._applied(at) if after in _OPENING else None) or self.name()
+            return (self._parse_application(at) if after in _OPENING else None) or self.name()
         if self._begins_topic(at):
             return self.name()
         raise self.error(*diagnostics.no_operand(self.tokens, at))
@@ -183,7 +183,7 @@ class FormulaParser(LookaheadParser):
         word = self._opening(text) is not None or self._infix(text) is not None
         return _NAME if is_name(text) and not (word or text in QUANTIFIERS or text == INFINITY) else _OTHER
 
-    def _applied(self, at: int) -> Formula | None:
+    def _parse_application(self, at: int) -> Formula | None:
         """Parse what a bracket or parenthesis follows: a table, or the use of a template."""
         token, scope = self.tokens[at], self.scope
         table = scope.tables.get(token.name)
@@ -294,7 +294,7 @@ class FormulaParser(LookaheadParser):
         self.index += 1
         starts, ends = self.starts, self.ends
         if op is self._sign:
-            value = self._signed(op)
+            value = self._parse_signed(op)
             if value is not None:
                 return Const(-value, Span(starts[at], ends[self.index - 1]))
         interval = parse_interval(self, op, at)
@@ -323,7 +323,7 @@ class FormulaParser(LookaheadParser):
                 token.span,
             )
 
-    def _signed(self, op: Operator) -> float | None:
+    def _parse_signed(self, op: Operator) -> float | None:
         """Consume and return the number whose sign is the minus just read, if there is one."""
         token = self.tokens[self.index]
         if token.kind != "number" and (token.text != INFINITY or INFINITY in self.scope):

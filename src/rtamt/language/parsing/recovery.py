@@ -122,7 +122,7 @@ class _RecoveringParser(DocumentParser):
         if error.span is None:
             return False
         written = self.text[error.span.start : error.span.end]
-        name = _unquoted(written)
+        name = _unquote(written)
         if name in self._unknown or name.partition(".")[0] in self._unknown:
             return True
         return (
@@ -159,7 +159,7 @@ class _RecoveringParser(DocumentParser):
         for name in names:
             self._definitions.pop(name, None)  # of the beginning of what is wrong
             (self._pending or {}).pop(name, None)
-        words = [_unquoted(each) for each in self.texts[begin:end]]
+        words = [_unquote(each) for each in self.texts[begin:end]]
         role = words[0] in ("input", "output")
         word, name, *more = (*words[role:], "", "")
         if word == "import":
@@ -186,7 +186,7 @@ class _RecoveringParser(DocumentParser):
                     last += 2
                 before = texts[at - 1] if at > begin else ""
                 after = texts[last + 1] if last + 1 < end else ""
-                name = _unquoted(self.text[starts[at] : ends[last]])
+                name = _unquote(self.text[starts[at] : ends[last]])
                 if after == "=" or (
                     self._is_plain(before)
                     and before != "require"
@@ -200,11 +200,11 @@ class _RecoveringParser(DocumentParser):
 
     # ---- what stands for anything ----------------------------------------------------------------
 
-    def _applied(self, at: int) -> Formula | None:
+    def _parse_application(self, at: int) -> Formula | None:
         """Take the use of a wrong template or table for anything."""
         name, opening, *_ = self.tokens[at : at + 2]
         if name.name not in self._unknown or opening.text != "(":
-            return super()._applied(at)
+            return super()._parse_application(at)
         self.index = at + 2
         while self.token.text != ")":
             if self.texts[self.index + 1] == "=":
@@ -288,5 +288,5 @@ def _start(assertion: Assertion) -> int:
     return 0 if assertion.span is None else assertion.span.start
 
 
-def _unquoted(text: str) -> str:
+def _unquote(text: str) -> str:
     return unquoted(text) if is_quoted(text) else text

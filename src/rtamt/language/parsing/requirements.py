@@ -61,11 +61,11 @@ class RequirementParser(FormulaParser):
             self.next()
             chosen = next((known for known in SEVERITIES if known == self.token.text), None)
             if chosen is None:
-                raise self._expected(f"a severity ({', '.join(SEVERITIES)})")
+                raise self._expected_error(f"a severity ({', '.join(SEVERITIES)})")
             severity = chosen
             self.next()
         if not self.accept(":"):
-            raise self._expected(f"':' after 'require {name}'")
+            raise self._expected_error(f"':' after 'require {name}'")
         begin = self.token.start
         formula = self.formula()
         formula = self.standing_alone(formula, Span(begin, self.tokens[self.index - 1].end))
@@ -87,7 +87,7 @@ class RequirementParser(FormulaParser):
             return self.token.span
         match = ID.match(self.text, self.token.start)
         if match is None:
-            raise self._expected("the name of a requirement, such as REQ-12")
+            raise self._expected_error("the name of a requirement, such as REQ-12")
         return Span(match.start(), match.end())
 
     def _id(self) -> str:
@@ -171,5 +171,5 @@ class RequirementParser(FormulaParser):
 
     # ---- errors ----------------------------------------------------------------------------------
 
-    def _expected(self, what: str) -> SpecificationError:
+    def _expected_error(self, what: str) -> SpecificationError:
         return self.error(f"expected {what}, got {self.token}", self.token.span, ParseError)

@@ -39,12 +39,12 @@ class Sampling:
     span: Span | None = field(default=None, compare=False, repr=False)
 
     def __str__(self) -> str:
-        limit = "" if self.limit is None else f" for {_written(self.limit)}"
+        limit = "" if self.limit is None else f" for {_format_seconds(self.limit)}"
         skip = " skip nan" if self.skip_nan else ""
-        return f"sample {_written(self.period)}{' hold' * self.hold}{limit}{skip}"
+        return f"sample {_format_seconds(self.period)}{' hold' * self.hold}{limit}{skip}"
 
 
-def _written(seconds: Fraction) -> str:
+def _format_seconds(seconds: Fraction) -> str:
     return format_duration(seconds).replace(" ", "")
 
 

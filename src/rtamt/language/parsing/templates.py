@@ -176,7 +176,7 @@ def _parameters(parser: FormulaParser, name: Token) -> tuple[Parameter, ...]:
         if parser.accept(")"):
             return tuple(found.values())
         if not parser.accept(","):
-            raise _unclosed(parser, opening)
+            raise _unclosed_error(parser, opening)
 
 
 # ---- uses ----------------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ def _parameters(parser: FormulaParser, name: Token) -> tuple[Parameter, ...]:
 def parse_use(parser: FormulaParser, template: Template) -> Formula:
     """``use = word , "(" , [ [ word , "=" ] , argument , { "," , [ word , "=" ] , argument } ] , ")"``."""
     first = parser.next()
-    given = _given(parser, template, first)
+    given = _parse_arguments(parser, template, first)
     span = Span(first.start, parser.tokens[parser.index - 1].end)
     missing = [p.name for p in template.parameters if p.name not in given and p.default is None]
     if missing:
@@ -204,7 +204,7 @@ def _is(names: Sequence[str]) -> str:
     return "is" if len(names) == 1 else "are"
 
 
-def _given(parser: FormulaParser, template: Template, first: Token) -> dict[str, Argument]:
+def _parse_arguments(parser: FormulaParser, template: Template, first: Token) -> dict[str, Argument]:
     """Return what a use gives, by parameter."""
     names = [parameter.name for parameter in template.parameters]
     opening = parser.next()
@@ -238,7 +238,7 @@ def _given(parser: FormulaParser, template: Template, first: Token) -> dict[str,
         if not parser.accept(","):
             break
     if not parser.accept(")"):
-        raise _unclosed(parser, opening)
+        raise _unclosed_error(parser, opening)
     return given
 
 
@@ -268,7 +268,7 @@ def parse_argument(parser: FormulaParser) -> Argument:
     return Argument(formula, unit="" if name is None else parser.scope.units.get(name, ""))
 
 
-def _unclosed(parser: FormulaParser, opening: Token) -> SpecificationError:
+def _unclosed_error(parser: FormulaParser, opening: Token) -> SpecificationError:
     if parser.token.kind == "end":
         return parser.error("this '(' is never closed", opening.span)
     return parser.error(f"expected ',' or ')', got {parser.token}", parser.token.span)

@@ -106,14 +106,14 @@ def typed(
             raise MistypedError(no_formula(texts(k), types[k], member), k)
         if not op.equates and k not in op.keeps:
             raise MistypedError(
-                f"'{texts(k)}' is of the {_named(types[k])}, which has neither arithmetic nor order; "
+                f"'{texts(k)}' is of the {_type_name(types[k])}, which has neither arithmetic nor order; "
                 f"compare it with == or !=, such as {_comparison(texts(k), types[k], member)}",
                 k,
             )
     same_type = range(len(args)) if op.equates else [k for k in op.keeps if k < len(args)]
     one = _one_type([types[k] for k in same_type], [texts(k) for k in same_type], args, member)
     meant = [
-        _resolved(operand, one) if k in same_type else as_formula_at(op, k, operand)
+        _resolve(operand, one) if k in same_type else as_formula_at(op, k, operand)
         for k, operand in enumerate(args)
     ]
     if op.equates:
@@ -151,17 +151,17 @@ def _one_type(
                     f"declare the variable, such as input {one.name} {texts[k]}"
                 )
             raise MistypedError(
-                f"'{here}' is of the {_named(one)}, and '{texts[k]}' is none of its members; "
+                f"'{here}' is of the {_type_name(one)}, and '{texts[k]}' is none of its members; "
                 f"write one of them: {one.listing(partial(member, one))}"
             )
-        other = "a Boolean" if each is BOOLEAN else f"of the {_named(each)}"
+        other = "a Boolean" if each is BOOLEAN else f"of the {_type_name(each)}"
         raise MistypedError(
-            f"'{here}' is of the {_named(one)}, and '{texts[k]}' is {other}; compare values of one enumeration"
+            f"'{here}' is of the {_type_name(one)}, and '{texts[k]}' is {other}; compare values of one enumeration"
         )
     return one
 
 
-def _resolved(operand: Formula, one: Enumeration) -> Formula:
+def _resolve(operand: Formula, one: Enumeration) -> Formula:
     if isinstance(operand, Const) and isinstance(operand.type, Ambiguous):
         assert operand.name is not None
         code = one.code(operand.name)
@@ -206,7 +206,7 @@ def takes_number(op: Operator, written: str) -> str:
 def no_formula(text: str, type_: PartType, member: MemberText) -> str:
     """Return the message for a value of an enumeration in place of a formula."""
     return (
-        f"'{text}' is of the {_named(type_)}, and a formula is expected here; "
+        f"'{text}' is of the {_type_name(type_)}, and a formula is expected here; "
         f"compare it, such as {_comparison(text, type_, member)}"
     )
 
@@ -218,7 +218,7 @@ def ambiguous(name: str, type_: PartType) -> str:
     return f"'{name}' is a member of {' and of '.join(names)}; write {' or '.join(f'{each}.{name}' for each in names)}"
 
 
-def _named(type_: PartType) -> str:
+def _type_name(type_: PartType) -> str:
     if isinstance(type_, Ambiguous):
         return f"enumerations {' and '.join(each.name for each in type_.choices)}"
     assert isinstance(type_, Enumeration)

@@ -97,7 +97,7 @@ def _latex_of(op: Operator, operands: int) -> str:
     if op.latex:
         return op.latex
     word = op.spellings[0].replace("{", "{{").replace("}", "}}")
-    name = rf"\mathrm{{{{{_escaped(word)}}}}}_{{I}}"
+    name = rf"\mathrm{{{{{_escape(word)}}}}}_{{I}}"
     fields = [f"{{{k}}}" for k in range(operands)]
     if is_infix(op):
         return rf"{fields[0]} \mathbin{{{{{name}}}}} {fields[1]}"
@@ -145,10 +145,10 @@ def _latex_number(value: float) -> str:
 
 
 def _latex_name(name: str) -> str:
-    escaped = _escaped(name)
+    escaped = _escape(name)
     return escaped if len(name) == 1 else rf"\mathrm{{{escaped}}}"
 
 
-def _escaped(name: str) -> str:
+def _escape(name: str) -> str:
     special = {"\\": r"\backslash ", "^": r"\hat{\ }", "~": r"\sim ", " ": r"\ "}
     return "".join(special.get(c, f"\\{c}" if c in "{}$&#_%" else c) for c in name)

@@ -75,7 +75,7 @@ def to_text(
         if op.fixity is Fixity.QUANTIFIER:
             return (f"{word} {op.binder}: ", *node.args)
         if op.fixity is Fixity.FUNCTION:
-            return (f"{word}({share_text(node, ', ')}", *_joined(_operands(node), ", "), ")")
+            return (f"{word}({share_text(node, ', ')}", *_join(_operands(node), ", "), ")")
         if op.fixity is Fixity.CONDITIONAL:
             condition, first, second = node.args
             return (
@@ -150,7 +150,7 @@ def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGES
             return (f"{word} {op.binder}:(", *node.args, ")")
         if op.fixity is Fixity.CONDITIONAL:
             return (f"{word}(", node.args[0], f"){THEN}(", node.args[1], f"){ELSE}(", node.args[2], ")")
-        return (f"{word}({share_text(node, ',')}", *_joined(node.args, ","), ")")
+        return (f"{word}({share_text(node, ',')}", *_join(node.args, ","), ")")
 
     return text_of(formula, pieces, limit)
 
@@ -173,7 +173,7 @@ def number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-def _joined(operands: Iterable[Formula], separator: str) -> list[Piece]:
+def _join(operands: Iterable[Formula], separator: str) -> list[Piece]:
     joined: list[Piece] = []
     for operand in operands:
         joined += (separator, operand) if joined else (operand,)

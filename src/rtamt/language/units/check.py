@@ -58,7 +58,7 @@ constant in s"
         try:
             measures[id(node)] = node.op.units(operands)
         except MisfitError as error:
-            message = error.message.format(*map(_called, node.args))
+            message = error.message.format(*map(_operand_name, node.args))
             if error.kind != UNCHECKED or message not in unchecked:
                 where = node if error.operand is None else node.args[error.operand]
                 yield UnitFinding(error.kind, where.span, message)
@@ -66,10 +66,10 @@ constant in s"
                 unchecked.add(message)
             continue
         if isinstance(measures[id(node)], Number):
-            measures[id(node)] = _computed(node, operands)
+            measures[id(node)] = _computed_number(node, operands)
 
 
-def _called(operand: Formula) -> str:
+def _operand_name(operand: Formula) -> str:
     """Return an operand for a message, constants by their names."""
 
     def named(node: Formula, args: tuple[Formula, ...]) -> Formula:
@@ -91,7 +91,7 @@ def _leaf(node: Formula, units: Mapping[str, Quantity]) -> Measure:
     return Number(node.value) if node.name is None else units.get(node.name)
 
 
-def _computed(node: Apply, operands: Sequence[Measure]) -> Number:
+def _computed_number(node: Apply, operands: Sequence[Measure]) -> Number:
     """Return a number that is made of numbers of the text, such as 1000 / 3600."""
     values = [each.value for each in operands if isinstance(each, Number) and each.value is not None]
     if node.op.tense is not Tense.NONE or node.op.definition is None or len(values) != len(operands):

@@ -143,7 +143,7 @@ def joined(a: int, first: Quantity, b: int, second: Quantity, *, zeros: bool) ->
     fitting = [pair[0] for pair in ones if any(_same_scale(pair, each) for each in others)]
     if fitting:
         return Quantity(first.powers, tuple(fitting), difference)
-    raise _scaled(a, first, b, second, one, other)
+    raise _scale(a, first, b, second, one, other)
 
 
 def _in_radians(cycles: Resolved, other: Resolved) -> Resolved:
@@ -165,7 +165,7 @@ def _different(a: int, first: Quantity, b: int, second: Quantity) -> MisfitError
     )
 
 
-def _scaled(a: int, first: Quantity, b: int, second: Quantity, one: Resolved, other: Resolved) -> MisfitError:
+def _scale(a: int, first: Quantity, b: int, second: Quantity, one: Resolved, other: Resolved) -> MisfitError:
     factor = one.scale / other.scale
     if isclose(factor, 1 / _RAD_IN_DEG, rel_tol=_EXACT):
         how = f", or write radians({{{a}}})"
@@ -228,7 +228,7 @@ def times(first: Measure, second: Measure) -> Measure:
         new = second.factors
     if first.factors is None or new is None:
         return Quantity(powers, None, difference=True)
-    return Quantity(powers, _kept({a * b for a, b in product(first.factors, new)}), difference=True)
+    return Quantity(powers, _keep_nonzero({a * b for a, b in product(first.factors, new)}), difference=True)
 
 
 def power(measure: Measure, exponent: Fraction) -> Measure:
@@ -242,10 +242,10 @@ def power(measure: Measure, exponent: Fraction) -> Measure:
         factors = {each ** float(exponent) for each in measure.factors or (inf,)}
     except OverflowError:
         factors = {inf}
-    return Quantity(powers, _kept(factors), difference=True)
+    return Quantity(powers, _keep_nonzero(factors), difference=True)
 
 
-def _kept(factors: set[float]) -> tuple[float, ...] | None:
+def _keep_nonzero(factors: set[float]) -> tuple[float, ...] | None:
     usable = len(factors) <= _MOST and all(0 < factor < inf for factor in factors)
     return tuple(sorted(factors)) if usable else None
 

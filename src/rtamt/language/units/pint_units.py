@@ -142,7 +142,7 @@ def unit_text(powers: Powers) -> str:
     """
     if len(powers) == 1 and powers[0][1] == 1:
         return powers[0][0]
-    return _written(_exponents(product(powers)))
+    return _format_product(_exponents(product(powers)))
 
 
 def shortest_text(powers: Powers) -> str:
@@ -153,10 +153,14 @@ def shortest_text(powers: Powers) -> str:
     """
     unit, known = product(powers), resolved(powers)
     bases = dict(known.bases) | ({"radian": known.angle} if known.angle else {})
-    return _written(bases) if known.scale == 1 and len(bases) < len(_exponents(unit)) else unit_text(powers)
+    return (
+        _format_product(bases)
+        if known.scale == 1 and len(bases) < len(_exponents(unit))
+        else unit_text(powers)
+    )
 
 
-def _written(exponents: Mapping[str, Fraction]) -> str:
+def _format_product(exponents: Mapping[str, Fraction]) -> str:
     """Return a product of units of the library in symbols."""
     above, below = (
         [

@@ -170,15 +170,15 @@ def _result(unit: Quantity, measures: Sequence[Measure]) -> Measure:
 
 def to_degrees(measures: Sequence[Measure]) -> Measure:
     """Return the unit of ``degrees``."""
-    return _turned(measures[0], "degree", "in degrees already", _DEG, _RAD)
+    return _convert_angle(measures[0], "degree", "in degrees already", _DEG, _RAD)
 
 
 def to_radians(measures: Sequence[Measure]) -> Measure:
     """Return the unit of ``radians``."""
-    return _turned(measures[0], "radian", "in radians already", _RAD, _DEG)
+    return _convert_angle(measures[0], "radian", "in radians already", _RAD, _DEG)
 
 
-def _turned(measure: Measure, wrong: str, why: str, to: Quantity, from_: Quantity) -> Measure:
+def _convert_angle(measure: Measure, wrong: str, why: str, to: Quantity, from_: Quantity) -> Measure:
     """Return an angle, or a rate of one, in the other unit of angles."""
     if not isinstance(measure, Quantity):
         return measure

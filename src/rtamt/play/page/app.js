@@ -53,7 +53,7 @@ const replay = new Follower("replay", () => (answer ? wish({ view: null }) : nul
   if (view.part) closer.watched.soon(0);
   if (state.at !== null) moment.soon(0);
 }, 120);
-const moment = new Follower("moment", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found, _, { at, change }) => { if (change === changes) over.known(found, at); }, 30);
+const moment = new Follower("cursor", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found, _, { at, change }) => { if (change === changes) over.known(found, at); }, 30);
 // What is seen of a part of the time, in full detail.
 const closer = {
   drawn: new Follower("redraw", () => (answer && view.part ? wish() : null), (found, _, { change }) => {
@@ -62,7 +62,7 @@ const closer = {
     arrange(answer.variables);
     over.draw();
   }, 50),
-  watched: new Follower("rewatch", () => (answer && over.found && !over.found.error && view.part ? wish() : null), (found, _, { change }) => { if (change === changes) over.rewatched(found); }, 100),
+  watched: new Follower("redraw_replay", () => (answer && over.found && !over.found.error && view.part ? wish() : null), (found, _, { change }) => { if (change === changes) over.rewatched(found); }, 100),
 };
 
 const view = new View({
@@ -350,7 +350,7 @@ for (const button of document.querySelectorAll("[data-wanted]")) {
     for (const each of buttons) each.disabled = true;
     $("cancel").hidden = false;
     $("answer").textContent = "searching …";
-    const found = await ask("question", wish({ wanted: button.dataset.wanted }));
+    const found = await ask("find_trace", wish({ wanted: button.dataset.wanted }));
     for (const each of buttons) each.disabled = false;
     $("cancel").hidden = true;
     $("answer").textContent = found.error ? found.error.message : found.sentence;

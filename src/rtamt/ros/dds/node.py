@@ -104,12 +104,12 @@ class Node:
             print(escaped(f"[{notice.level.name}] {notice.message}"), file=sys.stderr, flush=True)
         if notices or time.monotonic() >= self._due:
             self._due = time.monotonic() + _DIAGNOSTICS_EVERY
-            self._report_refused()
+            self._report_incompatible()
             conditions = self._monitor.conditions(now)
             array = self._outbox.diagnostics(conditions, self._participant.name, now)
             self._participant.publish(DIAGNOSTICS, array)
 
-    def _report_refused(self) -> None:
+    def _report_incompatible(self) -> None:
         for topic, quality in self._participant.refused():
             sentence = (
                 f"[WARN] a publisher on {topic} is not heard, for its {quality} is less than is asked for: "

@@ -111,20 +111,20 @@ class Participant:
         core = self._cyclone["core"]
         return core.Qos(core.Policy.Userdata(text.encode()), base=qos)
 
-    def _hashed(self, qos: Any, cls: Any) -> Any:
+    def _with_type_hash(self, qos: Any, cls: Any) -> Any:
         """Return the quality of service of a reader or writer, with the hash of its type (Iron and newer)."""
         return self._user_data(qos, f"typehash={self._types.type_hash(cls)};")
 
     def _writer(self, topic: str, cls: Any, qos: Any) -> Any:
         channel = self._cyclone["topic"].Topic(self._participant, topic, cls, qos=qos)
-        return self._cyclone["pub"].DataWriter(self._participant, channel, qos=self._hashed(qos, cls))
+        return self._cyclone["pub"].DataWriter(self._participant, channel, qos=self._with_type_hash(qos, cls))
 
     # ---- topics ----------------------------------------------------------------------------------
 
     def subscribe(self, topic: str, cls: Any) -> None:
         """Subscribe to a topic; see :meth:`take`."""
         channel = self._cyclone["topic"].Topic(self._participant, _on_wire(topic), cls, qos=self._quality)
-        hashed = self._hashed(self._quality, cls)
+        hashed = self._with_type_hash(self._quality, cls)
         reader = self._cyclone["sub"].DataReader(self._participant, channel, qos=hashed)
         core = self._cyclone["core"]
         new = core.SampleState.NotRead | core.ViewState.Any | core.InstanceState.Any

@@ -77,26 +77,26 @@ class Types:
                 )
             self._store.register(self._read(found, name))
         for _, field in self._store.fielddefs[name][1]:
-            inner = self._named_in(field)
+            inner = self._field_class(field)
             if inner is not None:
                 self._find(inner)
 
     def _read(self, path: Path, name: str) -> Any:
         text = path.read_text(encoding="utf-8")
         if re.search(r"^\s*wstring\b", text, re.MULTILINE):  # which rosbags takes for the name of a message
-            raise _unsupported("wstring")
+            raise _unsupported_error("wstring")
         try:
             return self._typesys.get_types_from_msg(text, name)
         except self._typesys.TypesysError as error:
             place = "".join(str(error).splitlines()[3:4])  # after what is wrong, the text and a position
             raise UsageError(f"'{path}' is not a message definition of ROS: '{place}' is no field") from None
 
-    def _named_in(self, field: Any) -> str | None:
+    def _field_class(self, field: Any) -> str | None:
         node, what = field
         kinds = self._typesys.base.Nodetype
         if node == kinds.NAME:
             return str(what)
-        return None if node == kinds.BASE else self._named_in(what[0])
+        return None if node == kinds.BASE else self._field_class(what[0])
 
     def _make(self, name: str) -> Any:
         package, _, short = name.split("/")
@@ -132,11 +132,11 @@ class Types:
             self._idl.types, {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base), None
         )
         if known is None:
-            raise _unsupported(base)
+            raise _unsupported_error(base)
         return known, float if base.startswith("float") else int
 
 
-def _unsupported(base: str) -> UsageError:
+def _unsupported_error(base: str) -> UsageError:
     return UsageError(
         f"a message with a field of type {base} cannot be read or sent over DDS: Cyclone DDS for Python has no such "
         f"type; change the field to string, or use the node for rclpy (ros/rtamt4ros2)"

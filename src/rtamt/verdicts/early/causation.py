@@ -70,7 +70,7 @@ class CausationMonitor(EarlyMonitor):
     def runs(self) -> list[CausationRun]:
         """Return the runs of instants for which the last call caused something, also later than the newest sample."""
 
-    def _require_bounded(self) -> None:
+    def _require_bounded_past(self) -> None:
         if not self._bounded:
             raise UsageError(
                 "a formula of unbounded future has causation at the start of the trace alone; call causation()"

@@ -66,7 +66,7 @@ class DenseEarlyMonitor(EarlyMonitor):
     def _no_value(self, error: Any, scale: TimeScale | None = None) -> Exception:
         """Name the sub-formula and the instant of a value that does not exist, in the ``scale`` of the new sample."""
         tick = error.args[1]
-        where = self._shown(tick) if scale is None else scale.show(tick)
+        where = self._caller_time(tick) if scale is None else scale.show(tick)
         return undefined(self._session.culprit(error), f"time {where}")
 
     # ---- times -----------------------------------------------------------------------------------
@@ -80,7 +80,7 @@ class DenseEarlyMonitor(EarlyMonitor):
     def _steps(self, time: Any) -> float:
         return int(self._scale_of(time).ticks([time], arrays.TIME)[0])
 
-    def _shown(self, tick: int) -> str:
+    def _caller_time(self, tick: int) -> str:
         scale = self._scale or TimeScale.of(self._step, [], self._unit)
         return scale.show(tick)
 
@@ -91,7 +91,7 @@ class DenseEarlyMonitor(EarlyMonitor):
 
     # ---- samples ---------------------------------------------------------------------------------
 
-    def _observed(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
+    def _check_sample(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
         """Return a checked sample: the time scale after it, its tick, and what is known of some variables."""
         flat = self._read_by_formula(values)
         if self._finished:

@@ -53,7 +53,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
-            scale, tick, known = self._observed(time, values)
+            scale, tick, known = self._check_sample(time, values)
             self._check_in_order(tick, scale, known)
             if tick <= self._backend.closed:
                 final = f"what was up to {scale.show(self._backend.closed)} is final"
@@ -65,8 +65,8 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
                 )
             return self._event(lambda: self._backend.learn(tick, self._row_of(known), self.samples), scale)
 
-    def _observed(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
-        scale, tick, known = super()._observed(time, values)
+    def _check_sample(self, time: Any, values: Mapping[str, Any]) -> tuple[TimeScale, int, dict[str, Any]]:
+        scale, tick, known = super()._check_sample(time, values)
         for name, bounds in known.items():
             if bounds is None or bounds[0] != bounds[1]:
                 count = self._backend.counts[self._inputs.index(name)]
@@ -119,7 +119,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         """
         if time is None:
             return Causation(*self._backend.causation_at_start())
-        self._require_bounded()
+        self._require_bounded_past()
         scale = self._scale_of(time)
         tick = int(scale.ticks([time], arrays.TIME)[0])
         found = self._backend.causation(0, tick)
@@ -131,7 +131,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
 
     def runs(self) -> list[CausationRun]:
         """See :meth:`CausationMonitor.runs`."""
-        self._require_bounded()
+        self._require_bounded_past()
         rows = self._backend.caused(0)
         begins = self._times([row[0] for row in rows])
         ends = self._times([row[1] for row in rows if row[1] < FOREVER])

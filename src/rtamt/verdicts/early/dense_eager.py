@@ -51,7 +51,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
-            scale, tick, known = self._observed(time, values)
+            scale, tick, known = self._check_sample(time, values)
             self._check_in_order(tick, scale, known)
             try:
                 self._backend.learn(tick, self._row_of(known), self.samples)

@@ -58,7 +58,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         self._ended: tuple[tuple[Run, ...], ...] = ()
 
     def _take(self, time: Any, values: dict[str, Any]) -> None:
-        scale, tick, known = self._observed(time, values)
+        scale, tick, known = self._check_sample(time, values)
         if self._late is None:
             self._check_in_order(tick, scale, known)
         self._check_open(tick, scale)
@@ -97,8 +97,8 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
             index=self.samples,
         )
 
-    def _moment(self, time: float) -> str:
-        return f"time {self._shown(int(time))}"
+    def _format_time(self, time: float) -> str:
+        return f"time {self._caller_time(int(time))}"
 
     def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
         if self._hidden:

@@ -65,7 +65,7 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
         """
         if time is None:
             return Causation(*self._backend.causation_at_start())
-        self._require_bounded()
+        self._require_bounded_past()
         backend = self._backend
         stamp = self._seconds(time)
         sample = backend.place(stamp) if backend.newest >= 0 else None
@@ -75,7 +75,7 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
 
     def runs(self) -> list[CausationRun]:
         """See :meth:`CausationMonitor.runs`."""
-        self._require_bounded()
+        self._require_bounded_past()
         backend, clock = self._backend, self._clock
         return [
             CausationRun(

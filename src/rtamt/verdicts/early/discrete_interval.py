@@ -230,7 +230,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 index=self.samples,
             )
 
-    def _moment(self, time: float) -> str:
+    def _format_time(self, time: float) -> str:
         """Return a time in the form of the back end for a message."""
         return f"time {time:.15g} s"
 

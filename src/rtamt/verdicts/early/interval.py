@@ -116,7 +116,7 @@ class IntervalMonitor(EarlyMonitor):
         """Take a sample."""
 
     @abstractmethod
-    def _moment(self, time: float) -> str:
+    def _format_time(self, time: float) -> str:
         """Return a time in the form of the back end for a message."""
 
     def _learn(self, time: float, known: Mapping[str, tuple[float, float] | None]) -> None:
@@ -136,8 +136,8 @@ class IntervalMonitor(EarlyMonitor):
                 wrong.append((number, *bounds))
                 if not self._replays:
                     raise TraceError(
-                        f"'{name}' is {_text(bounds)} at {self._moment(time)}, which contradicts what was known of "
-                        f"it, {_text((low, high))}: correct it, or make the monitor with on_correction='replay'",
+                        f"'{name}' is {_text(bounds)} at {self._format_time(time)}, which contradicts what was known "
+                        f"of it, {_text((low, high))}: correct it, or make the monitor with on_correction='replay'",
                         variable=name,
                         index=self.samples,
                     )

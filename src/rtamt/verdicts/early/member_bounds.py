@@ -270,7 +270,7 @@ class MemberIntervalMonitor(SampledMembers):
         Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no value; the
         monitor is then unchanged.
         """
-        self._tried(time, *self._read(values, time))
+        self._try_update(time, *self._read(values, time))
 
     def _next_time(self) -> float:
         """See :class:`SampledMembers`."""

@@ -71,7 +71,7 @@ def later_samples(
     always = dict(zip(names, ranges, strict=True))
     for name, given in prediction.items():
         each, constant = _bounds_of(name, given, _ARRAYS)
-        each = [_cut(name, bounds, always[name]) for bounds in each]
+        each = [_clip(name, bounds, always[name]) for bounds in each]
         if constant:
             always[name] = each[0]
         else:
@@ -107,7 +107,7 @@ def later_steps(
         if len(each) != len(starts):
             raise _wrong(name, prediction[name], _TIMED)
         for start, bounds in zip(starts, each, strict=True):
-            steps.append((number, start, *_cut(name, bounds, ranges[number])))
+            steps.append((number, start, *_clip(name, bounds, ranges[number])))
     return steps
 
 
@@ -150,7 +150,7 @@ def _bounds_of(name: str, given: Any, form: str) -> tuple[list[tuple[float, floa
     return each, low.ndim == 0
 
 
-def _cut(name: str, bounds: tuple[float, float], limits: tuple[float, float]) -> tuple[float, float]:
+def _clip(name: str, bounds: tuple[float, float], limits: tuple[float, float]) -> tuple[float, float]:
     low, high = max(bounds[0], limits[0]), min(bounds[1], limits[1])
     if low > high:
         raise UsageError(

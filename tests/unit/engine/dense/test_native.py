@@ -71,7 +71,7 @@ def monitor(code: bytes, names: list[str], ignored: set[str] | None = None) -> A
     return m
 
 
-def told(answer: Answer) -> tuple[list[int], list[float]]:
+def decode(answer: Answer) -> tuple[list[int], list[float]]:
     assert type(answer) is Answer
     assert answer._scale == "scale"
     half = len(answer._events) // 2
@@ -92,14 +92,14 @@ def state(m: Any) -> tuple[int | None, int | None, list[int | None]]:
 def test_one_instant_at_a_time_tells_what_became_known_and_how_far() -> None:
     m = monitor(ALWAYS, ["a"])
     assert state(m) == (None, None, [None])
-    assert told(m.update(0, {"a": 1})) == ([], [])
+    assert decode(m.update(0, {"a": 1})) == ([], [])
     assert m.counts == [1]
-    assert told(m.update(2, {"a": 2.0})) == ([], [])
-    assert told(m.update(5.0, {"a": np.float64(0.0)})) == ([0, 2], [1.0, 0.0])
+    assert decode(m.update(2, {"a": 2.0})) == ([], [])
+    assert decode(m.update(5.0, {"a": np.float64(0.0)})) == ([0, 2], [1.0, 0.0])
     assert state(m) == (0, 2, [5])
-    assert told(m.update(np.float64(7), {"a": 3.0})) == ([4], [0.0])
+    assert decode(m.update(np.float64(7), {"a": 3.0})) == ([4], [0.0])
     assert state(m) == (0, 4, [7])
-    assert told(m.update(7, {})) == ([], [])
+    assert decode(m.update(7, {})) == ([], [])
     assert m.counts == [4]
     assert known(m.finish()) == ([7], [3.0])
     assert state(m) == (0, 7, [7])
@@ -112,7 +112,7 @@ def test_one_instant_at_a_time_tells_what_became_known_and_how_far() -> None:
 def test_variables_on_clocks_of_their_own_in_chunks() -> None:
     m = monitor(TWO, ["a", "b"], {"c"})
     assert known(m.push([events([0, 4, 9], [1, 2, 3]), events([], [])])) == ([], [])
-    assert told(m.update(6, {"b": 2.5, "c": None})) == ([6], [2.5])
+    assert decode(m.update(6, {"b": 2.5, "c": None})) == ([6], [2.5])
     assert known(m.last_output(0)) == ([6], [2.5])
     assert known(m.last_output(1)) == ([6], [2.0])
     assert known(m.push([events([], []), events([8, 20], [0, 9])])) == ([8, 9], [2.0, 3.0])
@@ -188,7 +188,7 @@ def test_what_is_wrong_is_refused_and_changes_nothing(t: Any, values: Any, reaso
         m.update(t, values)
     assert (m.last_times, m.counts) == ([8], [2])
     assert known(m.last_output(0)) == ([5], [1.0])
-    assert told(m.update(9, {"a": 1.0})) == ([6], [1.0])
+    assert decode(m.update(9, {"a": 1.0})) == ([6], [1.0])
 
 
 def test_chunks_that_go_back_or_too_far_are_refused() -> None:
@@ -214,7 +214,7 @@ def test_an_update_that_makes_nan_names_instruction_and_tick_and_leaves_the_moni
     with pytest.raises(_core.Undefined) as caught:
         m.push([events([2, 6], [4, -1])])
     assert caught.value.args == (1, 6)
-    assert told(m.update(1, {"a": 9})) == ([1], [3.0])
+    assert decode(m.update(1, {"a": 9})) == ([1], [3.0])
     with pytest.raises(_core.Undefined):
         m.update(2, {"a": -1})
     assert known(m.last_output(0)) == ([1], [3.0])
@@ -231,7 +231,7 @@ def test_another_monitor_goes_on_from_a_state() -> None:
     for each in (m, other):
         assert (state(each), each.counts) == ((2, 5, [9, 5]), [3, 2])
         assert known(each.last_output(1)) == ([2, 4, 5], [1.0, 2.0, 2.0])
-        assert told(each.update(6, {"b": 1.0})) == ([6], [2.0])
+        assert decode(each.update(6, {"b": 1.0})) == ([6], [2.0])
         assert known(each.finish()) == ([9], [3.0])
     with pytest.raises(ValueError, match=r"^This is not the state of a monitor of this program\.$"):
         monitor(ALWAYS, ["a"]).restore(m.state())
@@ -247,7 +247,7 @@ def test_a_number_that_comes_back_into_its_own_update_is_taken_after_what_it_did
 
     Real.register(Meddler)
     plain.update(1, {"a": 1.0})
-    assert told(m.update(3, {"a": Meddler()})) == told(plain.update(3, {"a": 2.0}))
+    assert decode(m.update(3, {"a": Meddler()})) == decode(plain.update(3, {"a": 2.0}))
     assert m.state() == plain.state()
 
 

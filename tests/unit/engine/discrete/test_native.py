@@ -27,7 +27,7 @@ LATE = program(
 )
 
 
-def refused(m: Any, method: str, *arguments: Any) -> str:
+def check_rejected(m: Any, method: str, *arguments: Any) -> str:
     """Return why a call was refused, after checking that it changed nothing."""
     before = state(m)
     with pytest.raises(CORE.Refused) as caught:
@@ -77,10 +77,10 @@ class Rude:
 def test_what_is_no_number_is_refused(value: Any) -> None:
     m = monitor()
     m.update(0.0, {"a": 1.0, "b": 0.0})
-    assert refused(m, "update", 1.0, {"a": value, "b": 1.0}) == "value"
-    assert refused(m, "update_pairs", 1.0, [("a", value)]) == "value"
-    assert refused(m, "step", 1.0, value) == "value"
-    assert refused(m, "update", value, {"a": 1.0, "b": 1.0}) == "time"
+    assert check_rejected(m, "update", 1.0, {"a": value, "b": 1.0}) == "value"
+    assert check_rejected(m, "update_pairs", 1.0, [("a", value)]) == "value"
+    assert check_rejected(m, "step", 1.0, value) == "value"
+    assert check_rejected(m, "update", value, {"a": 1.0, "b": 1.0}) == "time"
 
 
 def test_an_interrupt_in_a_number_is_not_swallowed() -> None:
@@ -98,21 +98,21 @@ def test_an_interrupt_in_a_number_is_not_swallowed() -> None:
     "values", [{}, {"a": 1.0}, {"a": 1.0, "c": 1.0}, {"a": 1.0, "b": 1.0, "c": 1.0}, {1: 1.0, "a": 2.0}, []]
 )
 def test_update_wants_every_variable_and_no_other(values: Any) -> None:
-    assert refused(monitor(), "update", 0.0, values) == "names"
+    assert check_rejected(monitor(), "update", 0.0, values) == "names"
 
 
 def test_time_must_grow_and_be_finite() -> None:
     m = monitor()
     m.update(1.0, {"a": 1.0, "b": 1.0})
     for time in (1.0, 0.0, inf, -inf, nan, "2"):
-        assert refused(m, "update", time, {"a": 1.0, "b": 1.0}) == "time"
-        assert refused(m, "update_pairs", time, []) == "time"
+        assert check_rejected(m, "update", time, {"a": 1.0, "b": 1.0}) == "time"
+        assert check_rejected(m, "update_pairs", time, []) == "time"
 
 
 def test_a_strict_monitor_refuses_a_gap_and_another_counts_it() -> None:
     strict = monitor(period=0.5, tolerance=0.1)
     strict.update(0.0, {"a": 1.0, "b": 1.0})
-    assert refused(strict, "update", 0.6, {"a": 1.0, "b": 1.0}) == "time"
+    assert check_rejected(strict, "update", 0.6, {"a": 1.0, "b": 1.0}) == "time"
     assert strict.update(0.5, {"a": 1.0, "b": 1.0}) == 0.0
     lenient = monitor(period=0.5, tolerance=0.1, strict=False)
     for time in (0.0, 0.5, 1.2, 1.7, 1.8):
@@ -124,7 +124,7 @@ def test_a_strict_monitor_refuses_a_gap_and_another_counts_it() -> None:
 
 def test_pairs_keep_the_value_of_what_is_left_out() -> None:
     m = monitor(ignored={"c"})
-    assert refused(m, "update_pairs", 0.0, [("a", 5.0)]) == "names"
+    assert check_rejected(m, "update_pairs", 0.0, [("a", 5.0)]) == "names"
     assert m.update_pairs(0.0, (["a", 5.0], ("c", "anything"), ("b", 1.0))) == 4.0
     assert m.update_pairs(1.0, [("b", 2.0)]) == 3.0
     assert m.update_pairs(2.0, []) == 3.0
@@ -132,7 +132,7 @@ def test_pairs_keep_the_value_of_what_is_left_out() -> None:
     m.push(None, [np.array([1.0, 10.0]), np.array([1.0, 3.0])])
     assert m.update_pairs(6.0, [("b", 4.0)]) == 6.0
     m.reset()
-    assert refused(m, "update_pairs", 0.0, [("a", 5.0)]) == "names"
+    assert check_rejected(m, "update_pairs", 0.0, [("a", 5.0)]) == "names"
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,7 @@ def test_pairs_keep_the_value_of_what_is_left_out() -> None:
 def test_pairs_that_are_none_are_refused(pairs: Any, reason: str) -> None:
     m = monitor(ignored={"c"})
     m.step(1.0, 1.0)
-    assert refused(m, "update_pairs", 1.0, pairs) == reason
+    assert check_rejected(m, "update_pairs", 1.0, pairs) == reason
 
 
 def test_a_failed_operation_names_instruction_and_sample_and_changes_nothing() -> None:
@@ -172,10 +172,10 @@ def test_after_finish_samples_are_refused_until_reset() -> None:
     m.step(1.0, 0.0)
     assert [values.tolist() for values in m.finish()] == [[1.0], []]
     assert [values.tolist() for values in m.finish()] == [[], []]
-    assert refused(m, "step", 1.0, 1.0) == "finished"
-    assert refused(m, "update", 1.0, {"a": 1.0, "b": 1.0}) == "finished"
-    assert refused(m, "update_pairs", 1.0, []) == "finished"
-    assert refused(m, "push", None, [np.ones(1), np.ones(1)]) == "finished"
+    assert check_rejected(m, "step", 1.0, 1.0) == "finished"
+    assert check_rejected(m, "update", 1.0, {"a": 1.0, "b": 1.0}) == "finished"
+    assert check_rejected(m, "update_pairs", 1.0, []) == "finished"
+    assert check_rejected(m, "push", None, [np.ones(1), np.ones(1)]) == "finished"
     m.reset()
     assert m.samples == 0
     assert (m.last_time, m.last(2)) == (None, None)
@@ -199,8 +199,8 @@ def test_chunks_give_what_single_samples_give() -> None:
 
 
 def test_step_takes_as_many_values_as_inputs() -> None:
-    assert refused(monitor(), "step", 1.0) == "count"
-    assert refused(monitor(), "step", 1.0, 2.0, 3.0) == "count"
+    assert check_rejected(monitor(), "step", 1.0) == "count"
+    assert check_rejected(monitor(), "step", 1.0, 2.0, 3.0) == "count"
 
 
 def test_the_latest_value_of_each_output_is_there_once_it_is_known() -> None:

@@ -304,7 +304,7 @@ def test_a_users_function_that_returns_the_wrong_shape_is_an_error():
 # ---- online -------------------------------------------------------------------------------------
 
 
-def told(known):
+def points_of(known):
     return [(events(*news[:2]), news.until) for news in known]
 
 
@@ -312,26 +312,26 @@ def test_a_value_is_known_as_far_as_the_slowest_variable_less_the_horizon():
     formulas = [parse_formula("x + y"), parse_formula("eventually[0:2] x"), parse_formula("true")]
     monitor = DenseReferenceMonitor(formulas, ("x", "y"), ONE)
     nothing = [("", None)] * 3
-    assert told(monitor.push({})) == nothing
-    assert told(monitor.push({"x": signal("1@0 2@3 5@9")})) == nothing
-    assert told(monitor.push({"y": signal("10@2")})) == [("11@2", 2), ("", None), ("inf@2", 2)]
-    assert told(monitor.push({"y": signal("20@4")})) == [("12@3 22@4", 4), ("2@2", 2), ("", 4)]
-    assert told(monitor.push({"y": ([], [])})) == [("", 4), ("", 2), ("", 4)]
-    assert told(monitor.push({"y": signal("20@8")})) == [("", 8), ("", 6), ("", 8)]
-    assert told(monitor.finish()) == [("25@9", 9), ("5@7", 9), ("", 9)]
-    assert told(monitor.finish()) == [("", 9), ("", 9), ("", 9)]
+    assert points_of(monitor.push({})) == nothing
+    assert points_of(monitor.push({"x": signal("1@0 2@3 5@9")})) == nothing
+    assert points_of(monitor.push({"y": signal("10@2")})) == [("11@2", 2), ("", None), ("inf@2", 2)]
+    assert points_of(monitor.push({"y": signal("20@4")})) == [("12@3 22@4", 4), ("2@2", 2), ("", 4)]
+    assert points_of(monitor.push({"y": ([], [])})) == [("", 4), ("", 2), ("", 4)]
+    assert points_of(monitor.push({"y": signal("20@8")})) == [("", 8), ("", 6), ("", 8)]
+    assert points_of(monitor.finish()) == [("25@9", 9), ("5@7", 9), ("", 9)]
+    assert points_of(monitor.finish()) == [("", 9), ("", 9), ("", 9)]
 
 
 def test_a_variable_that_starts_after_the_others_have_ended_is_waited_for():
     monitor = DenseReferenceMonitor([parse_formula("x + y")], ("x", "y"), ONE)
-    assert told(monitor.push({"x": signal("1@0 2@1"), "y": signal("10@5 20@6")})) == [("", None)]
-    assert told(monitor.finish()) == [("12@5 22@6", 6)]
+    assert points_of(monitor.push({"x": signal("1@0 2@1"), "y": signal("10@5 20@6")})) == [("", None)]
+    assert points_of(monitor.finish()) == [("12@5 22@6", 6)]
 
 
 def test_a_trace_in_which_a_variable_never_appears_has_no_values():
     monitor = DenseReferenceMonitor([parse_formula("x")], ("x", "y"), ONE)
     monitor.push({"x": signal("1@0 2@1")})
-    assert told(monitor.finish()) == [("", None)]
+    assert points_of(monitor.finish()) == [("", None)]
 
 
 def test_a_finished_monitor_takes_no_more_until_it_is_reset():
@@ -346,7 +346,7 @@ def test_a_finished_monitor_takes_no_more_until_it_is_reset():
     )
     monitor.reset()
     assert monitor.state_bytes == 0
-    assert told(monitor.push({"x": signal("7@0")})) == [("7@0", 0)]
+    assert points_of(monitor.push({"x": signal("7@0")})) == [("7@0", 0)]
 
 
 def test_a_push_that_has_no_value_leaves_the_monitor_as_it_was():
@@ -358,11 +358,11 @@ def test_a_push_that_has_no_value_leaves_the_monitor_as_it_was():
         "'sqrt(x)' has no value at time 2 s: it is 0/0, inf - inf, 0 * inf, or a function outside its domain; "
         "change the formula or the data so that this cannot happen"
     )
-    assert told(monitor.push({"x": signal("9@1")})) == [("9@1", 1), ("3@1", 1)]
+    assert points_of(monitor.push({"x": signal("9@1")})) == [("9@1", 1), ("3@1", 1)]
 
 
 def test_what_has_no_value_only_until_more_is_known_is_no_error():
     # While y lags behind, its last value is not yet its value.
     monitor = DenseReferenceMonitor([parse_formula("x / y")], ("x", "y"), ONE)
-    assert told(monitor.push({"x": signal("1@0 0@2"), "y": signal("0@0")})) == [("inf@0", 0)]
-    assert told(monitor.push({"y": signal("4@1 5@3")})) == [("0.25@1 0@2", 2)]
+    assert points_of(monitor.push({"x": signal("1@0 0@2"), "y": signal("0@0")})) == [("inf@0", 0)]
+    assert points_of(monitor.push({"y": signal("4@1 5@3")})) == [("0.25@1 0@2", 2)]

@@ -236,14 +236,14 @@ def test_a_boolean_argument_of_an_imported_template_is_its_truth(tmp_path):
 
 
 def test_a_file_that_imports_no_other_is_parsed_once_for_all_texts(folder, monkeypatch):
-    parsed, original = [], import_parser._parsed.__wrapped__
+    parsed, original = [], import_parser._parse_file.__wrapped__
 
     def parse(key):
         parsed.append(key)
         return original(key)
 
     monkeypatch.setattr(import_parser, "_placed", lru_cache(import_parser._placed.__wrapped__))
-    monkeypatch.setattr(import_parser, "_parsed", lru_cache(parse))
+    monkeypatch.setattr(import_parser, "_parse_file", lru_cache(parse))
     (folder / "own.stl").write_text("const float most = 3  slow = x <= most; def low(y) = y <= most and slow")
     own = 'import "own.stl"; input float x; low(x)'
     for _ in range(2):

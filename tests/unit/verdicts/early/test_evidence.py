@@ -22,7 +22,7 @@ from tests.laws.early.laws import given as values_of
 BACKENDS = ("cpp", "python")
 
 
-def replayed(spec, updates, causes, verdict, **declared):
+def replay(spec, updates, causes, verdict, **declared):
     """Return the verdicts of a monitor that is given nothing but the causes, up to the verdict and its report."""
     kept = {(cause.time, cause.variable) for cause in causes}
     monitor = spec.monitor(verdict="eager", **declared)
@@ -58,12 +58,12 @@ def test_causes_decide_the_verdict_alone_and_none_can_be_left_out(seed, backend)
                 came = updates[: i + 1]
                 assert all(cause.value == dict(came)[cause.time][cause.variable] for cause in causes)
                 assert all(cause.time <= verdict.decided_at for cause in causes)
-                told = replayed(spec, came, causes, verdict, **declared)
+                told = replay(spec, came, causes, verdict, **declared)
                 assert verdict.time in [each.time for each in told]
                 assert not causes or max(cause.time for cause in causes) == verdict.decided_at
                 for k in range(len(causes)):
                     fewer = causes[:k] + causes[k + 1 :]
-                    told = replayed(spec, came, fewer, verdict, **declared)
+                    told = replay(spec, came, fewer, verdict, **declared)
                     assert verdict.time not in [each.time for each in told]
     except EvaluationError:
         assume(False)
@@ -83,7 +83,7 @@ def test_causes_in_dense_time_decide_the_run_alone(seed, backend):
         for i, (t, row) in enumerate(updates):
             for verdict in monitor.update(t, **row)[:1]:
                 causes = monitor.explain(verdict)
-                told = replayed(spec, updates[: i + 1], causes, verdict, **declared)
+                told = replay(spec, updates[: i + 1], causes, verdict, **declared)
                 decided = {k for each in told for k in range(int(each.begin), int(each.end))}
                 assert decided >= set(range(int(verdict.begin), int(verdict.end)))
     except EvaluationError:

@@ -10,13 +10,13 @@ import pytest
 import rtamt
 
 
-def _pickled(monitor):
+def _pickle_round_trip(monitor):
     return pickle.loads(pickle.dumps(monitor))
 
 
 backends = pytest.mark.parametrize("backend", ["cpp", "python"])
 times = pytest.mark.parametrize("time", ["discrete", "dense"])
-twins = pytest.mark.parametrize("twin", [copy.copy, _pickled])
+twins = pytest.mark.parametrize("twin", [copy.copy, _pickle_round_trip])
 
 
 def monitor_of(text, time, backend, **settings):
