@@ -31,7 +31,9 @@ ONE = Fraction(1)
 SAMPLES, TICKS = Discrete(ONE), Dense(ONE)
 
 
-def compile_requirement(formula: Formula, domain: TimeDomain = SAMPLES, applied: Formula | None = None) -> bytes:
+def compile_requirement(
+    formula: Formula, domain: TimeDomain = SAMPLES, applied: Formula | None = None
+) -> bytes:
     return carried_program(formula, domain, applied=applied).to_bytes()
 
 

@@ -5,17 +5,17 @@
 ===============  ========================================================================
 module           purpose
 ===============  ========================================================================
-solver           z3 behind a small face: terms, questions, a time limit
+solver           a small interface to z3: terms, queries, a time limit
 values           extended real numbers and verdicts as terms
 arithmetic       pointwise operators, by their opcodes
 sequences        temporal operators over traces of unknown length
 encoder          formulas as terms, by the operator table
-problem          what is asked of traces of at most N samples
+problem          the search for traces of at most N samples
 witness          a trace that was found, evaluated by the engine
 declared         what specifications declare about their data
-bounded_checker  questions about traces of at most N samples, and answers as sentences
-satisfiability   satisfiable, valid, implies, equivalent: one question each, as functions
-analysis         all questions about a specification
+bounded_checker  queries about traces of at most N samples, and answers as sentences
+satisfiability   satisfiable, valid, implies, equivalent: one query each
+analysis         all checks of a specification
 difference       two versions of a specification
 ===============  ========================================================================
 """

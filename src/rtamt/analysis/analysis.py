@@ -1,4 +1,4 @@
-"""Everything that is asked about the requirements of a specification, and the report."""
+"""All checks of the requirements of a specification, and the report."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Analysis:
 
     @property
     def unanswered(self) -> tuple[Conclusion, ...]:
-        """The questions without an answer."""
+        """The queries without an answer."""
         return tuple(each for each in self.conclusions if each.holds is None)
 
 
@@ -59,9 +59,9 @@ def analyze(
     limit: float = LIMIT,
     recordings: Mapping[str, Any] | None = None,
 ) -> Analysis:
-    """Answer every question about the requirements of a specification.
+    """Run all checks on the requirements of a specification.
 
-    ``samples``: the greatest length of traces. ``limit``: seconds that one question may take. ``recordings``: data as
+    ``samples``: the greatest length of traces. ``limit``: seconds that one query may take. ``recordings``: data as
     :meth:`rtamt.Specification.evaluate` takes it, by name; implications that none of them triggers are findings.
 
     >>> import rtamt

@@ -1,4 +1,4 @@
-"""Questions about requirements, and their answers as sentences with traces."""
+"""Queries about requirements, answered by sentences with traces."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
     from rtamt.specification import Specification
 
-#: Most questions are answered by a trace so short, which takes less time to find.
+#: Most queries are answered by a trace this short, which takes less time to find.
 _SHORT = 8
 
-#: The default length of traces in samples, and the time of a question in seconds.
+#: The default length of traces in samples, and the time limit of a query in seconds.
 SAMPLES, LIMIT = 200, 10.0
 
 
@@ -47,7 +47,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Conclusion:
-    """The answer to one question about requirements.
+    """The answer to one query about requirements.
 
     ``question``: such as ``"satisfiable"``. ``names``: of the requirements. ``holds``: None if there is no answer.
     ``finding``: whether something is wrong with the requirements. ``sentence``: the answer. ``witness``: the trace that
@@ -69,7 +69,7 @@ class Conclusion:
 class BoundedChecker:
     """Requirements over the same variables, and the traces of 1 to ``samples`` samples.
 
-    ``limit``: seconds that one question may take. ``versions``: whether the specifications are versions of one, of
+    ``limit``: seconds that one query may take. ``versions``: whether the specifications are versions of one, of
     which the last one declares the limits of variables. Raises :class:`NotCoveredError` for dense time, and for groups
     of signals.
     """
@@ -104,7 +104,7 @@ class BoundedChecker:
         self._problems: dict[tuple[int, bool, bool], Problem] = {}
 
     def problem(self, samples: int, *, whole: bool = False, coarse: bool = False) -> Problem:
-        """Return the problem of traces of 1 to so many samples, or of exactly so many, or of the coarse ones."""
+        """Return the problem of traces with at most, or exactly, ``samples`` samples; ``coarse``: of coarse ones."""
         key = (samples, whole, coarse)
         if key not in self._problems:
             self._problems[key] = Problem(

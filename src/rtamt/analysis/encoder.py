@@ -103,7 +103,7 @@ class Encoder:
         self._defined: dict[Formula, tuple[Truth, ...]] = {}
 
     def holds(self, formula: Formula, text: str | None = None) -> list[Truth]:
-        """Return at each instant whether a formula holds, as ``satisfied`` says it."""
+        """Return whether a formula holds at each instant, as defined by ``satisfied``."""
         _require_all_samples(formula, text)
         return [self._yes(value) for value in self._sequence(boolean(formula), text)]
 
@@ -118,7 +118,7 @@ class Encoder:
         return self.solver.every(each for part in parts for each in self._defined.get(part, ()))
 
     def length(self, least: int, most: int) -> list[Truth]:
-        """Return assumptions: the trace has at least and at most so many samples."""
+        """Return assumptions on the least and the greatest number of samples."""
         found = [] if least < 2 else [self.inside[least - 1]]
         return found if most >= self.samples else [*found, self.solver.no(self.inside[most])]
 
@@ -342,7 +342,7 @@ def _changes(samples: int) -> frozenset[int]:
 
 
 def _require_all_samples(formula: Formula, text: str | None) -> None:
-    """Raise :class:`NotCoveredError` if a formula asks for missing samples: here, none is missing."""
+    """Raise :class:`NotCoveredError` if a formula tests for missing samples; traces here have none."""
     for node in postorder(formula):
         if isinstance(node, Apply) and node.op.presence:
             raise NotCoveredError(

@@ -1,4 +1,4 @@
-"""What is asked of traces of at most so many samples: goals to reach together, and the trace that reaches them."""
+"""The search for a trace of bounded length that reaches several goals."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 #: Traces up to this length are shown in full: the end of a trace satisfies or violates much by itself.
 _SHORT = 8
-#: In longer traces the search for a margin takes at most so many times as long as the answer, and so many seconds more:
+#: Longer traces: the search for a margin is limited to a multiple of the time of the answer, plus some seconds:
 #: the second number if the engine does not confirm the answer, as without a margin it may not.
 _PATIENCE, _AT_LEAST, _UNCONFIRMED = 1.0, 0.05, 1.0
 
-#: Margins are powers of ten, so many, the first one of the magnitude of the greatest constant of the formulas.
+#: The number of margins: powers of ten, the first of the magnitude of the greatest constant of the formulas.
 _MARGINS = 10
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What the solver found: a trace, or that there is none, or nothing within the limit (``exists`` is None)."""
+    """The result of the solver: a trace, none (``exists`` is False), or a timeout (``exists`` is None)."""
 
     exists: bool | None
     witness: Witness | None = None
@@ -42,7 +42,7 @@ class Answer:
 class Problem:
     """The traces of 1 to ``samples`` samples (``whole``: of exactly so many) within the limits of variables.
 
-    ``coarse``: only those whose variables change at a few instants. These answer most questions in a fraction of the
+    ``coarse``: only those whose variables change at a few instants. These answer most queries in a fraction of the
     time; where there is none, nothing is known of the other traces.
     """
 
@@ -64,7 +64,7 @@ class Problem:
         self._distant: dict[tuple[Formula, bool], Truth] = {}
 
     def find(self, goals: Sequence[Goal], limit: float) -> Answer:
-        """Look for a trace that reaches all goals, with a margin if there is one, for so many seconds."""
+        """Look for a trace that reaches all goals, with a margin if possible, within a time limit."""
         end = monotonic() + limit
         if not self._whole:
             return self._find(goals, end)
@@ -102,7 +102,7 @@ class Problem:
         return self._solver.conflict([self._truth(goal) for goal in goals])
 
     def has_values(self, goals: Sequence[Goal], limit: float) -> bool | None:
-        """Return whether formulas have values together on some trace; None if there is no answer in so many seconds."""
+        """Return whether formulas are all defined on some trace; None on a timeout."""
         for goal in goals:
             self._truth(goal)
         defined = [self._encoder.defined(goal.formula) for goal in goals]
@@ -113,7 +113,7 @@ class Problem:
         self._truth(goal)
 
     def _clear(self, goals: Sequence[Goal], asking: Asking, patience: float) -> Witness | None:
-        """Return a trace with the greatest margin of a few, None if none is found in so many seconds."""
+        """Return a trace with the greatest of a few margins; None on a timeout."""
         asking.add([self._distance(goal) for goal in goals])
         largest = _magnitude([goal.formula for goal in goals])
         end = monotonic() + patience

@@ -1,4 +1,4 @@
-"""One question about one or two specifications each, as functions."""
+"""Queries about one or two specifications, as functions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def satisfiable(spec: Specification, *, samples: int = SAMPLES, limit: float = LIMIT) -> Conclusion:
     """Answer whether some trace satisfies a specification; of several requirements, all of them.
 
-    ``samples``: the length of the trace. ``limit``: seconds that a question may take.
+    ``samples``: the length of the trace. ``limit``: seconds that a query may take.
 
     >>> import rtamt
     >>> from rtamt.analysis import satisfiable
@@ -25,7 +25,7 @@ def satisfiable(spec: Specification, *, samples: int = SAMPLES, limit: float = L
 
 
 def valid(spec: Specification, *, samples: int = SAMPLES, limit: float = LIMIT) -> Conclusion:
-    """Answer whether every trace of at most so many samples satisfies a specification.
+    """Return whether every trace of at most ``samples`` samples satisfies a specification.
 
     >>> import rtamt
     >>> from rtamt.analysis import valid

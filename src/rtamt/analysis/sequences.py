@@ -1,7 +1,7 @@
 """Temporal operators over the values of a trace: windows, since, until, sums, and the end of the trace.
 
-A sequence has a value for each of N instants. ``inside`` is where the trace still goes on: its length is unknown to the
-solver, so that windows of the future leave out what comes after its end.
+A sequence has a value for each of N instants. ``inside`` marks the instants of the trace: the solver chooses its
+length, and future windows ignore instants after its end.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ def _types() -> Any:
 class Solver:
     """Terms and assertions of one context, which is deleted with the object.
 
-    ``limit``: seconds that one question may take.
+    ``limit``: seconds that one query may take.
     """
 
     def __init__(self, limit: float = 10.0) -> None:
@@ -192,10 +192,10 @@ class Solver:
             return self.some(terms) if k == 1 else self.every(terms)
         return Term(self._core.Z3_mk_atleast(self._context, len(terms), self._array(terms), k))
 
-    # ---- questions -------------------------------------------------------------------------------
+    # ---- queries ---------------------------------------------------------------------------------
 
     def require(self, condition: Truth) -> None:
-        """Assert a condition in all questions from now on."""
+        """Assert a condition in all later queries."""
         if condition is not True:
             self._required.append(self._asserted(condition))
 
@@ -231,7 +231,7 @@ class Solver:
         return [index for index, name in enumerate(names) if name.key in keys]
 
     def new(self) -> Any:
-        """Return a solver with what is required: it knows no other formulas, which would have to be satisfied too."""
+        """Return a solver with only the conditions of the query: it would have to satisfy any others, too."""
         solver = self._core.Z3_mk_simple_solver(self._context)
         self._core.Z3_solver_inc_ref(self._context, solver)
         for each in self._required:
@@ -260,7 +260,7 @@ class Solver:
         self._core.Z3_solver_set_params(self._context, solver, self._given)
 
     def answered(self, solver: Any, assumed: Sequence[Term] = ()) -> bool | None:
-        """Return the answer of a solver, None if there is none within its limit."""
+        """Return the answer of a solver; None on a timeout."""
         answer = self._core.Z3_solver_check_assumptions(
             self._context, solver, len(assumed), self._array(assumed)
         )
@@ -288,7 +288,7 @@ class Solver:
 
 
 class Asking:
-    """Questions about conditions that grow in number: the solver keeps what it has found out."""
+    """Incremental queries: the solver keeps what it has learned when conditions are added."""
 
     def __init__(self, solver: Solver, conditions: Sequence[Truth]) -> None:
         self._solver = solver
@@ -296,7 +296,7 @@ class Asking:
         self.add(conditions)
 
     def add(self, conditions: Iterable[Truth]) -> None:
-        """Add conditions to all questions from now on."""
+        """Add conditions to all later queries."""
         for each in conditions:
             self._solver.add(self._made, each)
 

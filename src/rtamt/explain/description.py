@@ -50,7 +50,7 @@ class Description:
         self._readings = Readings(axis, dense=self._dense)
 
     def with_source(self, point: CriticalPoint, cell: int) -> tuple[CriticalPoint, str]:
-        """Return the critical point with the samples that its value comes from, and these in words."""
+        """Return the critical point with the samples that determine its value, and their description."""
         if point.formula is None or point.decided_by == "constant":
             return point, ""
         found = self._readings.source(point.formula, cell)

@@ -179,7 +179,7 @@ class _Explainer:
                 ):
                     found.append((number, max(start, interval.start), min(end, interval.end)))
         for number, start, end in sorted(found):
-            # In dense time a value moves on its whole segment, in discrete time each sample by itself.
+            # In dense time a value changes on its whole segment, in discrete time sample by sample.
             cells = (start,) if self._dense else range(start, end)
             yield from (Point(there, implicant[number].sign, implicant[number].name) for there in cells)
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-#: Causes of an explanation that is not asked for all.
+#: The number of causes shown by default.
 SHORT = 5
 
 
@@ -68,7 +68,7 @@ class Listed(Sequence[T], Generic[T]):
 class Reading:
     """The samples of a signal from ``start`` to ``end``, times in the caller's format.
 
-    ``end`` is None where it never comes; it belongs to the interval if ``closed``. In dense time what is meant is the
+    ``end`` is None if there is none; it belongs to the interval if ``closed``. In dense time what is meant is the
     signal on the interval, hence the samples that hold their value on any part of it.
     """
 
@@ -94,7 +94,7 @@ class CriticalPoint:
     where something else (the other operand of an ``or``, a later witness) holds as well.
 
     ``recorded``: of a predicate over Booleans and enumerations what was recorded, such as ``mode is AUTO``.
-    ``reads``: the samples that the value comes from: of ``maximum[0:3](x) >= 3`` the one that attains the maximum.
+    ``reads``: the samples that determine the value: of ``maximum[0:3](x) >= 3`` the one that attains the maximum.
     """
 
     predicate: str | None
@@ -115,7 +115,7 @@ class CriticalPoint:
 class Stretch:
     """A predicate and an interval on which it held, or failed, throughout; part of an implicant.
 
-    ``start`` and ``end`` are times in the caller's format, None for an end that never comes; ``end``
+    ``start`` and ``end`` are times in the caller's format, None for an interval without end; ``end``
     belongs to the interval if ``closed``, as it always does in discrete time. ``lowest`` and
     ``highest``: of the predicate's robustness on the interval. ``reads``: the samples that keep the predicate so,
     whatever all others are: of ``maximum[0:3](x) >= 3`` where it holds one that is large enough, where it fails the
@@ -192,7 +192,7 @@ class Explanation:
         return "\n".join(lines)
 
     def shown(self, causes: int | None = SHORT) -> tuple[int, ...]:
-        """Return the numbers of so many causes, those closest to the critical point, in their order."""
+        """Return the indices of the ``causes`` causes closest to the critical point, in their order."""
         return tuple(sorted(self.ranking[:causes]))
 
     def to_dict(self) -> dict[str, Any]:

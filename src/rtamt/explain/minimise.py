@@ -61,7 +61,7 @@ class Forcing:
         self.ahead = max((found[node][1] for node in nodes), default=0)
 
     def _signals(self, intervals: Iterable[Interval]) -> dict[str, StepFunction]:
-        """Return the stand-ins for the predicates: as they are on the intervals, the worst elsewhere."""
+        """Return replacements for the predicates: unchanged on the intervals, worst case elsewhere."""
         known: dict[tuple[str, int], list[tuple[int, int]]] = {}
         for interval in intervals:
             known.setdefault((interval.name, interval.sign), []).append((interval.start, interval.end))
@@ -128,7 +128,7 @@ def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> 
 
 
 def _which_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.bool_]:
-    """Return of each interval whether ``needs`` asks for a part of it."""
+    """Return for each interval whether it intersects ``needs``."""
     plain = np.zeros(len(intervals), bool)
     starts, ends = (
         np.array([getattr(each, name) for each in intervals], np.int64) for name in ("start", "end")

@@ -30,7 +30,7 @@ class Needs(Demands):
     """What a verdict needs of every place. ``leaves``: cells of intervals that cannot be left out."""
 
     def given(self, support: Mapping[Place, Cells]) -> Needs:
-        """Take where each place has, by what is known, the truth that is asked of it."""
+        """Set where each place is known to have the required truth."""
         self._known = support
         return self
 

@@ -101,7 +101,7 @@ class Demands:
         return cells
 
     def _having(self, node: Formula, sign: int) -> Cells:
-        """Return where a sub-formula has the truth that is asked of places of a sign."""
+        """Return where a sub-formula has the truth required of places of a sign."""
         having = self._support(node, sign)
         if self._dense and len(having) and having.ends[-1] >= self._end:
             having = having | Cells.of([(int(having.starts[-1]), 4 * NEVER)])
@@ -152,14 +152,14 @@ class Demands:
         """Choose cells of both operands of until, and of since and precedes, which are until in disguise."""
         window = window_of(node, self._period)
         hold, goal = (self._having(arg, sign) for arg in node.args)
-        if not self.truth(sign):  # then the question is where ψ may hold
+        if not self.truth(sign):  # then it matters where ψ may hold
             goal = self._all - goal
         turned = isinstance(node.op.kernel, Since)
         if turned:  # since is until, backwards
             cells, hold, goal = cells.mirrored(), hold.mirrored(), goal.mirrored()
         elif node.op.tense is Tense.PAST:  # precedes is until, read from where the window begins
             cells = cells.widened(-window[1], -window[1])
-            if self.truth(sign):  # and asks nothing of φ before the start
+            if self.truth(sign):  # and requires nothing of φ before the start
                 hold = hold | Cells.of([(-2 * NEVER, 0)])
         for arg, found in zip(node.args, self._until(node, sign, cells, (hold, goal), window), strict=True):
             self._add(arg, sign, Asked(found.mirrored() if turned else found))
@@ -169,7 +169,7 @@ class Demands:
     ) -> tuple[Cells, Cells]:
         """Return the cells of φ and ψ on which it is to rest that φ until ψ holds, or fails, at ``cells``.
 
-        ``having``: where φ has the truth that is asked of it, and where ψ holds.
+        ``having``: where φ has the required truth, and where ψ holds.
         """
         del node  # whatever its operands are
         choose = reaching if self.truth(sign) else blocking
@@ -211,7 +211,7 @@ class Demands:
         return witnesses(cells, found, before, after, whole=self._dense)
 
     def _share(self, node: Apply, sign: int) -> tuple[int, Cells]:
-        """Return how many cells of a window must have the truth that is asked for, and which cells have it.
+        """Return how many cells of a window must have the required truth, and which cells have it.
 
         Those outside the trace are among them if they count.
         """
@@ -246,7 +246,7 @@ class Demands:
         return Cells.union(chosen, chosen + 1)
 
     def _ticks(self, sign: int, cells: Cells, before: int, after: int, need: int) -> TickWindow | None:
-        """Return the window of a share in dense time, of a single cell that is asked for."""
+        """Return the window of a share in dense time, for a single required cell."""
         cell = cells.lone
         if not self._dense or cell is None:
             return None

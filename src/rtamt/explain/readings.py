@@ -5,7 +5,7 @@ From a predicate down to its variables: the cells at which each part must not be
 largest of a window, the branch that is taken), only that is asked for; a condition is asked for as any formula is
 (``propagate.py``). Where no rule is known (an operator with a definition only), all that can be read is.
 
-The *source* of a single value is where it comes from: of a minimum the sample that attains it.
+The *source* of a single value is the sample that determines it: of a minimum the one that attains it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.engine import TimeAxis
     from rtamt.signals.instants import StepFunction
 
-#: What is asked of a number: cells at which it must not fall, and cells at which it must not rise.
+#: The demands on a number: cells at which it must not fall, and cells at which it must not rise.
 Need = tuple[Cells, Cells]
 
 
@@ -58,7 +58,7 @@ class Readings:
         return found
 
     def source(self, predicate: Formula, cell: int) -> dict[str, Cells]:
-        """Return the cells of variables that the value of a predicate at a cell comes from."""
+        """Return the cells of variables that determine the value of a predicate at a cell."""
         found: dict[str, Cells] = {}
         parts = self._parts_of(predicate)
         walk = Walk(parts, self._axis.period, self._axis.end)
@@ -89,7 +89,7 @@ class Readings:
     # ---- from a part to its operands ---------------------------------------------------------------
 
     def _passed(self, parts: _Parts, need: Need) -> Iterator[tuple[Formula, Need]]:
-        """Yield what is asked of the variables and conditions of a formula of which something is asked."""
+        """Yield the demands on variables and conditions that follow from demands on a formula."""
         asked: dict[Formula, Need] = {parts.top: need}
         for node in reversed(parts.order):
             need = asked.pop(node, (NONE, NONE))
@@ -151,7 +151,7 @@ class Readings:
         return 1 if node.interval is None else window_of(node, self._axis.period)[0]
 
     def _initial(self, node: Apply, k: int, lower: Cells, upper: Cells) -> tuple[Formula, Need]:
-        """Return what is asked of what stands for values before the trace: operand k, or the first value."""
+        """Return the demands on the substitute for values before the trace: operand k, or the first value."""
         if len(node.args) > k:
             return node.args[k], (lower, upper)
         start = Cells.of([(0, 1)])
@@ -239,10 +239,10 @@ class Readings:
     def _condition(self, condition: Formula, need: Need) -> list[tuple[Formula, Need]]:
         return self._condition_of(condition).asked(*need)
 
-    # ---- from a value to where it comes from -------------------------------------------------------
+    # ---- from a value to its source ----------------------------------------------------------------
 
     def _from(self, parts: _Parts, walk: Walk, node: Apply, cell: int) -> list[tuple[Formula, int]] | None:
-        """Return the parts that the value of a part comes from; None where it is all that it reads."""
+        """Return the parts that determine the value of a part; None for all that it reads."""
         kernel, args = node.op.kernel, node.args
         if isinstance(kernel, Pointwise):
             if kernel.opcode not in CHOOSING:
@@ -322,7 +322,7 @@ class _Condition:
         return self._holds[self._structure.core]
 
     def asked(self, true: Cells, false: Cells) -> list[tuple[Formula, Need]]:
-        """Return what is asked of the predicates for the condition to stay true at some cells, and false at others."""
+        """Return the demands on predicates for the condition to stay true at some cells, and false at others."""
         found = []
         for satisfied, cells in ((True, true), (False, false)):
             if not len(cells):

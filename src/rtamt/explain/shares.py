@@ -46,7 +46,7 @@ class TickWindow:
         )
 
     def enough(self, one: Ints, other: Ints) -> NDArray[np.bool_]:
-        """Return whether so many cells without the last, and so many without the first, are as many as needed."""
+        """Return whether the counts without the last and without the first cell are sufficient."""
         return (np.minimum if self.both else np.maximum)(one, other) >= self.need
 
     def fewest(self, found: Cells, end: int) -> Cells:
@@ -70,7 +70,7 @@ class TickWindow:
 
 
 class _Sweep:
-    """Windows of cells from left to right; ``free`` are the cells seen so far and not taken, as intervals."""
+    """Windows of cells from left to right; ``free`` are the cells passed so far and not taken, as intervals."""
 
     def __init__(self, found: Cells, before: int, after: int, need: int) -> None:
         self._starts: list[int] = found.starts.tolist()
@@ -81,7 +81,7 @@ class _Sweep:
         self._free: deque[tuple[int, int]] = deque()
         self._left = 0  # free cells in the window
         self._seen = 0  # cells before the trace count, and are not to be taken
-        self._next = 0  # the first interval that is not seen to its end
+        self._next = 0  # the first interval that is not passed completely
         self._taken: list[tuple[int, int]] = []
 
     def over(self, asked: Cells) -> Cells:
@@ -104,7 +104,7 @@ class _Sweep:
         return self._total[run] - (max(self._ends[run - 1] - cell, 0) if run else 0)
 
     def _see(self, stop: int) -> None:
-        """Make the cells before ``stop`` free that were not seen."""
+        """Free the cells before ``stop`` that have not been passed."""
         while self._next < len(self._starts) and self._starts[self._next] < stop:
             begin, end = max(self._starts[self._next], self._seen), min(self._ends[self._next], stop)
             if begin < end:

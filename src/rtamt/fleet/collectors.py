@@ -45,7 +45,7 @@ class Collector(ABC):
         """Take what a monitor reported of a sample: the next one, at an index of the batch."""
 
     def leave_out(self, index: int, monitor: Any) -> None:  # noqa: ARG002 - nothing was reported
-        """Note that a sample came too late."""
+        """Note a sample that arrived too late."""
         raise AssertionError("only bounds take late samples")
 
     @abstractmethod

@@ -1,7 +1,7 @@
 """The fields of a state as bytes: what is written, and read back from bytes of any origin.
 
 A field describes one kind of value, for both directions. Numbers are in little endian order. Reading raises
-:class:`UsageError` for bytes that are no such value; it creates nothing but values of the kinds below.
+:class:`UsageError` for malformed bytes; it creates only values of the kinds below.
 """
 
 from __future__ import annotations
@@ -285,7 +285,7 @@ MOMENT = one_of(
 
 
 def interval(lower: float, upper: float) -> Interval:
-    """Return bounds; raise :class:`UsageError` where they are none."""
+    """Return bounds; raise :class:`UsageError` if they are invalid."""
     if not lower <= upper:
         raise damaged("it has bounds that are reversed")
     return Interval(lower, upper)

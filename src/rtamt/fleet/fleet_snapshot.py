@@ -40,7 +40,7 @@ def packed(state: FleetState) -> bytes:
 
 
 def unpacked(state: bytes) -> FleetState:
-    """Return the parts of a state; raise :class:`UsageError` for bytes that are none."""
+    """Return the parts of a state; raise :class:`UsageError` for malformed bytes."""
     if not state.startswith(_MAGIC):
         return FleetState(GAPS["reject"], None, None, state)
     if len(state) < _HEAD.size + _CHECKSUM.size:

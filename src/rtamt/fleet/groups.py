@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class Asking(NamedTuple):
-    """A specification and what is asked of it: a query, of which robustness or truth may be left out."""
+    """A specification and its query, which may exclude robustness or truth."""
 
     spec: Specification
     query: Query

@@ -145,7 +145,7 @@ class InOrder:
         return len(self.records)
 
     def contains(self, key: NDArray[Any]) -> bool:
-        """Return whether the key of an array of one is there."""
+        """Return whether the key in an array of one element exists."""
         return bool(self.records.contains(key))
 
     def keys(self) -> list[Any]:

@@ -1,6 +1,6 @@
 """The state of one monitor of a fleet as bytes of a portable format (docs/reference/fleet-state.md).
 
-``REMEMBERED`` is THE LIST of what monitors remember beside their back ends.
+``REMEMBERED`` is the only list of the state that monitors keep outside their back ends.
 """
 
 from __future__ import annotations
@@ -252,7 +252,7 @@ def _back_end(session: Any) -> Field | None:
 
 
 def _groups(session: GroupSession) -> Field:
-    """Return the field of requirements with different variables, each with a back end of its own."""
+    """Return the field of requirements with different variables, each with its own back end."""
     requirements, names, _ = session._made_of
     name = checked(TEXT, lambda found: found in names)
     signal = Field(_SIGNAL.put, row(ARRAY, ARRAY, make=_signal).get)

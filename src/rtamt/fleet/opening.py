@@ -158,7 +158,7 @@ def _part(
 
 
 def _identities(spec: Specification) -> dict[str, str]:
-    """Return what stands for the names of variables in a state, where a declaration decides what a number means.
+    """Return the identities of variables in a state: their names, and declarations that give numbers a meaning.
 
     With another unit, another recorded name or other codes of members, what is remembered is of another signal.
     """

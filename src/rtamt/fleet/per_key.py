@@ -229,7 +229,7 @@ class MonitorPerKey:
         return None if found is None else copy(found)
 
     def contains(self, key: NDArray[Any]) -> bool:
-        """Return whether the key of an array of one is there."""
+        """Return whether the key in an array of one element exists."""
         return key[0].item() in self._monitors
 
     def keys(self) -> list[Any]:

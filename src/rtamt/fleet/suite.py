@@ -49,7 +49,7 @@ class Suite:
     """Many requirements, compiled once into few programs, over any number of recordings.
 
     ``specs``: specifications, or a mapping from a name to a specification; each requirement in them has its own row,
-    and each is named by what stands after ``require``, else by the name of its specification, else by its text.
+    and each is named by ``require NAME``, else by the name of its specification, else by its text.
     ``select``: what is computed, of ``"robustness"``, ``"satisfied"`` and ``"first_violation"``; to leave out the
     robustness, or the other two, halves state and work. The other settings are those of
     :meth:`Specification.evaluate`.
@@ -239,7 +239,7 @@ class Suite:
 
     @cached_property
     def fingerprint(self) -> str:
-        """A hash of what is computed: that of the bytes or, where there are none, of texts and settings."""
+        """A hash of the computation: that of the bytes or, without bytes, of texts and settings."""
         if self.storable:
             return hashlib.sha256(self.to_bytes()).hexdigest()
         described: list[Any] = [self.select, sorted(self._settings.items(), key=str)]

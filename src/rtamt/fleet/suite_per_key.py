@@ -108,7 +108,7 @@ class SuitePerKey:
         return self._parts[requirement].monitor(key, None)
 
     def contains(self, key: NDArray[Any]) -> bool:
-        """Return whether the key of an array of one is there."""
+        """Return whether the key in an array of one element exists."""
         return self._first.contains(key)
 
     def keys(self) -> list[Any]:

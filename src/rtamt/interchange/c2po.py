@@ -39,7 +39,7 @@ _RESERVED = frozenset(
      "prev xor G F H O U R S T M true false bool int float").split()
 )  # fmt: skip
 _EXPONENT = lazy_pattern(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
-#: What makes a file larger than any that is written by hand.
+#: Limits beyond any file that is written by hand.
 _LONGEST = 2_000_000
 
 

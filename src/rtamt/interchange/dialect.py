@@ -136,7 +136,7 @@ class Dialect:
         def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
             if not isinstance(node, Apply) or node.op is TRUTH:
                 return node
-            # Of members of enumerations, equality is another operator, which is written alike.
+            # Equality of enumeration members is a different operator with the same symbol.
             operator = self._written.get(node.op.name.removeprefix("holds_"))
             if operator is None or node.op is not builtin(node.op.name):
                 raise InexpressibleError(f"{self.title} has no '{node.op.spellings[0]}', as in '{node}'")

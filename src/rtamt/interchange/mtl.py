@@ -129,7 +129,7 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
 
 
 def _group(node: Formula, args: tuple[str, ...]) -> str:
-    """Return the text of a node; in its grammar each infix operator stands in parentheses of its own."""
+    """Return the text of a node; in its grammar each infix operation is parenthesised."""
     if not isinstance(node, Apply):
         return str(node)
     if node.op is TRUTH:

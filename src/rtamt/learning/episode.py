@@ -40,7 +40,7 @@ class Settings(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What a step is worth, and its info."""
+    """The reward of a step, and its info."""
 
     reward: float
     info: dict[str, Any]
@@ -108,7 +108,7 @@ class Episode:
         self._judge: Any = spec.monitor(verdict="eager") if settings.terminate else None
         self.input_names: tuple[str, ...] = spec.input_names
         self.running = False
-        #: Whether what a step is worth contains the reward of the environment.
+        #: Whether the reward of a step contains that of the environment.
         self.adds = settings.reward == SHAPING
 
     def start(self, sample: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -132,7 +132,7 @@ class Episode:
         return self._satisfied
 
     def rate(self, reward: float, *, ends: bool) -> Outcome:
-        """Return what the step is worth; ``ends``: whether the episode terminates with it."""
+        """Return the reward of the step; ``ends``: whether the episode terminates with it."""
         found, kind, before = self._found, self._settings.reward, self._potential
         if kind == ROBUSTNESS:
             worth = 0.0 if found is None else found

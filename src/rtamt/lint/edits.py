@@ -27,7 +27,7 @@ def tokens_of(text: Text, span: Span) -> range:
 
 
 def is_prefix_here(text: Text, node: Apply) -> bool:
-    """Return whether a prefix operator is written where its node says, and its operand behind it."""
+    """Return whether a prefix operator is at the position of its node, followed by its operand."""
     span = node.span
     if span is None or node.op.fixity is not Fixity.PREFIX:
         return False
@@ -63,7 +63,7 @@ def is_grouped(text: Text, node: Apply) -> bool:
 
 
 def is_infix_here(text: Text, node: Apply) -> bool:
-    """Return whether an infix operator is written where its node says."""
+    """Return whether an infix operator is at the position of its node."""
     return infix_at(text, node) is not None
 
 

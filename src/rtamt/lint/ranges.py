@@ -200,7 +200,7 @@ class Decided:
         self.formulas = [(node, holds) for node, holds in found if id(node) not in covered]
 
     def _triggered_never(self, node: Apply, within: _Enclosed) -> bool:
-        """Return whether an implication is never triggered: what follows from it is reported nowhere else."""
+        """Return whether an implication is never triggered; its consequences are then not reported separately."""
         if node.op is not STL["implies"] or _holds(within.of(node.args[0])) is not False:
             return False
         if _holds(_Enclosed({}).of(node.args[0])) is not None:

@@ -1,4 +1,4 @@
-"""The table of the rules: from it come the findings, the command-line help, and a page of the manual for each code."""
+"""The table of rules, the source of the findings, the command-line help and the manual page of each code."""
 
 from __future__ import annotations
 

@@ -14,13 +14,13 @@ document    one version of a text, parsed once
 imported    names that other files define
 problems    errors and findings, and what mends them
 hover       what is known about the word under the pointer
-completion  what can stand at a position
+completion  completions at a position
 rename      another name, without a change of meaning
 meaning     what a text means, to compare two texts
 colors      semantic tokens
 lenses      the verdicts above requirements
 evaluation  the process that reads recordings
-recording   that process as the server sees it: a question, a time limit
+recording   the server's handle of that process: a request, a time limit
 messages    answers to messages that are wrong (pygls)
 session     what the server keeps between requests (pygls)
 server      the requests of the protocol (pygls)

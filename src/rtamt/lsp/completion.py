@@ -1,4 +1,4 @@
-"""What can stand at a position: declared names, words of the language, patterns, and columns of a recording."""
+"""Completions at a position: declared names, keywords, patterns, and columns of a recording."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Item(NamedTuple):
 
 
 def completions(analysis: Analysis, offset: int, columns: Sequence[str] = ()) -> list[Item]:
-    """Return what can stand at an offset, the likeliest first; clients keep what begins with the word before it.
+    """Return the completions at an offset, the likeliest first; clients filter them by prefix.
 
     >>> from rtamt.lsp.document import Analysis
     >>> found = completions(Analysis("input float speed; always(sp"), 28, ["engine speed"])

@@ -1,4 +1,4 @@
-"""What an editor asks about one text: parsed once for each version, whatever is asked."""
+"""The analysis of one text, parsed once per version and shared by all requests."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The process that reads recordings for the server: one request as JSON in, one answer as JSON out.
 
-It is a process of its own, so that the server can end it, and so that a large recording leaves no trace in the server.
+It is a separate process, so that the server can end it, and so that a large recording does not grow the server.
 """
 
 from __future__ import annotations

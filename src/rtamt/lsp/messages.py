@@ -1,4 +1,4 @@
-"""Messages that are not those of the protocol: each has an answer, and the server goes on. It needs pygls."""
+"""Malformed messages: each gets an error response, and the server continues. Needs pygls."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Protocol(LanguageServerProtocol):
             raise AnsweredError from None
 
     def handle_message(self, message: Any) -> None:
-        """Answer a request, or do what a notification asks for."""
+        """Answer a request, or handle a notification."""
         if not hasattr(message, "jsonrpc"):
             raise JsonRpcInvalidRequest("a message is one object of JSON-RPC 2.0")
         super().handle_message(message)

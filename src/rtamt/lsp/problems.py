@@ -127,7 +127,7 @@ def _touch(one: Span, other: Span) -> bool:
 
 
 def _suggestions(analysis: Analysis, error: StlError, span: Span) -> list[Repair]:
-    """Return the name that the message of an error suggests, in place of the one that is there."""
+    """Return the name that an error message suggests as a replacement."""
     place = place_of(error)
     suggested = _SUGGESTED.search(str(error))
     if suggested is None or place is None or not _touch(place, span):

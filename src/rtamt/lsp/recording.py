@@ -1,4 +1,4 @@
-"""Questions about a recording, asked of another process, so that the server answers meanwhile."""
+"""Evaluation of a recording in another process, so that the server stays responsive."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sys
 import tempfile
 from typing import Any
 
-#: Seconds that a question may take.
+#: The time limit of an evaluation in seconds.
 SECONDS = 60.0
 
 

@@ -76,7 +76,7 @@ def renameable_at(analysis: Analysis, offset: int, path: str | None = None) -> t
 def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -> list[Edit]:
     """Return the edits that give the name at an offset another spelling.
 
-    ``path``: that of the file, to find those that import it. A variable or a field goes on reading its column: where
+    ``path``: that of the file, to find those that import it. A variable or a field still reads its column: where
     it has no recorded name, it gets the old one. Raises :class:`UsageError` for names that are taken or reserved.
 
     >>> from rtamt.lsp.document import Analysis
@@ -101,7 +101,7 @@ def rename(analysis: Analysis, offset: int, new: str, path: str | None = None) -
 
 
 def _edit_of_name(text: str, tokens: Tokens, span: Span, symbol: Symbol, new: str) -> Edit:
-    """Return the edit that writes a name at a span: in quotes, unless it needs none or stands in quotes already."""
+    """Return the edit that writes a name at a span: quoted if it needs quotes and is not quoted already."""
     pattern = ID if symbol.kind == "requirement" else NAME
     if pattern.fullmatch(new) and not _is_word(new):
         return Edit(span, new)

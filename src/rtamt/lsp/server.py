@@ -42,7 +42,7 @@ _ITEMS = {
 
 
 def make_server() -> Server:
-    """Return a server that answers every request."""
+    """Return a server with all request handlers."""
     server = Server()
 
     @server.feature(lsp.INITIALIZE)
@@ -109,7 +109,7 @@ def _add_queries(server: Server) -> None:
                 detail=each.detail or None,
                 documentation=lsp.MarkupContent(lsp.MarkupKind.Markdown, each.text) if each.text else None,
                 text_edit=edits_of(analysis.lines, [each.edit])[0],
-                # What is written decides whether the quotes of a name count.
+                # Quotes are part of the filter text only if the user has typed one.
                 filter_text=each.edit.new
                 if analysis.text[each.edit.span.start :].startswith('"')
                 else each.label,
@@ -243,7 +243,7 @@ def _add_edits(server: Server) -> None:
     def format_document(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
         analysis = server.analysis(params.text_document.uri)
         if analysis.spec is None:
-            return []  # its error is shown already
+            return []  # diagnostics show its error already
         new = layout_text(analysis.text, analysis.folder, STL)
         return [] if new == analysis.text else whole_of(analysis, new)
 
@@ -274,7 +274,7 @@ def _add_edits(server: Server) -> None:
 
 
 def serve() -> None:
-    """Serve on the standard streams until the client says that it ends."""
-    # A stream of its own, which pygls closes at the end.
+    """Serve on the standard streams until the client exits."""
+    # A separate stream, which pygls closes at the end.
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:
         make_server().start_io(stdout=answers)

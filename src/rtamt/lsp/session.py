@@ -62,7 +62,7 @@ class State:
     columns: dict[Any, asyncio.Task[dict[str, Any]]] = field(default_factory=dict)
     #: From a file to the text, the recording and the settings that were checked, and what was found.
     checked: dict[str, tuple[Any, dict[str, Any]]] = field(default_factory=dict)
-    #: Tasks that nobody awaits, kept until they end.
+    #: Background tasks, kept until they end.
     tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
 
@@ -155,7 +155,7 @@ class Server(LanguageServer):
         return found
 
     def refresh(self) -> None:
-        """Ask the client to show the verdicts, if it can be asked."""
+        """Ask the client to refresh the verdicts, if it supports that."""
         workspace = self.client_capabilities.workspace
         if workspace and workspace.code_lens and workspace.code_lens.refresh_support:
             self.workspace_code_lens_refresh(None)

@@ -97,7 +97,7 @@ class UseReader(TokenReader):
         return False
 
     def _value(self, name: str, start: int) -> Symbol | None:
-        """Return the member of an enumeration with a name; of several the one that is meant at an offset."""
+        """Return the enumeration member of a name; of several the one that applies at an offset."""
         having = self._values.get(name, ())
         of = self._types.get(start, "") if len(having) > 1 else ""
         return self.parts.get((of, name)) or next(iter(having), None)

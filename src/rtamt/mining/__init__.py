@@ -16,7 +16,7 @@ grid                  the values that a parameter takes, from the easiest to the
 parameter_ranges      the range of a parameter, by its kind and by what recordings satisfy
 pareto_front          the Pareto front of two parameters
 search                parameters without a known direction
-classify              a decision list over templates that tells good recordings from bad
+classify              a decision list over templates that separates good recordings from bad ones
 classifier_templates  the templates of a classifier
 decision_list         decision lists
 plot                  plots of what was mined

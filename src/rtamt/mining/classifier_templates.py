@@ -1,7 +1,7 @@
 """The templates of a classifier, and the tight value of each for each recording.
 
 A recording satisfies a template whose threshold is at its tight value or easier. So a template with one parameter
-turns a recording into one number, and a threshold between two numbers tells recordings apart.
+turns a recording into one number, and a threshold between two numbers separates recordings.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _PARTS = (Fraction(1, 10), Fraction(1, 4))
 #: Magnitudes of tight values, from the easiest to the hardest, for a direction of 1.
 _SIZES = (*(-(10.0**k) for k in range(15, -10, -1)), 0.0, *(10.0**k for k in range(-9, 16)))
-#: The relative error of a tight value, which stands between two recordings.
+#: The relative error of a tight value, which lies between those of two recordings.
 _EXACT = 1e-15
 
 #: Over one number and a threshold: larger thresholds are easier to satisfy, or smaller ones.

@@ -1,4 +1,4 @@
-"""A short decision list over templates that tells good recordings from bad ones."""
+"""A short decision list over templates that separates good recordings from bad ones."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def classify(
     progress: Callable[[int], None] | None = None,
     **reading: Unpack[EvaluationSettings],
 ) -> Classifier:
-    """Learn a decision list of at most ``rules`` rules that tells good recordings from bad ones.
+    """Learn a decision list of at most ``rules`` rules that separates good recordings from bad ones.
 
     ``signals``: the variables of the templates, by default all that every recording has. ``templates``:
     specifications whose requirements have one threshold each, in place of those over each signal and each pair. Signals

@@ -80,7 +80,7 @@ class DecisionList:
 def learn_list(
     templates: Sequence[Template], table: NDArray[np.float64], good: Bits, most: int
 ) -> DecisionList:
-    """Return a decision list of at most so many rules: each rule leaves the fewest errors, until none leaves fewer.
+    """Return a decision list of at most ``most`` rules; each rule minimises the remaining errors.
 
     Errors of a rule itself count twice where more rules may follow, which mend only those of the rest. A threshold in a
     narrow gap fits these recordings by chance: the gap adds up to two errors, the less the closer it

@@ -55,7 +55,7 @@ class Role:
         return max(((begin + tick * out) / self.seconds for begin, out in self.begins), default=Fraction(0))
 
     def most(self, tick: Fraction) -> Fraction | None:
-        """Return the greatest value with which no interval is empty, None if there is none."""
+        """Return the greatest value for which no interval is empty; None if there is none."""
         return min(((end - tick * out) / self.seconds for end, out in self.ends), default=None)
 
 

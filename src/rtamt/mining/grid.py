@@ -73,7 +73,7 @@ def hardest(holds: Callable[[int], bool], last: int) -> int:
 
 
 def digits(size: Fraction, significant: int) -> Fraction:
-    """Return the power of ten that is the last of so many significant digits of a number.
+    """Return the power of ten of the last significant digit of a number, for a given number of digits.
 
     >>> digits(Fraction(4850), 5), digits(Fraction(1, 3), 2)
     (Fraction(1, 10), Fraction(1, 100))

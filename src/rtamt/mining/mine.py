@@ -62,7 +62,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Mined:
-    """What recordings say about the parameters of a template.
+    """The values of the parameters of a template that recordings admit.
 
     ``points``: one, or the Pareto front of two parameters. ``roles``: of each parameter its ``direction`` (1: larger
     values are easier to satisfy, -1: smaller ones, None: unknown) and whether it bounds an interval. ``ranges``: the
@@ -298,7 +298,7 @@ def _values(grids: list[Grid], places: Iterable[int]) -> dict[str, float]:
 
 
 def _one(bare: Mined, region: Region, grids: list[Grid]) -> Mined:
-    """Return one point: each parameter in turn as hard as the recordings allow."""
+    """Return one point: each parameter in turn as tight as the recordings allow."""
     places = [0] * len(grids)
     _require_some(region, grids)
     finished = True

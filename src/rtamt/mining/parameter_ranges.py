@@ -202,7 +202,7 @@ class Finder:
         return Grid(role.name, high, low, step) if role.direction == 1 else Grid(role.name, low, high, step)
 
     def _move(self, role: Role, distance: float) -> float:
-        """Return a value that is so much easier than the one in use, in units of its size."""
+        """Return a value easier than the current one by a distance in units of its magnitude."""
         start = self._start[role.name]
         assert role.direction is not None
         moved = start + role.direction * distance * max(1.0, abs(start))
@@ -212,7 +212,7 @@ class Finder:
         return self._region.holds(self._at(role, distance, others))
 
     def _at(self, role: Role, distance: float, others: float) -> dict[str, float]:
-        """Return a value of one role that is so much easier than the one in use; of the others, easy ones."""
+        """Return an easier value for one role, and easy values for the others."""
         values = {**self._easiest, **{each.name: self._move(each, others) for each in self._free}}
         values[role.name] = self._move(role, distance)
         return {name: values[name] for name in self._order}

@@ -1,4 +1,4 @@
-"""Which values of parameters satisfy a template on every recording: what the engine says, within a budget."""
+"""The parameter values that satisfy a template on every recording, evaluated within a budget."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Spent(Exception):  # noqa: N818 - no error: it ends a search
 
 
 class Budget:
-    """How many evaluations of a recording, and how many seconds, may be spent; ``progress`` is told how many were."""
+    """The limits on evaluations and seconds; ``progress`` is called with the number of evaluations."""
 
     def __init__(
         self, evaluations: int | None, timeout: float | None, progress: Callable[[int], None] | None

@@ -39,7 +39,7 @@ class Keys:
         self._step = step
         self._continuous = continuous
         self._numbers: dict[Any, int] = {}
-        #: By number, what it stands for.
+        #: The quantified formula of each number.
         self._parts: list[Any] = []
 
     def of(self, formula: Formula) -> int:

@@ -79,7 +79,7 @@ def _operators(node: Apply) -> Iterator[Formula]:
 
 
 def _is_removable(node: Apply) -> bool:
-    """Return whether the only operand of an operator can stand in its place."""
+    """Return whether an operator can be replaced by its only operand."""
     op, args = node.op, node.args
     if len(args) != 1 or op.operands[0] is not op.result or op.binder is not None:
         return False
@@ -87,7 +87,7 @@ def _is_removable(node: Apply) -> bool:
 
 
 def _similar(op: Operator) -> list[Operator]:
-    """Return the operators that stand in for another: its dual, and those that are like it."""
+    """Return the replacements of an operator: its dual and the similar ones."""
     found = [STL[op.dual]] if op.dual else []
     if op.fixity is Fixity.QUANTIFIER:
         found += _other_quantifier(op)
@@ -217,7 +217,7 @@ def _change_interval(interval: Interval, begin: Fraction, end: Fraction | None) 
 
 
 def describe_change(change: Change) -> str:
-    """Return a change for a table: what was there, an arrow, and what is there now; of long parts the operator alone.
+    """Return a change for a table, ``old -> new``; long parts are reduced to their operator.
 
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> for each in list(changes_of(parse_formula("always[0:9](speed >= 30 and gap > 2 and brake < 0.5)"), None))[:3]:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from rtamt.mutation.mutate import Mutation
 
-#: Characters of a change beside its row.
+#: The maximum length of the label of a change.
 _LONGEST = 64
 
 

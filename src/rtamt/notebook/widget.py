@@ -24,7 +24,7 @@ class ResultWidget(anywidget.AnyWidget):
     _page = traitlets.Bytes().tag(sync=True)
     #: The height of the frame, in pixels.
     height = traitlets.Int().tag(sync=True)
-    #: Begin and end of the time that is seen; empty before the charts are drawn. Setting it zooms all charts.
+    #: Begin and end of the visible time span; empty before the charts are drawn. Setting it zooms all charts.
     zoom: traitlets.List[float] = traitlets.List(traitlets.Float()).tag(sync=True)
     #: The position of the cursor; None if there is none. Setting it moves the cursor.
     cursor = traitlets.Float(None, allow_none=True).tag(sync=True)

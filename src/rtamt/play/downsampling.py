@@ -20,7 +20,7 @@ def line(
 ) -> dict[str, Any]:
     """Return the points to draw: all, or of each of ``width`` parts of the time the lowest and the highest.
 
-    ``view``: begin and end of the time that is seen, None for all of it; see :func:`kept_in`.
+    ``view``: the visible time span (begin, end), None for the whole trace; see :func:`kept_in`.
 
     >>> import numpy as np
     >>> values = np.array([0.0, 9, 1, 2, -5, 3, 4, 5])
@@ -38,7 +38,7 @@ def kept_in(
 ) -> NDArray[np.intp]:
     """Return the indices of the points to draw of lines over the same positions.
 
-    Beside those in the view they are the one before it and the one after it, to which the lines lead.
+    These are the points in the view and the nearest one on either side, so that lines reach the edges.
     """
     first, last = 0, len(positions)
     if view is not None:

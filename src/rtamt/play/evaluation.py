@@ -34,15 +34,15 @@ if TYPE_CHECKING:
     from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.specification import Specification
 
-#: Causes that are listed, stretches of signals and runs of violation that are drawn.
+#: Limits: listed causes, drawn intervals of signals, drawn intervals of violation.
 _CAUSES, _STRETCHES, _RUNS = 6, 400, 2000
 
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """Where a request finds what it names: recordings, and the folder of imported files, None for no folder.
+    """The recordings and the folder of imported files (None: no folder) that requests refer to.
 
-    ``results``: what was evaluated last. ``replays``: what was replayed last.
+    ``results``: the last evaluation. ``replays``: the last replay.
     """
 
     recordings: Recordings
@@ -55,7 +55,7 @@ class Sources:
 def parse_request(request: Request, sources: Sources) -> Specification:
     """Return the specification of a request; raises :class:`SpecificationError`.
 
-    A sampling period that the text declares counts, and not that of the request.
+    A sampling period declared in the text takes precedence over that of the request.
     """
     if not request.text.strip():
         raise SpecificationError("write a formula, such as always(x >= 3)")
@@ -91,7 +91,7 @@ def result_of(request: Request, spec: Specification, sources: Sources) -> Result
 
 
 def inner(spec: Specification) -> Specification:
-    """Return what is shown instant by instant: of ``always φ`` without bounds ``φ``, else the formula.
+    """Return the formula shown at each instant: ``φ`` for an unbounded ``always φ``, else the formula itself.
 
     >>> import rtamt
     >>> print(inner(rtamt.parse("always(x >= 3 -> eventually[0:2](y >= 1))")).formula)
@@ -104,7 +104,7 @@ def inner(spec: Specification) -> Specification:
 
 
 def select_requirement(request: Request, result: Result) -> tuple[str, Result]:
-    """Return the requirement that is explained and monitored: the wanted one, or the first that is violated."""
+    """Return the requirement to explain and monitor: the requested one, else the first violated one."""
     parts = result.requirements
     if request.focus is not None and request.focus in parts:
         return request.focus, parts[request.focus]
@@ -113,7 +113,7 @@ def select_requirement(request: Request, result: Result) -> tuple[str, Result]:
 
 
 def evaluate_request(request: Request, sources: Sources) -> dict[str, Any]:
-    """Answer a request; a mistake in the text or in the data is an answer with ``error``."""
+    """Evaluate a request; errors in the text or the data are reported in ``error``."""
     answer: dict[str, Any] = {"error": None}
     try:
         spec = parse_request(request, sources)
@@ -133,7 +133,7 @@ def evaluate_request(request: Request, sources: Sources) -> dict[str, Any]:
 
 
 def redraw(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return what is seen of the last evaluation, as ``near`` of :func:`evaluate_request`."""
+    """Return the visible part of the last evaluation, as ``near`` of :func:`evaluate_request`."""
     try:
         result = sources.results.of(
             request, lambda: result_of(request, parse_request(request, sources), sources)
@@ -145,7 +145,7 @@ def redraw(request: Request, sources: Sources) -> dict[str, Any]:
 
 
 def error_as_data(error: StlError, sources: Sources) -> dict[str, Any]:
-    """Return an error as data: the sentence, and its place in the text."""
+    """Return an error as data: its message and its position in the text."""
     message = error.message if isinstance(error, SpecificationError) else str(error)
     span = error.span if isinstance(error, SpecificationError) else None
     for path, name in _private_paths(sources):
@@ -158,13 +158,13 @@ def error_as_data(error: StlError, sources: Sources) -> dict[str, Any]:
 
 
 def _private_paths(sources: Sources) -> list[tuple[str, str]]:
-    """Return the paths that no sentence contains, and what replaces them."""
+    """Return the paths to hide in messages, with their replacements."""
     found = [] if sources.file is None else [(sources.file.path, sources.file.name)]
     return found if sources.folder is None else [*found, (sources.folder, ".")]
 
 
 def _facts(spec: Specification, request: Request) -> dict[str, Any]:
-    """Return what is known without data."""
+    """Return the facts that need no data: variables, horizon, warnings."""
     horizon = spec.horizon
     return {
         "variables": list(spec.input_names),
@@ -187,7 +187,7 @@ def _warning(found: Any) -> dict[str, Any]:
 
 
 def verdict_of(result: Result) -> str:
-    """Return the verdict in one word; "open" where missing samples leave it undecided."""
+    """Return the verdict as a word; "open" if missing samples leave it undecided."""
     try:
         return "satisfied" if result.satisfied else "violated"
     except EvaluationError:
@@ -205,7 +205,7 @@ def _interval(result: Result) -> list[Any]:
 
 
 def _requirement_facts(name: str, result: Result) -> dict[str, Any]:
-    """Return what is said of one requirement."""
+    """Return the verdict, robustness and explanation of one requirement."""
     x_axis, spec = XAxis.of(result.trace), result.specification
     period = result.trace.domain.period
     answer: dict[str, Any] = {
@@ -234,7 +234,7 @@ def _requirement_facts(name: str, result: Result) -> dict[str, Any]:
 
 
 def _requirement_lines(result: Result, part: Result, request: Request, view: View | None) -> dict[str, Any]:
-    """Return the lines of one requirement, as far as they are seen: robustness, signals, and where it is violated."""
+    """Return the visible lines of one requirement: robustness, signals and violations."""
     signal = part.signal
     positions = XAxis.of(part.trace).positions(signal.times)
     first, *rest = (signal.lower, signal.upper) if isinstance(signal, BoundedSignal) else (signal.values,)
@@ -248,7 +248,7 @@ def _requirement_lines(result: Result, part: Result, request: Request, view: Vie
 
 
 def _violation_runs(part: Result, view: View | None) -> list[list[float]]:
-    """Return the runs of instants at which the monitored formula does not hold, each until the next instant."""
+    """Return the intervals in which the monitored formula is violated, each up to the next instant."""
     if part.trace.bounds:
         return []
     _, truth = signals_of(part, inner(part.specification).formula)
@@ -266,7 +266,7 @@ def _violation_runs(part: Result, view: View | None) -> list[list[float]]:
 
 
 def _lines(result: Result, part: Result, width: int, view: View | None) -> list[dict[str, Any]]:
-    """Return the signals that any requirement reads, on the axis of the one that is shown."""
+    """Return the signals of all requirements, on the time axis of the selected one."""
     known = {}
     for name in result.specification.input_names:
         trace = part.trace if name in part.specification.input_names else result.trace
@@ -283,7 +283,7 @@ def _lines(result: Result, part: Result, width: int, view: View | None) -> list[
 
 
 def _shift(trace: DomainTrace, shown: DomainTrace) -> float:
-    """Return how far positions of one trace are ahead of those of another."""
+    """Return the offset between the time axes of two traces."""
     ours, theirs = XAxis.of(trace).origin, XAxis.of(shown).origin
     if isinstance(ours, np.datetime64) and isinstance(theirs, np.datetime64):
         return float((ours - theirs) / np.timedelta64(1, "ns")) / 1e9
@@ -293,7 +293,7 @@ def _shift(trace: DomainTrace, shown: DomainTrace) -> float:
 
 
 def _thresholds(spec: Specification) -> dict[str, list[float]]:
-    """Return the numbers that each variable is compared with."""
+    """Return the thresholds of each variable."""
     predicates = [each for each in postorder(spec.formula) if is_predicate(each)]
     found: dict[str, list[float]] = {}
     for name in spec.input_names:
@@ -324,7 +324,7 @@ def _place(stretch: Stretch, x_axis: XAxis) -> dict[str, float]:
 
 
 def _cause_intervals(stretches: Sequence[Stretch], x_axis: XAxis) -> Mapping[str, list[list[float]]]:
-    """Return the intervals of each signal that the cause reads."""
+    """Return the intervals of each signal in the sufficient cause."""
     found: dict[str, list[list[float]]] = {}
     for stretch in stretches:
         for reading in stretch.reads[:_STRETCHES]:

@@ -44,7 +44,7 @@ class Request:
     ``signals``: the drawn ones, over ``duration`` seconds. ``recording``: a number; then nothing is drawn.
     ``resample``: how a recording is put on one time base, "" for not at all. ``focus``: the requirement that is
     explained and monitored, None for the one that the answer chooses. ``width``: of charts, in pixels. ``view``: begin
-    and end of the time that is seen, None for all of it. ``at``: the position of the cursor.
+    and end of the visible time span, None for the whole trace. ``at``: the position of the cursor.
     """
 
     text: str

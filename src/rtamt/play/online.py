@@ -1,4 +1,4 @@
-"""What online monitors report while the samples of a recording arrive."""
+"""The reports of online monitors during the replay of a recording."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MOST_SAMPLES, _MOST_PENDING = 20_000, 200
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replay:
-    """What monitors reported of a result, sample by sample; ``runs``: see :func:`_runs`."""
+    """The reports of monitors for a result, sample by sample; ``runs``: see :func:`_runs`."""
 
     result: Result
     watched: Specification
@@ -43,7 +43,7 @@ class Replay:
 
 
 def replay_request(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return what was known after each sample: bounds at the start, and when each instant was decided."""
+    """Return the bounds at the start after each sample, and when each instant was decided."""
     try:
         replay = sources.replays.keep(request, _replay(request, sources))
         return {"error": None, "formula": name_of(replay.watched), **_visible(replay, request, None)}
@@ -52,7 +52,7 @@ def replay_request(request: Request, sources: Sources) -> dict[str, Any]:
 
 
 def redraw_replay(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return ``near``: what is seen of the last replay."""
+    """Return ``near``: the visible part of the last replay."""
     try:
         replay = sources.replays.of(request, lambda: _replay(request, sources))
         return {"error": None, "near": _visible(replay, request, request.view)}
@@ -75,7 +75,7 @@ def _visible(replay: Replay, request: Request, view: View | None) -> dict[str, A
 
 
 def known_at(request: Request, sources: Sources) -> dict[str, Any]:
-    """Return what is known when the samples up to the cursor have come.
+    """Return the state of a monitor that has received the samples up to the cursor.
 
     ``bounds``: of the robustness at the start. ``open``: how many instants have no verdict yet. ``pending``: the bounds
     of the instants whose robustness is not final; None if they never are.

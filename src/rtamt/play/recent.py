@@ -1,4 +1,4 @@
-"""The last result, so that looking closer at it, or at another instant, does not compute it again."""
+"""A cache of the last result, for zooming and moving the cursor without a new evaluation."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ T = TypeVar("T")
 
 
 class Recent(Generic[T]):
-    """What was computed last, and of which request.
+    """A cache with one entry: the last request and its result.
 
-    Requests that differ only in what is seen of the result (``width``, ``view`` and ``at``) have the same.
+    Requests that differ only in ``width``, ``view`` and ``at`` share a result.
     """
 
     def __init__(self) -> None:
         self._kept: tuple[Request, T] | None = None
 
     def keep(self, request: Request, found: T) -> T:
-        """Keep what was computed for a request in place of what was kept; return it."""
+        """Replace the entry by the result of a request, and return it."""
         self._kept = _without_view(request), found
         return found
 
     def of(self, request: Request, compute: Callable[[], T]) -> T:
-        """Return what is kept of a request, else compute and keep it."""
+        """Return the cached result of a request; compute and cache it if there is none."""
         if self._kept is not None and self._kept[0] == _without_view(request):
             return self._kept[1]
         return self.keep(request, compute())

@@ -19,7 +19,7 @@ _KEPT = 4
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A recording on the machine: where it is, and the name that the user knows."""
+    """A recording on the machine: its path, and the name shown to the user."""
 
     number: int
     path: str

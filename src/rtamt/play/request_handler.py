@@ -1,4 +1,4 @@
-"""The answers by the name of the request: a message in, data out."""
+"""Dispatch requests by kind: a message in, data out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rtamt.play.recordings import File, Recordings
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: What the page may ask a worker for.
+#: The kinds of requests to a worker.
 KINDS = ("evaluate", "redraw", "replay", "redraw_replay", "cursor", "find_trace", "recording")
 _ANSWERS = {
     "evaluate": evaluate_request,
@@ -26,7 +26,7 @@ _ANSWERS = {
 
 
 class RequestHandler:
-    """Answers messages one by one; it keeps recordings and the last result in memory, and nothing else.
+    """Answer messages one by one; the only state is the recordings and the last result.
 
     >>> handler = RequestHandler()
     >>> answer = handler.answer("evaluate", {"text": "always(x >= 3)", "time": "discrete", "duration": 2,

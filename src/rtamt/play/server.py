@@ -241,7 +241,7 @@ async def _start(place: Place) -> dict[str, Any]:
 
 
 def _page_file(name: str) -> bytes | None:
-    """Return a file of the page; only names that are there are read."""
+    """Return a file of the page; other names are not found."""
     known = {each.name: each for each in files(__package__).joinpath("page").iterdir()}
     if name not in known or os.path.splitext(name)[1] not in _TYPES:
         return None

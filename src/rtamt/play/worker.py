@@ -1,6 +1,6 @@
-"""The process that answers: a JSON line in, a status and a JSON line out, until its input ends.
+"""The worker process: a JSON line in, a status and a JSON line out, until the end of its input.
 
-It is a process of its own, so that the server can end a request that takes too long.
+It is a separate process, so that the server can abort a request that takes too long.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def reply(handler: RequestHandler, line: bytes) -> bytes:
         return _failure("not enough memory: are the bounds of a window as large as they should be?")
     except RecursionError:
         return _failure("the formula is nested too deeply")
-    except Exception as error:  # noqa: BLE001 - a mistake of ours; the page shows a sentence and goes on
+    except Exception as error:  # noqa: BLE001 - a bug here; the page reports it and continues
         return _failure(f"internal error, please report it: {type(error).__name__}: {error}")
 
 

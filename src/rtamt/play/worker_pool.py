@@ -1,7 +1,7 @@
-"""The workers as the server sees them: started on demand, ended when they take too long.
+"""The worker processes of the server: started on demand, killed when a request takes too long.
 
-One worker answers while the user types, another one replays recordings meanwhile, and a third one answers questions to
-the solver, which take seconds.
+One worker evaluates while the user types, another one replays recordings, and a third one runs solver queries, which
+take seconds.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Worker:
         self._lock = asyncio.Lock()
 
     async def ask(self, request: Mapping[str, Any], seconds: float, still_wanted: Any) -> tuple[int, bytes]:
-        """Return the status and the answer; ``still_wanted()`` is asked when the worker is free."""
+        """Return the status and the answer; a request that is no longer the newest is skipped."""
         async with self._lock:
             if not still_wanted():
                 return 200, _LATE
@@ -63,7 +63,7 @@ class Worker:
                 limit=_LONGEST,
                 cwd=self._room,  # an empty folder: Python imports from the current one
                 env=_environment(),
-                start_new_session=True,  # Ctrl-C is for the server
+                start_new_session=True,  # Ctrl-C goes to the server only
             )
         process = self._process
         assert process.stdin is not None
@@ -72,7 +72,7 @@ class Worker:
             process.stdin.write(json.dumps(request).encode() + b"\n")
             await process.stdin.drain()
             return await process.stdout.readline()
-        except (BrokenPipeError, ConnectionResetError):  # ended by somebody else
+        except (BrokenPipeError, ConnectionResetError):  # killed by another process
             return b""
 
     async def end(self) -> None:

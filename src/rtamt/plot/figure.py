@@ -47,7 +47,7 @@ def new_figure() -> Any:
 def draw(scene: Scene, rows: int, figure: Any, window: tuple[float, float] | None = None) -> None:
     """Draw a scene into a figure, which is made as large as it needs to be.
 
-    ``rows``: sub-formulas at most. ``window``: the positions that are seen, by default all.
+    ``rows``: sub-formulas at most. ``window``: the visible positions, by default all.
     """
     _Drawing(scene, rows, figure, window or (scene.x_axis.start, scene.x_axis.end)).draw()
 
@@ -251,7 +251,7 @@ class _Drawing:
             self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
 
     def _annotate(self, axis: Any, text: str, moment: str, color: str) -> None:
-        """Write what holds, and when, beside a row."""
+        """Annotate a row with what holds, and when."""
         axis.annotate(
             text,
             (1.012, 0.5),

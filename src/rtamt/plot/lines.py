@@ -90,7 +90,7 @@ class Line:
 
     @staticmethod
     def _first(wanted: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the first wanted index in each of the columns, every one of which has some."""
+        """Return the first selected index in each column; every column has one."""
         where = np.flatnonzero(wanted)
         found: NDArray[np.int64] = where[np.searchsorted(where, starts)]
         return found

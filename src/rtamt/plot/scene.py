@@ -85,7 +85,7 @@ class Scene:
     nodes: tuple[Node, ...]
     at: float
     critical: tuple[int, float] | None
-    #: What was known of the robustness at the start after each sample, where that is asked for.
+    #: The bounds of the robustness at the start after each sample, if requested.
     band: Band | None = None
 
     @property

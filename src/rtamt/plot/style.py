@@ -14,7 +14,7 @@ BECAUSE = "#F0E442"
 BAND = "#009E73"
 INK, QUIET, FAINT = "#1f2328", "#6e7781", "#d1d9e0"
 
-#: What a verdict is drawn with, beside its colour.
+#: The marker of a verdict, in addition to its colour.
 SIGNS = {True: "✓", False: "✗"}
 INFINITE = {True: "+∞", False: "−∞"}
 

@@ -33,7 +33,7 @@ def in_lines(name: str) -> str:
 
 
 def label_width(names: Sequence[str]) -> float:
-    """Return the inches from one name beside a panel to the next."""
+    """Return the width of the label of a panel in inches."""
     return 0.26 if any("\n" in name for name in names) else 0.17
 
 
@@ -50,5 +50,5 @@ def wrap_formula(text: str) -> list[str]:
 
 
 def shorten(text: str, most: int) -> str:
-    """Return a text of at most so many characters."""
+    """Return a text abbreviated to at most ``most`` characters."""
     return text if len(text) <= most else text[: most - 1] + "…"

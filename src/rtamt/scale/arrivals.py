@@ -1,7 +1,7 @@
 """When the keys of a shard had their last message, so that silent ones can be forgotten.
 
 The clock is that of the messages: the latest of their timestamps. So which keys expire, and before which message,
-depends on the messages alone, not on how they come in batches, or on when they are read.
+depends on the messages alone, not on their batches, or on when they are read.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Arrivals:
         return bytes(out + struct.pack("<I", zlib.crc32(out)))
 
     def unpack_state(self, state: bytes) -> bytes:
-        """Go on with the times in a state, if it has any; return the state of the fleet."""
+        """Restore the times of a state, if it has any; return the state of the fleet."""
         if not state.startswith(_MAGIC):
             return state
         if len(state) < _HEAD.size + 4 or zlib.crc32(state[:-4]) != int.from_bytes(state[-4:], "little"):

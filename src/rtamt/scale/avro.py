@@ -1,4 +1,4 @@
-"""Messages in Avro: a schema file of one's own, or several by the IDs of a schema registry.
+"""Messages in Avro: one schema file, or the schemas of a registry by their IDs.
 
 A schema is refused if a few bytes of a message could make its decoder run without bound: types that contain themselves,
 and arrays whose items take no bytes.
@@ -58,7 +58,7 @@ class AvroDecoder:
         rest = io.BytesIO(value)
         try:
             record = self._fastavro.schemaless_reader(rest, self._schemas[number], None)
-        except Exception as error:  # noqa: BLE001 - fastavro has no class of its own for what bytes can hold
+        except Exception as error:  # noqa: BLE001 - fastavro raises various classes for malformed bytes
             raise TraceError(f"the message is not a record of the schema: {_sentence(error)}") from None
         left = len(value) - rest.tell()
         if left:

@@ -1,6 +1,6 @@
 """The checkpoint of a shard: the state of its keys, and the offset of the next message, in one object.
 
-An object is written completely or not at all: a file beside the old one, forced to the disk, takes its place; an
+An object is written completely or not at all: a new file, synchronised to the disk, replaces the old one; an
 object store replaces an object with the end of its upload. Its bytes are: ``RTAMT-CHECKPOINT 1`` and a line feed, a
 line of JSON (topic, partition, offset), the [state of the fleet](fleet-state.md), and the SHA-256 of all of that. Bytes
 that are not a checkpoint are rejected.

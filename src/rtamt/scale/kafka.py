@@ -1,6 +1,6 @@
 """A worker on Apache Kafka: samples from one topic, robustness to another; needs ``rtamt[kafka]``.
 
-Workers of one consumer group share the partitions of a topic; each partition is a shard with a fleet of its own. The
+Workers of one consumer group share the partitions of a topic; each partition is a shard with its own fleet. The
 checkpoint of a shard is its state together with the offset of the next message, in one object. It is written after
 the broker has confirmed all results of the messages before it. So nothing is lost, however a worker ends. A worker
 that resumes may send results again that were sent after the checkpoint: they are equal, and have the same key and time,
@@ -40,7 +40,7 @@ _LONGEST_ERROR = 1000
 
 
 class _Partition:
-    """A partition that is assigned to this worker; ``offset``: of the next message, None until one has come."""
+    """A partition that is assigned to this worker; ``offset``: of the next message, None before the first."""
 
     def __init__(self, shard: Shard, offset: int | None) -> None:
         self.shard = shard
@@ -49,7 +49,7 @@ class _Partition:
 
 
 class Worker:
-    """Monitors the samples of a topic; ``say``: takes sentences for the operator; ``metrics``: what exporters read.
+    """Monitor the samples of a topic; ``say``: takes messages for the operator; ``metrics``: for exporters.
 
     ``spec``: a specification, or a suite, each of whose requirements has its results. ``options``: those of
     :class:`~rtamt.scale.shard.Shard`. ``counts``: what has happened since the start: ``samples``, ``results``,
@@ -254,7 +254,7 @@ class Worker:
         self._send_to_dead_letters(message, rejected.error, "late" if rejected.late else "rejected")
 
     def _send_to_dead_letters(self, message: Any, error: str, reason: str) -> None:
-        """Send a message to the dead letters, as it came, with the error and its origin."""
+        """Send a message unchanged to the dead-letter topic, with the error and its origin."""
         self._note_wrong(reason)
         origin = {"rtamt.partition": str(message.partition()), "rtamt.offset": str(message.offset())}
         coded = self._headers(error, reason, origin)
@@ -364,7 +364,7 @@ class Worker:
             self._ended.discard(place.partition)
 
     def _save(self, numbers: Iterable[int]) -> None:
-        """Write the checkpoints of partitions that have gone on, after the broker has all that came of them."""
+        """Write the checkpoints of partitions with new messages, after the broker has acknowledged their results."""
         changed = {
             number: partition
             for number in numbers

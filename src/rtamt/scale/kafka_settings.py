@@ -56,7 +56,7 @@ class Settings:
             "group.id": self.group,
             "enable.auto.commit": False,
             "enable.auto.offset.store": False,
-            "auto.offset.reset": "error",  # an offset that is gone means lost samples
+            "auto.offset.reset": "error",  # an offset that no longer exists means lost samples
             "enable.partition.eof": True,
         }
 

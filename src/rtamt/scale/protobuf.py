@@ -43,7 +43,7 @@ class ProtobufDecoder:
 
 
 class _Fields(Mapping[str, Any]):
-    """The single fields of a message; a field that can be absent is a key only if it is there."""
+    """The single fields of a message; an optional field is a key only if it is present."""
 
     def __init__(self, message: Any) -> None:
         self._message = message

@@ -52,7 +52,7 @@ def _dataset(job: Job, recordings: Sequence[Recording], tasks: int | None) -> An
     data = library("ray.data", "rtamt.scale.ray", "ray")
     if not ray.is_initialized():
         alone = {}
-        if not os.environ.get("RAY_ADDRESS"):  # Ray on this machine alone, which reports to nobody
+        if not os.environ.get("RAY_ADDRESS"):  # Ray on this machine alone, without usage reports
             alone["_node_ip_address"] = "127.0.0.1"
             os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
         logging.getLogger("ray.data").setLevel(logging.WARNING)

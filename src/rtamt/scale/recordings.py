@@ -33,7 +33,7 @@ def is_remote(path: str) -> bool:
 def recordings_of(patterns: Iterable[str]) -> list[Recording]:
     """Return the recordings that paths, folders and patterns name, each once, in their order.
 
-    A pattern has ``*``, ``?``, ``[`` or ``**``; a folder stands for all files in it of a known format. Addresses, such
+    A pattern has ``*``, ``?``, ``[`` or ``**``; a folder means all its files of a known format. Addresses, such
     as ``s3://bucket/*.parquet``, need ``rtamt[remote]``. Raises :class:`UsageError` for what names no recording.
     """
     found: dict[str, Recording] = {}

@@ -1,6 +1,6 @@
 """One shard of a stream: a fleet that takes any samples, and rejects those that are wrong one by one.
 
-What a sample leads to depends on the earlier samples of the shard alone, not on how they come in batches: a stream
+What a sample leads to depends on the earlier samples of the shard alone, not on their batches: a stream
 that is read again from a snapshot has the same results.
 """
 

@@ -148,7 +148,7 @@ def _samples(frame: Any, width: int) -> Iterator[Sample]:
 
 
 def _place(sample: Sample) -> tuple[Any, ...]:
-    """Return where a sample comes in a batch: the same wherever Spark has shuffled it, also if its time is NaN."""
+    """Return the sort key of a sample in a batch: independent of Spark's shuffling, also if its time is NaN."""
     return isnan(sample.time), sample.time if not isnan(sample.time) else 0.0, sample.key, repr(sample.values)
 
 

@@ -2,8 +2,8 @@
 
 ::
 
-    specification = "speed.stl"            # beside this file; or formula = "always[0:30](speed <= 120)"
-    plant = "plants:transmission"          # module:function, found beside this file too; or "plant.fmu"
+    specification = "speed.stl"            # next to this file; or formula = "always[0:30](speed <= 120)"
+    plant = "plants:transmission"          # module:function, also next to this file; or "plant.fmu"
     duration = 30                          # seconds
     period = "10ms"                        # time = "dense" and semantics = "..." likewise, as for parse
 

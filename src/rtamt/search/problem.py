@@ -156,9 +156,9 @@ class Problem:
         return self._whole({TIME: times, **columns}, point, number)
 
     def _start_monitor(self) -> StartMonitor | None:
-        """Return what decides the verdict as samples come; None where only the end of a simulation does.
+        """Return the monitor that decides the verdict during a simulation; None if only its end decides.
 
-        That is so where the end may cut windows that decide, and for operators with code of their own.
+        This is the case if the end may cut decisive windows, and for custom operators.
         """
         spec = self.spec
         if not spec.domain.held_at_end:
@@ -206,7 +206,7 @@ def _sample(given: Any) -> tuple[float, Mapping[str, float]]:
 
 
 def _nearest(known: Interval) -> float:
-    """Return the robustness as far as it was seen: the upper bound, or the lower one where only that is finite.
+    """Return the robustness so far: the upper bound, or the lower one if only that is finite.
 
     The lower one alone would mislead an optimizer: a requirement that is just met is as low as one that was
     decided early.

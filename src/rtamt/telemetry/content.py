@@ -63,7 +63,7 @@ class Variable:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
-    """What came of a requirement, over time and at the start.
+    """The result of a requirement, over time and at the start.
 
     ``verdicts``: the verdict at the first instant, at each at which it changes, and at the last one. ``known``: bounds
     of the robustness at the start, after each sample; None if they were not asked for. ``satisfied``: None if the

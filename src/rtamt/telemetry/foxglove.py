@@ -18,7 +18,7 @@ def layout(result: Result | Mapping[str, Result], *, bounds: bool = False) -> di
     """Return a layout of Foxglove, for ``json.dump``, that shows the file of :func:`write_mcap`.
 
     Each requirement has a plot of its signals and one of its robustness, in tabs if there are several requirements.
-    Beside them are the verdicts over time, a table of the requirements, and the violations. ``bounds``: as for
+    Next to them are the verdicts over time, a table of the requirements, and the violations. ``bounds``: as for
     :func:`write_mcap`; the bounds at the start are then in the plot of the robustness.
 
     >>> import rtamt

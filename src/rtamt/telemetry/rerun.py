@@ -36,7 +36,7 @@ def log_rerun(
 
     ``result``: of any specification, or results by the names of their requirements. ``path``: the file to write
     (``.rrd``), which also has a layout of the viewer: a page for each requirement, with a plot of its signals and a
-    plot of its robustness, beside the verdicts and violations. Without it they are logged to ``recording``, a
+    plot of its robustness, next to the verdicts and violations. Without it they are logged to ``recording``, a
     ``rerun.RecordingStream``, by default the current one. Entities have the names of the topics of
     :func:`~rtamt.telemetry.write_mcap`; the timeline ``time`` has the times of the trace: dates if it has dates or
     counts from 1970, else durations. ``bounds``: also the bounds of the robustness at the start, as known after each

@@ -127,7 +127,7 @@ def _without_end(formula: Formula) -> Formula:
 
 
 class _Match:
-    """What the placeholders of a shape stand for; ``samples``: the duration of the timing."""
+    """The formulas for the placeholders of a shape; ``samples``: the duration of the timing."""
 
     def __init__(self, step: Fraction) -> None:
         self._step = step
@@ -135,7 +135,7 @@ class _Match:
         self.samples: Fraction | None = None
 
     def equal(self, shape: Formula, formula: Formula) -> bool:
-        """Return whether a formula has a shape, and keep what its placeholders stand for."""
+        """Return whether a formula matches a shape, and keep the formulas of its placeholders."""
         pairs = [(shape, formula)]
         while pairs:
             a, b = pairs.pop()
@@ -237,7 +237,7 @@ def expression_of(formula: Formula, step: Fraction, strength: int = 0) -> str:
 
 
 def _check_operands(formula: Apply) -> None:
-    """Raise where a number stands for a formula, or a Boolean for a number: FRETish keeps them apart."""
+    """Raise if a number is used as a formula, or a Boolean as a number: FRETish separates them."""
     for operand in formula.args:
         boolean = isinstance(operand, Var) and operand.type is BOOLEAN
         number = isinstance(operand, Const | Var) or (
@@ -275,7 +275,7 @@ def _temporal(formula: Apply, step: Fraction, strength: int) -> str:
             return _bracket(f"({change}) / {decimal(step)}", 7, strength)
         return before if name == "delay" else _bracket(change, 6, strength)
     if name in ("once", "eventually") and interval is not None and args[0] == STL["true"]():
-        # So many samples exist before, or behind.
+        # The number of samples before, or after.
         samples = interval.begin / step
         if interval.begin == interval.end and samples.denominator == 1:
             return f"{'persisted' if name == 'once' else 'persists'}({samples}, true)"

@@ -130,7 +130,7 @@ class Obligation:
 
 
 def _beyond(at: Fraction) -> Formula:
-    """Return that the trace ends within so many seconds."""
+    """Return the formula for: the trace ends within ``at`` seconds."""
     return window("always", at, at, STL["false"]())
 
 

@@ -95,7 +95,7 @@ class Types:
         return not self.is_boolean(expression)
 
     def _visit(self, expression: Expression, wanted: str) -> None:
-        """Learn from an expression that is wanted as a formula ("f"), a number ("n") or either ("")."""
+        """Infer types from an expression that is used as a formula ("f"), a number ("n") or either ("")."""
         if expression.kind == "name":
             if wanted == "f":
                 self._booleans.add(expression.text)
@@ -116,7 +116,7 @@ class Types:
 
 
 class Lowering:
-    """Turns the expressions of one sentence into formulas.
+    """Lower the expressions of one sentence to formulas.
 
     Args:
         types: which variables are Booleans.

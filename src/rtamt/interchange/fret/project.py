@@ -50,7 +50,7 @@ class FretRequirement:
 
 @dataclass(frozen=True, slots=True)
 class FretVariable:
-    """A variable as FRET stores it; ``value``: of one that stands for a number."""
+    """A variable as FRET stores it; ``value``: of one that represents a number."""
 
     name: str
     role: str = ""

@@ -123,7 +123,7 @@ class _SentenceParser(ExpressionParser):
         return self._inside() if first in (*_IN, "while", "before", "after") else None
 
     def _word(self, ahead: int) -> str:
-        """Return the word so many tokens ahead."""
+        """Return the word that many tokens ahead."""
         return self.tokens[min(self.index + ahead, len(self.tokens) - 1)].word
 
     def _skip_qualifier(self) -> None:
