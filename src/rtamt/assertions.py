@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class UnsatisfiedError(AssertionError):
-    """Requirements are violated, or hold with less robustness than was asked for.
+    """Requirements are violated, or hold with less robustness than was requested.
 
     ``result``: the result of the evaluation. ``failures``: the results of the requirements that failed, by name.
     """

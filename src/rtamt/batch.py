@@ -189,7 +189,7 @@ _kept_groups = lru_cache(8)(_groups)
 def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result]:
     """Evaluate each requirement of a specification: robustness and verdicts of all from one program.
 
-    ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are asked for.
+    ``data`` and errors as for :meth:`Specification.evaluate`, which computes verdicts when they are requested.
     """
     query = spec._query()
     if spec.groups:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from re import compile as lazy_pattern
 else:
 
-    class lazy_pattern:  # noqa: N801 - it stands for the function re.compile
+    class lazy_pattern:  # noqa: N801 - it replaces the function re.compile
         """Compiled when an attribute is first read; its attributes are those of the expression."""
 
         def __init__(self, text: str, flags: int = 0) -> None:

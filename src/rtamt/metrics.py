@@ -110,7 +110,7 @@ class Metrics:
             self._values[name][place] = float(value)
 
     def replace(self, name: str, label: str, values: Mapping[str, float]) -> None:
-        """Set a gauge for exactly these values of its label: others, such as partitions that are gone, are dropped."""
+        """Set a gauge for exactly these values of its label: others, such as revoked partitions, are dropped."""
         with self._lock:
             self._values[name] = {
                 _labels(name, "gauge", {label: each}): float(v) for each, v in values.items()

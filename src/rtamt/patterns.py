@@ -1,6 +1,6 @@
 """The patterns of the library, and specifications that use them: what ``rtamt new`` writes.
 
-A pattern is a template of ``library/patterns.stl`` or ``library/signals.stl``; the comments there say in English what
+A pattern is a template of ``library/patterns.stl`` or ``library/signals.stl``; the comments there state in English what
 each requires, with its parameters in backquotes.
 """
 
@@ -83,7 +83,7 @@ def patterns() -> Mapping[str, Pattern]:
 
 
 def find_pattern(name: str) -> Pattern:
-    """Return the pattern of this name. Raises :class:`UsageError` where there is none."""
+    """Return the pattern of this name. Raises :class:`UsageError` if there is none."""
     if name not in patterns():
         raise UsageError(f"there is no pattern '{name}'{choices(name, patterns(), 'patterns')}")
     return patterns()[name]
@@ -190,5 +190,5 @@ def _types_of(pattern: Pattern, texts: Mapping[str, str]) -> dict[str, str]:
 
 
 def _takes_formula(parameter: str) -> bool:
-    """Return whether a parameter stands for a formula: one letter, other than the signal x."""
+    """Return whether a parameter is a formula: one letter, other than the signal x."""
     return len(parameter) == 1 and parameter != "x"

@@ -69,7 +69,7 @@ def depth(spec: Specification, formula: Formula) -> Fraction | None:
 
 
 def _pastify(spec: Specification) -> Formula | None:
-    """Return the pastified formula, None where there is none: of shared sub-formulas it may be too large."""
+    """Return the pastified formula, None if there is none: of shared sub-formulas it may be too large."""
     try:
         return spec.pastified()
     except BoundError:

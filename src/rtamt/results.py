@@ -384,7 +384,7 @@ class Result:
 
 
 def found_directly(specification: Specification, reading: Reading, found: Any) -> Result:
-    """Return the result of a direct evaluation, whose trace and signal are made when they are asked for."""
+    """Return the result of a direct evaluation, whose trace and signal are created on first use."""
     result = _new_result(Result)
     fields = result.__dict__
     fields["specification"] = specification

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 #: A name, a member of an enumeration whose text is a name, or a function of a predicate and roles.
 Semantics: TypeAlias = str | Enum | PredicateSemantics
 
-#: Formulas that a monitor evaluates beside its own: names or texts, or formulas.
+#: Formulas that a monitor evaluates in addition to its own: names, texts or formulas.
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
 
@@ -88,7 +88,7 @@ if TYPE_CHECKING:  # annotations alone name them, and Python would compile each 
 
 
 def require_samples(domain: TimeDomain, *, worst_case: bool) -> None:
-    """Raise :class:`UsageError` if constant time a sample is asked for where there are no samples."""
+    """Raise :class:`UsageError` if constant time per sample is requested in a domain without samples."""
     if worst_case and not domain.sampled:
         raise UsageError(
             "worst_case=True needs discrete time: in dense time a window may hold any number of changes; "

@@ -121,7 +121,7 @@ class Specification(OnlineSpecification):
             recording = query.read(data, self.input_names, self.types)
         if recording is None:
             recording = self._record_inexact(query, data, uncertainty, ranges)
-            # With time bases of their own, data are converted even if they are plain: that is found out only once.
+            # Signals with separate time bases need conversion even if they are plain; this is detected once.
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
         if self.units:
@@ -266,7 +266,7 @@ class Specification(OnlineSpecification):
         semantics: Semantics | None = None,
         time_unit: str | None = None,
     ) -> Query:
-        """Return what :meth:`evaluate` asks of a recording; arguments and errors are those of it."""
+        """Return the query of :meth:`evaluate`, with the same arguments and errors."""
         if time is period is tolerance is resolution is semantics is time_unit is None:
             return self._own_query
         return self._query_of(self._domain_for(time, period, tolerance, resolution), semantics, time_unit)

@@ -151,7 +151,7 @@ class SpecificationText:
     def select(self, name: str) -> Self:
         """Return the specification of one requirement or named sub-specification alone.
 
-        Raises :class:`UsageError` where there is none of this name.
+        Raises :class:`UsageError` if there is none of this name.
         """
         return replace(self, document=self.document.select(name))
 
@@ -234,7 +234,7 @@ class SpecificationText:
 
     @property
     def _given(self) -> dict[str, float]:
-        """The constants that were given beside the text."""
+        """The constants that were given in addition to the text."""
         declared = {declaration.name for declaration in self.document.declarations}
         return {name: v for name, v in self.document.constants.items() if name not in declared}
 
@@ -307,7 +307,7 @@ class SpecificationText:
         return pastify(formula, step or Fraction(1), self.text, self.unit)
 
     def _grounded(self, domain: TimeDomain) -> Formula:
-        """Return the formula with closed bounds, as it is monitored; where there are none, bounds need not fit."""
+        """Return the monitored formula, whose bounds are closed; without a domain, bounds need not fit."""
         (formula,) = domain.online.ground(self.formula)
         return formula if formula is self.formula else domain.online.check(self.formula, self.text)
 
@@ -390,7 +390,7 @@ class SpecificationText:
         tolerance: float | None = None,
         resolution: Duration | None = None,
     ) -> TimeDomain:
-        """Return the time domain that is asked for; what is left out is that of the specification."""
+        """Return the requested time domain; omitted settings are those of the specification."""
         if time is period is tolerance is resolution is None:
             return self.domain
         defaults = Defaults(self.period, self.domain.tolerance, self.resolution)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def signals_of(result: Result, formula: Formula | None = None) -> tuple[Signal, Signal]:
-    """Return the robustness and the truth of a formula over the recording of a result, by default of its own.
+    """Return the robustness and the truth of a formula over the recording of a result, by default that of the result.
 
     The robustness is that under the semantics of the result; the truth is +inf where the formula holds, else -inf.
     """

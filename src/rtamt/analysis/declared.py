@@ -35,7 +35,7 @@ def last_limits(specs: Sequence[Specification]) -> Mapping[str, Limits]:
 def common_limits(specs: Sequence[Specification]) -> Mapping[str, Limits]:
     """Return the limits of variables, which hold for the signals and thus for each of the specifications.
 
-    One that only one of them declares holds for both. Raises :class:`UsageError` where they declare different ones.
+    One that only one of them declares holds for both. Raises :class:`UsageError` if they declare different ones.
     """
     found: dict[str, Limits] = {}
     for spec in specs:

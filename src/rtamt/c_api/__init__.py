@@ -12,7 +12,7 @@ _LIBRARIES = ("rtamt_runtime.so", "rtamt_runtime.dll")
 def library() -> Path:
     """Return the shared library; it needs nothing but the C library of the system.
 
-    Raises :class:`UsageError` where the package was installed without it.
+    Raises :class:`UsageError` if the package was installed without it.
     """
     return _find_installed(_LIBRARIES)
 

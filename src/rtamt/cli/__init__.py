@@ -101,7 +101,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     # Threads that multiply matrices start with NumPy, and cost more than the rest of it; no command multiplies any.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    if sys.stderr is None:  # closed: what would be said there goes nowhere
+    if sys.stderr is None:  # closed: messages to it are lost
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the end of the process
     if sys.stdout is None:
         say("rtamt: stdout is closed, so that the output would be lost; use > /dev/null", file=sys.stderr)
@@ -138,7 +138,7 @@ def _exit_code(argv: list[str]) -> int:
 
 
 def _forget_output() -> None:
-    """Let what Python still holds for stdout go nowhere, without a word at exit."""
+    """Discard the buffered output for stdout, so that Python reports no error at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -23,7 +23,7 @@ requirement that no trace satisfies or that every trace satisfies, requirements 
 others imply, and an implication whose condition is never true. The engine evaluates each trace that the solver finds.
 Requires z3: pip install 'rtamt[analysis]'.
 
-Exit code: 0 no finding, 1 a finding, 2 an error, a question without an answer, or no requirement that is covered."""
+Exit code: 0 no finding, 1 a finding, 2 an error, a query without an answer, or no requirement that is covered."""
 
 _EPILOG = """\
 Traces have 1 to N samples, and stay in the ranges and rates that the specification declares:

@@ -34,7 +34,7 @@ def variables_of(requirements: list[Requirement]) -> set[str]:
 def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Requirement], list[str]]:
     """Return the specifications and the traces; arguments after SPEC that end in ``.stl`` are specifications, too.
 
-    A requirement is called by its ID (what stands after ``require``) where no other one has it.
+    A requirement is named by its ID (after ``require``) if that is unique.
     """
     given, traces = _split(args)
     specs = prepared_specs(args, given)
@@ -78,7 +78,7 @@ def _rename(spec: Specification, names: Mapping[str, str]) -> Specification:
 
 
 def _resample(spec: Specification, args: Namespace) -> Specification:
-    """Return a specification that is sampled as the command line says, which replaces its own sampling rule."""
+    """Return a specification with the sampling rule of the command line in place of its own."""
     rule = spec.domain.sampling(spec.sampling)
     if rule is None:
         return spec

@@ -38,7 +38,7 @@ def write_bag(
 def _findings(
     requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result]
 ) -> Iterator[Finding]:
-    """Yield what came of every assertion that a node would publish, else of every requirement."""
+    """Yield the result of every assertion that a node would publish, else of every requirement."""
     try:
         outputs = bind(requirement.spec).outputs
     except UsageError:  # it was not written for nodes: a formula over columns

@@ -1,4 +1,4 @@
-"""``rtamt classify``: a short list of rules that tells good recordings from bad ones."""
+"""``rtamt classify``: a short list of rules that separates good recordings from bad ones."""
 
 from __future__ import annotations
 
@@ -30,14 +30,15 @@ if TYPE_CHECKING:
     from rtamt.signals.trace import Trace
 
 _DESCRIPTION = """\
-Learn a short list of rules that tells good recordings from bad ones: "if always(speed <= 42.1) then good, else bad".
+Learn a short list of rules that separates good recordings from bad ones:
+"if always(speed <= 42.1) then good, else bad".
 Each rule is a template over a signal, or a pair of signals, with a threshold. The accuracy is that of cross-validation,
-on recordings from which the rules were not learned; beside it stands that of the class of most recordings.
+on recordings from which the rules were not learned, together with that of always choosing the majority class.
 
 Exit code: 0 rules were learned, 1 no rule is better than the class of most recordings, 2 error."""
 
 _EPILOG = """\
-A folder stands for all recordings in it. The templates are bounds that hold always, at some time, from some time on,
+A folder means all recordings in it. The templates are bounds that hold always, at some time, from some time on,
 within each window or throughout some window, and bounds of changes and of differences of two signals; windows last a
 tenth and a quarter of the shortest recording. A signal may be infinite; templates without a value on some recording,
 such as the change of an infinite signal, are left out. SPEC has other templates instead: requirements with one
@@ -129,7 +130,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _files(given: Sequence[str], option: str) -> list[str]:
-    """Return the recordings that files and folders stand for."""
+    """Return the recordings in files and folders."""
     found: list[str] = []
     for path in given:
         if os.path.isdir(path) and not is_trace(path):

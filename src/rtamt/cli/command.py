@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 NO_STAMPS = "dense time needs a column of timestamps: call it 'time', or name it with --time-column"
 
-#: What may stand before the name of a pack.
+#: The optional prefix of the name of a pack.
 PACK = "pack:"
 _SPECIFICATION_SUFFIXES = (".stl",)
 #: Titles under which the help lists options.
@@ -358,7 +358,7 @@ def stamp_text(time: Any) -> str:
 
 
 def short(value: float) -> str:
-    """Return a number for people: six digits, no minus before zero.
+    """Return a number for display: six digits, no minus before zero.
 
     >>> short(3.0), short(-0.0), short(float("inf"))
     ('3', '0', 'inf')

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def add_analysis_options(parser: argparse.ArgumentParser) -> None:
-    """Add how long traces and questions may be, and what is written."""
+    """Add the limits of traces and queries, and the output options."""
     parser.add_argument(
         "--samples", metavar="N", type=int, default=200, help="the greatest length of traces (default: 200)"
     )

@@ -17,7 +17,7 @@ belongs together, so that different formulas have different sentences. Named sub
 their names; their own sentences follow."""
 
 _EPILOG = """\
---json prints one object per line: {"requirement", "text", "sentence", "names", "formula"}. "text" is what stands
+--json prints one object per line: {"requirement", "text", "sentence", "names", "formula"}. "text" is what is written
 after 'require', and "names" has the sentence of each name in the requirement.
 
 examples:

@@ -88,7 +88,7 @@ class EagerFeed:
 class StartFeed:
     """Prints bounds and verdict at the start of the trace whenever they change.
 
-    What is drawn live replaces that on a terminal, and goes beside it into a pipe or a file.
+    On a terminal the live view replaces the lines; into a pipe or a file, both are written.
     """
 
     def __init__(self, start: StartMonitor, live: Live | None = None) -> None:
@@ -142,7 +142,7 @@ class IntervalFeed:
     def __init__(self, monitor: IntervalMonitor | MemberIntervalMonitor, live: Live | None = None) -> None:
         self.monitor = monitor
         self._live = live
-        #: What is known at the samples that are drawn, in the order in which they came.
+        #: The bounds at the drawn samples, in the order of arrival.
         self._known: dict[Any, Interval] = {}
 
     def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
@@ -173,7 +173,7 @@ class IntervalFeed:
             )
 
     def _draw(self, live: Live, changes: list[Change], now: Any) -> None:
-        """Draw the bounds at the latest samples, which become points as the trace goes on."""
+        """Draw the bounds at the latest samples, which become points as the trace continues."""
         if now is not None:
             self._known[now] = Interval(-inf, inf)
             if len(self._known) > live.MOST:

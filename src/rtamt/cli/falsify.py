@@ -29,7 +29,7 @@ _EPILOG = """\
 The problem is a TOML file:
 
   specification = "speed.stl"     # or formula = "always[0:30](speed <= 120)"
-  plant = "plants:transmission"   # module:function beside the file, or an .fmu
+  plant = "plants:transmission"   # module:function next to the file, or an .fmu
   duration = 30                   # seconds of simulated time
   period = "10ms"
   [inputs]

@@ -138,7 +138,7 @@ def _select_signals(trace: Trace, texts: Sequence[str]) -> Trace:
 
 
 def _refuse_reading_options(args: argparse.Namespace) -> None:
-    """Reject options for reading recordings, where there is none."""
+    """Reject options for reading recordings if there is no recording."""
     for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "hold_for", "resample"):
         if getattr(args, option) not in (None, []):
             raise CommandError(
@@ -216,7 +216,7 @@ def _requirements(facts: RequirementInfo) -> list[dict[str, Any]]:
 
 
 def _about_step(spec: Specification) -> str:
-    """Return what the period or tick is, and where it comes from."""
+    """Return the period or tick, and its origin."""
     if not spec.domain.sampled:
         return ", the tick in which time is counted"
     if spec.sampling is not None:

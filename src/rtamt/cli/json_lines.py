@@ -120,7 +120,7 @@ def code_of(text: str, name: str, type_: Enumeration, number: int) -> float:
 
 
 def value_in(data: dict[str, Any], name: str, number: int, variable: str = "") -> Any:
-    """Return the value that the object has under a name; raise :class:`TraceError` where it has none."""
+    """Return the value that the object has under a name; raise :class:`TraceError` if it has none."""
     try:
         return _member(data, name)
     except KeyError:

@@ -149,7 +149,7 @@ class Live:
 
 
 def format_time(timestamp: Any) -> str:
-    """Return a time for people: to the millisecond, below a second to six digits.
+    """Return a time for display: to the millisecond, below a second to six digits.
 
     >>> format_time(12.300000000000001), format_time(1.25e-5), format_time(1700000000.1)
     ('12.3 s', '1.25e-05 s', '1700000000.1 s')

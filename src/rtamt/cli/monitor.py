@@ -63,7 +63,7 @@ stamp or datetime, with an optional unit ('t [ms]', 'time_ms'), else in the only
 timestamps, samples are one period apart. A stream does not reveal its period in advance: --period sets it
 (default: 1 s; timestamps must then be 1 s apart). Fields: {"req": {"value": 3}} or {"req.value": 3}.
 Members of groups may come and go: in discrete time, one that is left out, null or an empty cell is absent; in dense
-time null or an empty cell ends its presence, and its samples come before those of the other variables, or with them.
+time null or an empty cell ends its presence, and its samples arrive before those of the other variables, or with them.
 
 With --time dense, signals change at any instant, and each has its own time base: a JSON object may contain only
 some of the variables, a cell of CSV may be empty, and a line of output is printed for every change and for the
@@ -223,7 +223,7 @@ def _follow(
 
 
 def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
-    """Raise :class:`CommandError` for what no monitor of members that come and go offers."""
+    """Raise :class:`CommandError` for options that monitors of quantifiers do not support."""
     rule = spec.domain.sampling(spec.sampling)
     early = args.verdict not in {None, DELAYED}
     unfit = (
@@ -238,7 +238,7 @@ def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
 
 
 def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> EarlyFeed | None:
-    """Return what prints before the horizon, if that is asked for, or if there is no horizon."""
+    """Return the printer of early results, if they are requested, or if the horizon is infinite."""
     verdict = args.verdict
     if args.explain and verdict != "eager":
         raise CommandError("--explain explains verdicts before the horizon: use it with --verdict eager")
@@ -278,7 +278,7 @@ class SampleFeed:
     """A monitor with the timestamps of the samples whose robustness is not known yet.
 
     ``assumed``: whether the period is assumed, not set. A file is read with the period that its timestamps
-    have, which a stream shows too late: the timestamps must then be what is assumed, and not merely near it.
+    have, which a stream shows too late: the timestamps must then equal the assumed ones, not just approximate them.
     """
 
     def __init__(self, monitor: Monitor, output: Output, names: Sequence[str], *, assumed: bool) -> None:

@@ -17,14 +17,15 @@ if TYPE_CHECKING:
     from rtamt.patterns import Pattern
 
 _DESCRIPTION = """\
-Write a specification file that requires a pattern of the library, with the English sentence as its text. What is not
-given on the command line is asked for. Without PATTERN, the patterns are listed.
+Write a specification file that requires a pattern of the library, with the English sentence as its text. The command
+prompts for omitted arguments. Without PATTERN, it lists the patterns.
 
 Exit code: 0 written, 2 error."""
 
 _EPILOG = """\
 The patterns are the templates of patterns.stl and signals.stl; the list shows what each requires. Formulas and
-durations are written as in specification files. Without -o, the specification is printed, unless it was asked for.
+durations are written as in specification files. Without -o, the specification is printed, unless the command has
+prompted for arguments.
 
 examples:
   rtamt new response_within "p=speed > 2" s=locked duration=1s

@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _fit(rows: list[tuple[str, str, str, str]], color: bool) -> str:
-    """Return the rows as a table; the meanings on lines of their own where the terminal is too narrow."""
+    """Return the rows as a table; on a narrow terminal, meanings are on separate lines."""
     columns = width_of(sys.stdout)
     if columns is None or max(len(line) for line in table(rows, width=columns).splitlines()) <= columns:
         return table(rows, color=color, width=columns)

@@ -57,11 +57,11 @@ class Outcome:
     ``first_violation``: seconds (a decimal where a double cannot hold them), or a date; None where there is
     none. ``moment``: the same as text: seconds, or a date with the seconds since the start of the recording.
     ``period``: None in dense time.
-    ``notes``: what to know beside the verdict (:attr:`Trace.remarks`).
+    ``notes``: shown with the verdict (:attr:`Trace.remarks`).
     ``decided_at``: when its verdict was decided, where nothing later was read; the robustness is then known to lie
     within ``bounds``, and NaN where these differ.
     ``episodes``: of violation; None where they are not known. ``episodes_text``: the same as part of a sentence.
-    ``explanation``: why it is violated, where that was asked for and the whole recording was read.
+    ``explanation``: of a violation, if requested and if the whole recording was read.
     ``seconds``: how long it took. ``result`` stays in the process that made it.
     """
 
@@ -128,7 +128,7 @@ def applicable(
         rest = [
             known.formula for known in requirement.spec.document.requirements if known.name not in reasons[0]
         ]
-        if not requirement.rows and rest:  # their conjunction is evaluated as far as the signals are there
+        if not requirement.rows and rest:  # their conjunction is evaluated over the available signals
             kept.append(replace(requirement, spec=requirement.spec.with_formula(reduce(STL["and"], rest))))
         for row, reason in zip(rows, reasons, strict=True):
             if reason:

@@ -72,7 +72,7 @@ class Parser(argparse.ArgumentParser):
         say(message.rstrip("\n"), file=file)
 
     def read(self, argv: Sequence[str]) -> argparse.Namespace:
-        """Parse arguments: options may stand anywhere before "--", and nothing after it is an option."""
+        """Parse arguments: options may be anywhere before "--", and nothing after it is an option."""
         # Intermixed parsing of Python 3.10 and 3.11 does not know "--", so that what follows it is marked.
         end = argv.index("--") if "--" in argv else len(argv)
         self._refuse_unknown(argv[:end])
@@ -118,6 +118,6 @@ def _unmark(value: Any) -> Any:
 
 
 def complain(sentence: object) -> None:
-    """Print one sentence on stderr, after what has gone to stdout."""
+    """Print one sentence on stderr, after flushing stdout."""
     sys.stdout.flush()
     say(f"rtamt: {sentence}", file=sys.stderr, flush=True)

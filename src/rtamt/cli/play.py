@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Open a local web page: type a formula, draw signals or load a recording, and see robustness, verdict and explanation
-at once. Scrub through time to see what an online monitor knows after each sample. The solver draws a trace that
+at once. Scrub through time to see the state of an online monitor after each sample. The solver draws a trace that
 satisfies or violates the requirement (pip install 'rtamt[analysis]'). Requires starlette and uvicorn:
 pip install 'rtamt[play]'.
 
@@ -114,13 +114,13 @@ def _announce(address: str, *, browser: bool) -> None:
 
 
 def _serve(server: Any, workers: WorkerPool, listening: socket.socket, announce: Callable[[], None]) -> None:
-    """Serve until a signal comes; then end the workers."""
+    """Serve until a signal arrives; then end the workers."""
     import asyncio
 
     loop = asyncio.new_event_loop()
     try:
         with contextlib.suppress(KeyboardInterrupt):  # how it is stopped
-            announce()  # from here on, signals may come
+            announce()  # from here on, signals may arrive
             loop.run_until_complete(server.serve(sockets=[listening]))
         loop.run_until_complete(workers.close())
         loop.run_until_complete(loop.shutdown_asyncgens())
@@ -165,7 +165,7 @@ def _page_state(args: argparse.Namespace) -> tuple[Given, str | None, str]:
     if args.trace is not None and not os.path.exists(args.trace):
         raise CommandError(f"there is no recording '{args.trace}'")
     if args.trace is not None:
-        format_of(args.trace)  # raises for a name that tells no format
+        format_of(args.trace)  # raises for an unknown extension
     if spec is not None and spec.startswith(("http://", "#")):
         fragment = f"#{spec.partition('#')[2]}"
         if fragment == "#":

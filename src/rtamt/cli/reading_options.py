@@ -245,7 +245,7 @@ def has_own_time_bases(spec: Specification, trace: str, reading: Reading) -> boo
 
 
 def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
-    """Return whether each requirement is sampled anew, from when all variables that it reads have started."""
+    """Return whether each requirement is resampled separately, from the start of all its variables."""
     held, _ = _sampling_of(spec)
     return reading.resample is not None or held or (spec.domain.sampled and is_bag(trace))
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Output:
     """Prints new results, one JSON object per line; with ``verdicts`` also whether the formula holds.
 
-    What is drawn live replaces it on a terminal, and goes beside it into a pipe or a file. ``metrics``: what exporters
+    On a terminal the live view replaces the lines; into a pipe or a file, both are written. ``metrics``: what exporters
     read; ``name``: of the requirement, if it is the only one.
     """
 
@@ -40,7 +40,7 @@ class Output:
             self.live.point(time, robustness)
             if sys.stdout.isatty():
                 return
-        # The time by hand: it may have more digits than a double.
+        # The time is formatted here: it may have more digits than a double.
         timestamp = f'"{stamp_text(time)}"' if isinstance(time, np.datetime64) else stamp_text(time)
         rest: dict[str, Any] = {"robustness": json_number(robustness)}
         if self.verdicts:

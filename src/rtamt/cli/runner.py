@@ -208,7 +208,7 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
 
 
 def _has(size: int, trace: str, reading: Reading) -> bool:
-    """Return whether a recording may be read in chunks, and has so many bytes or more."""
+    """Return whether a recording may be read in chunks, and is large enough for that."""
     if reading.whole:
         return False
     return is_url(trace) or (os.path.isfile(trace) and os.path.getsize(trace) >= size)

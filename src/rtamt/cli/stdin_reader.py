@@ -59,7 +59,7 @@ Sample = tuple[Any, dict[str, Any]]
 
 
 class Samples:
-    """Reads one sample from each line: its timestamp (None if there are none) and the values wanted.
+    """Reads one sample from each line: its timestamp (None if there are none) and the selected values.
 
     A timestamp is seconds; ``dense``: or what else a file of the same columns is read as, and a sample may
     hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
@@ -165,7 +165,7 @@ class Samples:
 
 
 def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
-    """Yield the lines of a stream as they come, which end with LF, CR LF or CR, as in files."""
+    """Yield the lines of a stream as they arrive; they end with LF, CR LF or CR, as in files."""
     for line in stream:
         yield from line.splitlines()
 
@@ -228,7 +228,7 @@ class _Timestamps:
         names = tuple(name for name in self._names if all_named or columns[name] in known)
         time = self._choice.time
         if time is None and not any(self._kinds.values()) and not any(is_stamps(f.name) for f in fields):
-            time = ""  # the columns' names do not decide, and no row has been seen yet
+            time = ""  # the columns' names do not decide, and there is no row yet
         read = {name: columns[name] for name in names}
         choice = Choice(time=time, columns=names, names=read, units=self._choice.units)
         (selection,) = select(source, choice)

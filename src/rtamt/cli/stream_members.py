@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class StreamMembers:
     """Finds the members of groups in lines.
 
-    What it finds goes to a monitor as it is: a field that is None is one without a sample there.
+    The result is passed to a monitor unchanged: a field that is None has no sample there.
     """
 
     def __init__(self, groups: Fields) -> None:
@@ -35,7 +35,7 @@ class StreamMembers:
                 type_ = next((each for each in read if each is not None), None)
                 found[name] = number_of(value, name, number, type_)
             elif owners:
-                found[name] = None  # what no formula reads still shows that the member is there
+                found[name] = None  # fields that no formula reads still show that the member is present
             elif any(group.matches(name) for group, _ in self._groups.values()):
                 found[name] = value
         return found

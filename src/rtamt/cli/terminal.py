@@ -110,7 +110,7 @@ def table(
 
 
 def width_of(stream: TextIO) -> int | None:
-    """Return the number of columns of a terminal; None where the stream is none."""
+    """Return the number of columns of a terminal; None if the stream is not a terminal."""
     return shutil.get_terminal_size().columns if stream.isatty() else None
 
 
@@ -146,7 +146,7 @@ def _fold(
 class Progress:
     """A counter line on stderr while work takes long, drawn by rich if that is installed; nothing without a terminal.
 
-    Use it as a context: the line is gone at the end, and before anything else is printed.
+    Use it as a context: the line is erased at the end, and before anything else is printed.
     """
 
     #: Seconds before the line appears, and between two changes of it.

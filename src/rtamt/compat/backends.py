@@ -91,7 +91,7 @@ class Stream:
         self._undefined: Any = self._session.undefined
         #: What an update from pairs raises where :meth:`take` has to find out what is wrong.
         self.refusals: tuple[type[Exception], ...] = ()
-        #: A quick way in for whatever a caller has (None if there is none).
+        #: The fast path for plain input of the caller; None if there is none.
         self.quick: Callable[[Any, Any], Any] | None = None
         if self._session.checks:
             self.refusals = (self.refused, *self._undefined, UsageError)

@@ -99,7 +99,7 @@ class Formulas(Declarations):
 
     @property
     def ast(self) -> Self:
-        """The specification: RTAMT keeps declarations and formulas in an object of their own."""
+        """The specification itself: in RTAMT, a separate object holds declarations and formulas."""
         return self
 
     @property

@@ -5,7 +5,7 @@ module         purpose
 =============  ==========================================================================
 lower          formula to instructions: value numbering, lags, alignment of operands
 time_lowering  what lowering decides by the time domain
-places         the instructions of formulas, for programs whose parts are asked for
+places         the instructions of formulas, for programs that report sub-formulas
 plan           formulas to one program (online) or a sequence of programs (offline)
 stored         plans without formulas, which bytes can carry
 slices         parts of a program: the instructions that some of its outputs need

@@ -1,6 +1,6 @@
 """Core formulas to the graph that gives verdicts and bounds before the horizon (``graph.py``).
 
-A formula of unbounded future has no node where its value is asked for at the start of the trace alone: there it
+A formula of unbounded future has no node where its value is requested at the start of the trace alone: there it
 is put together from items (``core/early/bounds_at_start.hpp``).
 """
 
@@ -37,7 +37,7 @@ def compile_graph(
 
     ``start``: also what the first formula needs for its value at the start of the trace alone; it is then no
     output if its future is unbounded. ``apart``: each predicate is a node of its own. Raises :class:`UsageError` for
-    operators that run code of their own.
+    custom operators.
     """
     graph = Graph(period, inputs, domain)
     for position, formula in enumerate(formulas):
@@ -57,7 +57,7 @@ def compile_graph(
 def compile_starts(
     formulas: Sequence[Formula], period: Fraction, inputs: tuple[str, ...]
 ) -> tuple[Graph, tuple[int, ...]]:
-    """Compile core formulas whose values are asked for at the start of the trace alone.
+    """Compile core formulas whose values are requested only at the start of the trace.
 
     Returns the graph, and of each formula how many items there are up to its own, which is the last of these.
     """
@@ -112,7 +112,7 @@ def _splits(graph: Graph, formula: Formula) -> bool:
 
 
 def _above(graph: Graph, formula: Formula) -> set[int]:
-    """Return the identities of the parts whose value is asked for at the start alone."""
+    """Return the identities of the parts whose value is requested only at the start."""
     found: set[int] = set()
     stack = [formula]
     while stack:

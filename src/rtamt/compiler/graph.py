@@ -285,7 +285,7 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
 
 
 def _rank(graph: Graph, formula: Apply, operand: int) -> int:
-    """Return the k-th largest value of a window; the least of those of the windows that stand for it."""
+    """Return the k-th largest value of a window; the least of those of its partial windows."""
     begin, end = interval_in_steps(graph, formula)
     k, outside = graph.time.rank(formula.interval, graph.period)
     order = end - begin + graph.time.point - k + 1 if outside > 0 else k

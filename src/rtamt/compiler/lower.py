@@ -366,7 +366,7 @@ class Lowering(ABC):
     @staticmethod
     @abstractmethod
     def until_just_before(period: Fraction) -> Fraction:
-        """Return how much shorter than a the closed window is that stands for [0, a)."""
+        """Return by how much the closed window for [0, a) is shorter than a."""
 
     @abstractmethod
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:

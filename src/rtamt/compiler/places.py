@@ -1,4 +1,4 @@
-"""The instructions of formulas, for those programs whose parts are asked for."""
+"""The instructions of formulas, for programs that report sub-formulas."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Scan:
     name: str
     kind: str  # run_max, run_min or until; DEFINED: by the definition of ``meaning``
     outputs: tuple[int, ...]
-    meaning: Apply | None  # the formula that the result stands for; None in plans without formulas
+    meaning: Apply | None  # the formula of the result; None in plans without formulas
 
 
 @dataclass(frozen=True, slots=True)

@@ -122,7 +122,7 @@ class StoredPlan:
         yield self.plan.program
 
     def listing(self) -> dict[str, Any]:
-        """Return what is stored beside the bytes of the programs."""
+        """Return what is stored in addition to the bytes of the programs."""
         scans = [[[s.name, s.kind, list(s.outputs)] for s in stage.scans] for stage in self.plan.stages]
         return {"scans": scans, "settled": self.settled}
 

@@ -32,12 +32,12 @@ class SampledGraphs:
 
     @staticmethod
     def last_before(begin: int) -> int:
-        """Return the last step of what stands for [0, a)."""
+        """Return the last step of the closed window for [0, a)."""
         return begin - 1
 
     @staticmethod
     def rank(interval: Interval | None, step: Fraction) -> Rank:
-        """Return the rank that an interval with a share stands for."""
+        """Return the rank of a share of an interval."""
         return rank_of(interval, step, continuous=False)
 
     @staticmethod
@@ -57,7 +57,7 @@ class ContinuousGraphs(SampledGraphs):
 
     @staticmethod
     def last_before(begin: int) -> int:
-        """The closed window stands for [0, a) (SEMANTICS: until)."""
+        """The closed window that replaces [0, a)."""
         return begin
 
     @staticmethod

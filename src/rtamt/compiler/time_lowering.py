@@ -27,7 +27,7 @@ class SampledLowering(Lowering):
 
     @staticmethod
     def until_just_before(period: Fraction) -> Fraction:
-        """Return how much shorter than a the closed window is that stands for [0, a)."""
+        """Return by how much the closed window for [0, a) is shorter than a."""
         return period
 
     def ahead_of(self, node: Apply, x: int) -> int:
@@ -63,7 +63,7 @@ class ContinuousLowering(Lowering):
         return 0 * period
 
     def ahead_of(self, node: Apply, x: int) -> int:
-        """The trace goes on with its last values."""
+        """Continue the trace with its last values."""
         distance, _ = self.bounds(node)
         return self.moved(x, 0, -inf, self.lag(x) + distance, node) if distance else x
 

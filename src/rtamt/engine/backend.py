@@ -138,7 +138,7 @@ D = TypeVar("D", bound=Backend)
 
 
 class Place(NamedTuple):
-    """Where an instruction is computed: the ``root`` of its chain and its ``register``, None where there is none."""
+    """Where an instruction is computed: the ``root`` of its chain and its ``register``, None if there is none."""
 
     root: int | None
     register: int | None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Reading(Protocol):
-    """Makes objects of what a direct evaluation has found, when they are asked for."""
+    """Creates the objects of a direct evaluation on first use."""
 
     def trace(self, found: Any) -> DomainTrace:
         """Return the recording."""

@@ -50,7 +50,7 @@ class EarlyQuery:
     start: bool
     #: How many of the formulas, the first ones, are not reported at every instant.
     hidden: int
-    #: By how many steps at most a sample may be late; None where all come in order.
+    #: The greatest lateness of a sample in steps; None if all arrive in order.
     late: int | None
     #: Whether samples may correct earlier ones.
     replays: bool

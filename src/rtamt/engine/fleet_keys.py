@@ -35,6 +35,6 @@ def rows_of(keys: NDArray[Any]) -> NDArray[Any]:
 
 
 def sentence(error: ValueError) -> str:
-    """Return what the core says as the sentence of an error."""
+    """Return the message of the core as the sentence of an error."""
     text = str(error).rstrip(".")
     return text[:1].lower() + text[1:]

@@ -58,7 +58,7 @@ class _TakenByPython:
 
 
 def _read_by_python(*_given: Any) -> None:
-    """Stand in for :func:`rtamt.engine._core.read_columns` where the core is not built."""
+    """Replace :func:`rtamt.engine._core.read_columns` if the core is not built."""
 
 
 def has_period(times: FloatArray, period: Fraction) -> bool:
@@ -117,7 +117,7 @@ def core_monitor(
     ignored: Collection[str],
     types: Mapping[str, Mapping[str, float] | None],
 ) -> Any:
-    """Return a compiled monitor of a program; raise :class:`UsageError` where memory does not suffice.
+    """Return a compiled monitor of a program; raise :class:`UsageError` if memory does not suffice.
 
     ``period`` in seconds; ``tolerance`` a fraction of it. A monitor that is not ``strict`` counts irregular
     gaps and takes the sample; samples of ``ignored`` variables are skipped. ``types``: see ``coding.codes_of``.
@@ -131,7 +131,7 @@ def core_monitor(
     except RuntimeError as error:
         raise creation_error(program, error) from None
     except MemoryError:
-        timestamps = 8 * (max(program.lags) + 1)  # of the samples whose values are still to come
+        timestamps = 8 * (max(program.lags) + 1)  # of the samples whose values are pending
         gibibytes = (_core.memory(code, calls) + timestamps) / 2**30
         raise UsageError(
             f"the monitor needs {gibibytes:.3g} GiB of memory, which this machine does not give; "
@@ -153,8 +153,8 @@ def culprit(
 ) -> Formula:
     """Return the sub-formula that yielded NaN, as it is written in the formulas that are ``asked``.
 
-    ``error``: the core's ``Undefined``. ``original``: of a formula of the program, what it stands for.
-    Raises what a user's own operator raised or said.
+    ``error``: the core's ``Undefined``. ``original``: from a formula of the program to its source.
+    Raises the error of a custom operator.
     """
     formula = program.origin_of(error.args[0])
     assert formula is not None

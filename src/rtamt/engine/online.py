@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Watched:
-    """A formula whose values are kept beside those of the result; ``text`` is where its spans point.
+    """A formula whose values are kept in addition to the result; ``text`` is the text of its spans.
 
     ``name``: what the caller gave, by which :meth:`OnlineMonitor.__getitem__` finds it again.
     """
@@ -54,7 +54,7 @@ def _label(name: str | Formula) -> str:
 
 
 class OnlineMonitor:
-    """A monitor of either time domain, beside a base of the compiled core. Not instantiated by users."""
+    """A monitor of either time domain; a mixin of classes of the compiled core. Not instantiated by users."""
 
     #: The attributes that form the state of a monitor, apart from that of its back end.
     _remembered: ClassVar[tuple[str, ...]]
@@ -103,7 +103,7 @@ class OnlineMonitor:
     def episodes(self, name: str | Formula | None = None) -> list[Episode]:
         """Return the maximal runs of violation so far, with begin, end, and the worst robustness and its instant.
 
-        ``name``: of a formula that is watched, such as one of several requirements. The last episode may still go on.
+        ``name``: of a formula that is watched, such as one of several requirements. The last episode may continue.
         For monitors made with ``episodes=True``; they remember all episodes, and take each sample a little slower.
 
         >>> import rtamt

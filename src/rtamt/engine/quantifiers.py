@@ -61,7 +61,7 @@ class Plan:
 class QuantifierExecutor:
     """A quantifier: its compiled formula, and what runs for each of the members at present.
 
-    ``bound``: the members that the variables of the quantifiers around it stand for.
+    ``bound``: the members bound to the variables of the enclosing quantifiers.
     """
 
     def __init__(self, plan: Plan, bound: Mapping[str, str]) -> None:
@@ -71,7 +71,7 @@ class QuantifierExecutor:
         self.running: dict[str, Any] = {}
 
     def binding(self, member: str) -> dict[str, str]:
-        """Return the members that the variables stand for inside the quantifier."""
+        """Return the members bound to the variables inside the quantifier."""
         return {**self.bound, self.plan.variable: member}
 
     def executors(self) -> Iterator[Any]:
@@ -109,7 +109,7 @@ class QuantifierMonitor:
         self._binding = Binding(tuple(names))
         self._watched = tuple(each.name for each in watch)
         self._types = {**types_of(outer._formulas[0]), **(types or {})}
-        #: The variables beside the fields of members.
+        #: The variables that are not fields of members.
         self.input_names: tuple[str, ...] = tuple(names)
         self._usage = UsageGuard()
         self._begin()

@@ -40,11 +40,11 @@ class TimeAxis(ABC):
 
     @abstractmethod
     def later(self, time: Any) -> int:
-        """Return the cell of a time that came out of this trace; it may be after its end."""
+        """Return the cell of a time of this trace; it may be after the end."""
 
     @abstractmethod
     def time(self, cell: int) -> Any:
-        """Return the time of a cell in the caller's form; None where there is none so late."""
+        """Return the time of a cell in the caller's form; None if the trace ends earlier."""
 
     @abstractmethod
     def show(self, cell: int) -> str:

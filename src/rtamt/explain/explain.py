@@ -51,7 +51,7 @@ def explain(
 
     ``recording``: normalised, as a result holds it. ``at``: a time in the caller's format. ``text``: from
     which the formula was read, to quote predicates as they were written. ``semantics`` gives the
-    formula whose value counts as that of a predicate. Raises :class:`UsageError` where ``at`` is not in the
+    formula whose value counts as that of a predicate. Raises :class:`UsageError` if ``at`` is not in the
     recording.
     """
     return _Explainer(formula, recording, backend, text, semantics).at(at)

@@ -1,7 +1,7 @@
 """From a verdict down to the predicates: at which instants each sub-formula must have which truth.
 
-Where both operands (or all instants of a window) are needed, all are asked for; where one would do, one
-is chosen (see ``choices``). What is asked for at the predicates is enough for the verdict by construction.
+Where both operands (or all instants of a window) are needed, all are requested; where one would do, one
+is chosen (see ``choices``). What is requested at the predicates is enough for the verdict by construction.
 """
 
 from __future__ import annotations

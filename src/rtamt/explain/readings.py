@@ -2,7 +2,7 @@
 
 From a predicate down to its variables: the cells at which each part must not become smaller (*lower*) or larger
 (*upper*) than it is, for the predicate to stay at least, or at most, what it is. Where one of several parts does (the
-largest of a window, the branch that is taken), only that is asked for; a condition is asked for as any formula is
+largest of a window, the branch that is taken), only that is requested; a condition is requested as any formula is
 (``propagate.py``). Where no rule is known (an operator with a definition only), all that can be read is.
 
 The *source* of a single value is the sample that determines it: of a minimum the one that attains it.

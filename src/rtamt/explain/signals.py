@@ -21,7 +21,7 @@ class Signals:
     """The sub-formulas of a structure over given signals of its leaves.
 
     One run of the engine gives those that read other instants and what they read; the others are a
-    minimum, maximum or negation at one instant, found where they are asked for.
+    minimum, maximum or negation at one instant, found where they are requested.
     """
 
     def __init__(self, structure: Structure, axis: TimeAxis, leaves: Mapping[str, StepFunction]) -> None:

@@ -42,7 +42,7 @@ class Fleet(Generic[Update]):
     ``spec``: a specification or, for a column of values for each requirement, a :class:`Suite` of specifications with
     the same sampling period. A suite that does not select the robustness reports +inf where a requirement holds, and
     -inf where it does not. ``capacity``: the largest number of keys; memory is used only for those that have come.
-    ``lateness``: how late a sample may arrive, in seconds or as text such as ``"2s"``: samples of a key then come in
+    ``lateness``: how late a sample may arrive, in seconds or as text such as ``"2s"``: samples of a key then arrive in
     any order and wait until one has come that is newer by the lateness. Without it, they come in the order of their
     times. ``gaps``: what a gap between two samples of a key does that is not the period: ``"reject"`` the batch,
     ``"restart"`` the trace of the key with the sample after the gap, or ``"hold"`` the last value where whole
@@ -322,7 +322,7 @@ class Fleet(Generic[Update]):
         """Forget the sample of a key and a time in seconds that waits for earlier ones; return whether there was one.
 
         For samples that turn out to have no value when they are released, see :class:`WaitedError`. The watermark of
-        the key stays, so that another sample of that time may come until it is late. What the sample leaves is a gap.
+        the key stays, so that another sample of that time may arrive until it is late. What the sample leaves is a gap.
 
         >>> import rtamt
         >>> fleet = rtamt.Fleet(rtamt.parse("sqrt(x) >= 3"), capacity=10, lateness="1s", gaps="restart")

@@ -143,7 +143,7 @@ def _part(
     settings: Mapping[str, Any],
     state: bytes | None,
 ) -> MonitorPerKey:
-    """Return a monitor for each key; raise :class:`UsageError` where there can be none."""
+    """Return a monitor for each key; raise :class:`UsageError` if there can be none."""
     from rtamt.fleet.per_key import MonitorPerKey  # with all verdict modes, which records do not need
 
     return MonitorPerKey(

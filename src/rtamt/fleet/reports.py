@@ -78,7 +78,7 @@ class FleetChanges:
 class FleetBounds:
     """Interval verdicts: for each sample, in the order of the batch, bounds of the robustness of its key after it.
 
-    ``lower`` and ``upper``: at the start of the trace of ``keys[i]``. ``late``: which samples came later than the
+    ``lower`` and ``upper``: at the start of the trace of ``keys[i]``. ``late``: which samples arrived later than the
     lateness allows, and were left out. ``changes``: of the bounds at other instants; empty with ``at="start"``.
     """
 

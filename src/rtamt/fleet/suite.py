@@ -193,7 +193,7 @@ class Suite:
     def monitor(self) -> tuple[OnlineMonitor, tuple[Specification, ...]]:
         """Return a monitor that watches every requirement by its name, and their specifications.
 
-        Raises :class:`UsageError` where the requirements need more than one monitor, or have no formulas.
+        Raises :class:`UsageError` if the requirements need more than one monitor, or have no formulas.
         """
         self._require_formulas()
         if self._apart or len(self._groups) > 1 or self._groups[0].way.rule is not None:
@@ -203,7 +203,7 @@ class Suite:
     def monitors(self, settings: Mapping[str, Any]) -> dict[str, tuple[Specification, OnlineMonitor]]:
         """Return a monitor of each requirement, and its specification, by its name; ``settings``: beside those here.
 
-        Raises :class:`UsageError` where the requirements do not share a time domain, or have no formulas.
+        Raises :class:`UsageError` if the requirements do not share a time domain, or have no formulas.
         """
         specs = self.specifications
         if len({(way.domain, way.unit) for way in self.ways}) > 1:
@@ -222,7 +222,7 @@ class Suite:
 
     @property
     def specifications(self) -> Mapping[str, Specification]:
-        """The specification of each requirement, by its name; raises :class:`UsageError` where there are none."""
+        """The specification of each requirement, by its name; raises :class:`UsageError` if there are none."""
         self._require_formulas()
         return self._specs
 

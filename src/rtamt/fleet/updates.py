@@ -39,7 +39,7 @@ class FleetUpdate:
     ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it
     is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
     Of a suite, these four have a column for each requirement, and ``update["SPEED"]`` is the update of one.
-    ``late``: which samples came too late, or a second time, and were left out. ``released``: what samples made known
+    ``late``: which samples arrived too late, or a second time, and were left out. ``released``: what samples made known
     that are not of this batch. ``requirements``: the names of those of a suite.
     """
 

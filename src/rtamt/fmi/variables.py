@@ -51,7 +51,7 @@ def variables_of(
 ) -> tuple[Variable, ...]:
     """Return the variables of the FMU that carries a program; ``units`` and ``types``: the declared ones, by name.
 
-    Raises :class:`UsageError` where two would have the same name.
+    Raises :class:`UsageError` if two would have the same name.
     """
     metadata = program.metadata
     assert metadata is not None

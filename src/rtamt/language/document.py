@@ -153,7 +153,7 @@ class Document:
     def select(self, name: str) -> Document:
         """Return the same document with one requirement only: the requirement of this name, or else the assertion.
 
-        Raises :class:`UsageError` where there is none.
+        Raises :class:`UsageError` if there is none.
         """
         if name not in self._named:
             raise UsageError(f"there is no requirement '{name}'{choices(name, self._named, 'requirements')}")

@@ -120,7 +120,7 @@ def _expression(pattern: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Binder:
-    """The variable of a quantifier, its group, and the pairs of variables that stand for different members."""
+    """The variable of a quantifier, its group, and the pairs of variables bound to different members."""
 
     variable: str
     group: Group
@@ -133,7 +133,7 @@ class Binder:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class FieldOf(Var):
-    """A field of the member that a quantifier's variable stands for, such as ``v.x``."""
+    """A field of the member bound to a quantifier's variable, such as ``v.x``."""
 
     bound: ClassVar[bool] = True
 
@@ -224,7 +224,7 @@ def unquoted_pattern(parser: FormulaParser) -> Span | None:
 
 
 def begins_quantifier(parser: FormulaParser) -> bool:
-    """Return whether a quantifier stands here: a word that is not declared, a name, ``in`` and a name.
+    """Return whether a quantifier begins here: an undeclared word, a name, ``in`` and a name.
 
     Also ``forall v, w in cars``, which no formula begins with either: it is an error with a hint of its own.
     """

@@ -119,7 +119,7 @@ class Shift:
 
 @dataclass(frozen=True, slots=True)
 class Ahead:
-    """The operand so many steps ahead; where the trace ends before, its last value."""
+    """The operand a number of steps ahead; after the end of the trace, its last value."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,7 +62,7 @@ class Rank(NamedTuple):
 
 
 def rank_of(interval: Interval | None, step: Fraction, *, continuous: bool) -> Rank:
-    """Return the rank that an interval with a share stands for.
+    """Return the rank of a share of an interval.
 
     ``step``: seconds of a period or tick. ``continuous``: in dense time a window has as many ticks as its length, in
     discrete time one sample more.

@@ -56,7 +56,7 @@ class Enumeration:
         return next((code for name, code in self.members if name == member), None)
 
     def member(self, code: float) -> str | None:
-        """Return the name of the member with a code; None where there is none."""
+        """Return the name of the member with a code; None if there is none."""
         return next((name for name, own in self.members if own == code), None)
 
     def listing(self, written: Callable[[str], str] = str) -> str:

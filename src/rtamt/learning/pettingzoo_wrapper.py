@@ -26,7 +26,7 @@ class ParallelRobustnessReward(_wrappers.BaseParallelWrapper):  # type: ignore[m
     Those of one for each agent read its own: ``("observation", 2)``.
 
     ``reward``, ``gamma``, ``terminate`` and ``ranges``: as for ``RobustnessReward``. A verdict ends the episode of all
-    agents, since the environment cannot continue without one. That of a shared requirement terminates it for every agent.
+    agents, since the environment cannot continue without one. A shared requirement terminates it for every agent.
     Of requirements of agents, the first that is violated ends it, or the last of which the verdict becomes known;
     agents whose own verdict is open are truncated, not terminated.
     """

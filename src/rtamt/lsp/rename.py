@@ -39,7 +39,7 @@ _MOST_FILES, _MOST_BYTES = 500, 2**20
 
 
 def renameable_at(analysis: Analysis, offset: int, path: str | None = None) -> tuple[Span, Symbol]:
-    """Return the name at an offset that can be renamed. Raises :class:`UsageError` where there is none."""
+    """Return the name at an offset that can be renamed. Raises :class:`UsageError` if there is none."""
     found = analysis.outline.at(offset)
     if found is None:
         name = next(

@@ -170,7 +170,7 @@ def mine(
     Every value is confirmed by evaluation: the recordings satisfy the template with it, and one recording violates it
     with the next harder value.
 
-    Raises :class:`UsageError` where no value satisfies the template on all recordings, and :class:`TraceError`, with
+    Raises :class:`UsageError` if no value satisfies the template on all recordings, and :class:`TraceError`, with
     the name of the recording, where the template cannot be evaluated.
 
     >>> import rtamt

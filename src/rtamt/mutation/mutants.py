@@ -48,7 +48,7 @@ def mutants_of(spec: Specification, step: Fraction | None = None) -> list[Mutant
     an earlier mutant, is left out: see :mod:`rtamt.mutation.equal_formulas`. ``step``: the sampling period, of which
     bounds are multiples in discrete time; by default that of the specification.
 
-    Raises :class:`UsageError` where bounds have to be changed and no sampling period is known.
+    Raises :class:`UsageError` if bounds have to be changed and no sampling period is known.
 
     >>> import rtamt
     >>> spec = rtamt.parse("always[0:5](x >= 3)", period=1)

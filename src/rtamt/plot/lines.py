@@ -97,7 +97,7 @@ class Line:
 
 
 def ranges(line: Line, wanted: NDArray[np.bool_], *, dense: bool, end: float) -> tuple[Range, ...]:
-    """Return the stretches in which ``wanted`` is true of a line's points.
+    """Return the intervals in which ``wanted`` is true of a line's points.
 
     In dense time a point's value holds until the next one; in discrete time a sample is drawn as wide as
     the way to its neighbours, half of it on each side.

@@ -101,7 +101,7 @@ class Scene:
     def window(self, start: Any = None, end: Any = None, zoom: str | None = None) -> tuple[float, float]:
         """Return the positions from one time to another; by default all, with ``zoom="violation"`` those around it.
 
-        Raises :class:`UsageError` where there is nothing in between, or no violation.
+        Raises :class:`UsageError` if there is nothing in between, or no violation.
         """
         low, high = self.x_axis.start, self.x_axis.end
         if zoom is not None:

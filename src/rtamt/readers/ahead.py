@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-#: Chunks that are read before they are asked for.
+#: Chunks that are read before they are requested.
 _DEPTH = 2
 
 
@@ -32,7 +32,7 @@ def ahead(items: Iterator[T]) -> Iterator[T]:
                 queue.put(item)
                 if stopped.is_set():
                     return
-        except BaseException as error:  # noqa: BLE001 - raised where the items are asked for
+        except BaseException as error:  # noqa: BLE001 - raised where the items are requested
             queue.put(_End(error))
         else:
             queue.put(_End(None))

@@ -28,7 +28,7 @@ _INDEX = "__index_level_0__"
 
 
 def open_parquet(path: str) -> Source:
-    """Open a Parquet file; its row groups are read one after another where chunks are asked for."""
+    """Open a Parquet file; its row groups are read one after another where chunks are requested."""
     parquet, arrow = library("pyarrow.parquet", "Parquet"), library("pyarrow", "Parquet")
     # A buffer for each column: the file is neither read ahead, in memory for ever, nor a row group at once.
     file = parquet.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER)

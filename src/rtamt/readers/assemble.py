@@ -232,7 +232,7 @@ class _Columns:
         return column in self._by_column or column in self._by_name
 
     def find(self, column: str, name: str = "") -> tuple[Table, Field]:
-        """Return the one column that is called so; raise :class:`TraceError` where there is none, or are several.
+        """Return the column of a name; raise :class:`TraceError` if there is none, or several.
 
         ``name``: of the signal that is read of it.
         """

@@ -41,7 +41,7 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column that is wanted: its name in the result, its position in the file, whether it may hold NaN."""
+    """A selected column: its name in the result, its position in the file, and whether it may contain NaN."""
 
     name: str
     position: int
@@ -176,7 +176,7 @@ def is_boolean(text: str) -> bool:
 
 
 def truth(text: str, name: str, header: Header, line: int) -> bool:
-    """Return the Boolean in a cell; raise :class:`TraceError` where there is none."""
+    """Return the Boolean in a cell; raise :class:`TraceError` if it is not one."""
     value = BOOLEANS.get(text.lower())
     if value is None:
         raise header.error(line, f"'{name}' is '{text}', expected true or false", name)

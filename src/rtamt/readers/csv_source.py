@@ -87,7 +87,7 @@ def _no_utf8(path: str) -> TraceError:
 
 def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list[Raw]]:
     """Yield columns block by block: by pyarrow and numpy as long as lines are plain numbers, then cell by cell."""
-    # Of a name that is there twice: the first.
+    # The first of several columns with one name.
     places = {name: i for i, name in reversed(list(enumerate(header.names)))}
     columns = [Column(f.column, places[f.column], f.skip_nan) for f in wanted]
     line, end = header.line, 0

@@ -50,7 +50,7 @@ def is_date(value: Any) -> bool:
 
 
 def date_in(text: str) -> np.datetime64 | None:
-    """Return the date that a text is, in UTC where it names a time zone; None where it is none.
+    """Parse a date, in UTC if it has a time zone; None if the text is not a date.
 
     >>> date_in("2026-05-01T12:00:00.5+02:00"), date_in("12.5")
     (np.datetime64('2026-05-01T10:00:00.500000000'), None)

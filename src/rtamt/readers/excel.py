@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MOST_BYTES = 2**30
 #: Rows that Excel can hold.
 MOST_ROWS = 2**20
-#: Cells up to the last one of each row: a lone cell far to the right stands for thousands of empty ones.
+#: The limit on cells up to the last one of each row: a lone cell far to the right implies thousands of empty ones.
 MOST_CELLS = 2**28
 
 

@@ -34,7 +34,7 @@ class Format:
     recovers: str = ""
 
     def guard(self, path: str) -> AbstractContextManager[None]:
-        """Turn every error of the library into one sentence."""
+        """Convert the errors of the library to error messages."""
         if self.recovers and path.lower().endswith(self.recovers):
             return opening(path, self.name, "read it as far as possible with recover=True (--recover)")
         return opening(path, self.name)
@@ -84,7 +84,7 @@ def is_bag(path: str) -> bool:
 
 
 def format_of(path: str) -> Format:
-    """Return the format that follows from a file's name; raise :class:`TraceError` where there is none."""
+    """Return the format that follows from a file's name; raise :class:`TraceError` if there is none."""
     if is_bag(path):
         return BAG
     stem, suffix = os.path.splitext(path.lower())

@@ -87,7 +87,7 @@ def _array(values: Any, name: str) -> Raw:
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name) from None
     if raw.dtype.kind in "US" and not isinstance(values, np.ndarray):
-        raw = np.asarray(values, dtype=object)  # numpy would make text of numbers beside a text
+        raw = np.asarray(values, dtype=object)  # numpy would convert numbers next to a text to text
     if raw.ndim != 1:
         raise TraceError(
             f"'{name}' has {raw.ndim} dimensions, expected 1: give one number a sample", variable=name

@@ -43,7 +43,7 @@ class Gaps:
     def hold(self, numbers: FloatArray, missing: Mask, times: Any, before: int) -> tuple[FloatArray, Mask]:
         """Return the values with those of earlier samples in the gaps, and which are missing all the same.
 
-        Only what comes before the first sample of all has nothing to hold. Raises :class:`TraceError` where the last
+        Only what comes before the first sample of all has nothing to hold. Raises :class:`TraceError` if the last
         sample is older than allowed.
         """
         if self._hold_for is None or not len(numbers):

@@ -76,7 +76,7 @@ def refuse_encodings(path: str) -> None:
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         if file.read(len(_MAGIC)) != _MAGIC:
-            return  # what is no such file is for the reader to refuse
+            return  # the reader rejects other files
         for kind, data, complete in _records(file, size):
             records = [(kind, data)] if kind != _CHUNK else _whole_records(data) if complete else []
             for part, content in records:
@@ -104,7 +104,7 @@ def _channel(data: bytes) -> tuple[str, str] | None:
 
 
 def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes, bool]]:
-    """Yield kind, contents and whether these are complete, up to the first thing that is no record."""
+    """Yield kind, contents and completeness of each record, up to the first malformed one."""
     while len(header := file.read(_RECORD.size)) == _RECORD.size:
         kind, length = _RECORD.unpack(header)
         if kind not in _KINDS:
@@ -151,7 +151,7 @@ def _whole_records(chunk: bytes) -> list[tuple[int, bytes]]:
     try:
         compression, _, _, data, _ = _contents(chunk)
         records = _decompress(data, compression)
-    except Exception:  # noqa: BLE001 - each decompressor has errors of its own
+    except Exception:  # noqa: BLE001 - each decompressor has its own errors
         return []
     found = _records(BytesIO(records), len(records))
     return [(kind, content) for kind, content, complete in found if complete and kind != _CHUNK]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Raw
 
 
-#: Bytes that a byte of a compressed block can stand for (deflate).
+#: The greatest compression ratio of a block (deflate).
 _DENSEST = 1032
 #: Types of channels of MDF 4 that have no bytes in the records: virtual masters and data.
 _VIRTUAL = (3, 6)
@@ -98,7 +98,7 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
 
 @contextmanager
 def _collect_warnings() -> Iterator[list[str]]:
-    """Collect what asammdf would print to stderr of a damaged file: it leaves out the rest of it, and goes on."""
+    """Collect the messages of asammdf about a damaged file, of which it skips the rest and continues."""
     complaints: list[str] = []
 
     class Collector(logging.Handler):

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Raw
 
-#: Elements of an array that become columns of their own; longer ones are images and clouds of points.
+#: The longest array whose elements become columns; longer ones are images and point clouds.
 _ELEMENTS = 1000
-#: Scans have a column for the nearest thing: the least of the ranges that are valid, inf where none is.
+#: Scans have a column for the nearest obstacle: the least valid range, inf if there is none.
 _SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
@@ -74,7 +74,7 @@ def open_reader(path: str, recover: bool = False) -> Iterator[tuple[Any, tuple[s
             try:
                 reader = _reader(copy if lost else path)
             except TraceError:
-                reader = _reader(copy)  # every message is there, but their index is damaged
+                reader = _reader(copy)  # all messages are complete, but their index is damaged
         else:
             reader = _reader(path)
         stack.callback(reader.close)
@@ -95,7 +95,7 @@ def _reader(path: str) -> Any:
 
 
 def messages(reader: Any, connections: Sequence[Any] = ()) -> Iterator[tuple[Any, int, bytes]]:
-    """Yield connections, times of recording and messages as bytes; raise :class:`TraceError` where a bag is damaged."""
+    """Yield connections, times of recording and messages as bytes; raise :class:`TraceError` if a bag is damaged."""
     path = str(reader.paths[0])
     asked = {connection.topic for connection in connections}
     with BAG.guard(path):
@@ -110,7 +110,7 @@ def messages(reader: Any, connections: Sequence[Any] = ()) -> Iterator[tuple[Any
 
 
 def _existing(path: str) -> Path:
-    """Return a path; raise what ``open`` raises where there is no such file."""
+    """Return a path; raise the error of ``open`` if the file does not exist."""
     if os.path.isdir(path):
         if not os.path.isfile(os.path.join(path, METADATA)):
             raise TraceError(
@@ -162,7 +162,7 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
 
 
 class _Rows:
-    """Messages of a topic in the order of their timestamps, of which some fields are wanted."""
+    """Selected fields of the messages of a topic, in the order of their timestamps."""
 
     def __init__(self, topic: _Topic, wanted: Sequence[Field]) -> None:
         self._topic, self._wanted = topic, wanted
@@ -174,7 +174,7 @@ class _Rows:
         self._count = self._others = 0
 
     def take(self, recorded: int, message: Any) -> None:
-        """Take a message; of several with one stamp the first."""
+        """Add a message; of several with the same timestamp the first."""
         stamp = _header_time(message) or recorded
         row = [_at(message, path) for path in self._paths]
         if self._last is not None and stamp <= self._last[0]:
@@ -254,7 +254,7 @@ def _columns(
 
 
 def _message(reader: Any, connection: Any, raw: Any) -> Any:
-    """Return a message of a bag; raise :class:`TraceError` where it is none of its type."""
+    """Return a message of a bag; raise :class:`TraceError` if it is malformed."""
     try:
         return reader.deserialize(raw, connection.msgtype)
     except Exception as error:  # code that rosbags makes of the definition: whatever goes wrong first

@@ -65,7 +65,7 @@ class Table:
     chunks: Callable[[Sequence[Field]], Iterator[list[Raw]]] | None = None
     #: The field that is known to hold the timestamps; None where it has to be found by its name.
     time_field: Field | None = None
-    #: The line or row of the source in which the first sample stands, for messages.
+    #: The line or row of the first sample in the source, for messages.
     first_row: int = 0
     #: Whether the arrays of chunks are new ones, which nothing else reads or changes.
     fresh: bool = False
@@ -108,13 +108,13 @@ class Source:
 
 
 def library(module: str, what: str) -> Any:
-    """Import a library of the extra ``data``; raise :class:`UsageError` where it is not there."""
+    """Import a library of the extra ``data``; raise :class:`UsageError` if it is not installed."""
     return extras.library(module, f"reading {what}", "data")
 
 
 # ---- what goes wrong in a library ----------------------------------------------------------------
 
-#: What a library asks of the operating system only where numbers in the file are wrong.
+#: Errors of the operating system that a library causes only if numbers in the file are wrong.
 _WRONG_NUMBERS = (None, errno.EINVAL, errno.EOVERFLOW, errno.EFBIG)
 #: What our own code raises by mistake only, never at the contents of a file.
 _BUGS = (AssertionError, AttributeError, NameError, NotImplementedError, TypeError)
@@ -124,7 +124,7 @@ _SHOWN = 200
 
 @contextmanager
 def opening(path: str, what: str, remedy: str = "copy or export it again") -> Iterator[None]:
-    """Turn every error of a format library into one sentence. ``what``: the format.
+    """Convert the errors of a format library to error messages. ``what``: the format.
 
     Our own errors pass, and so do our own bugs: they are no damage of the file.
     """
@@ -215,7 +215,7 @@ def printable(text: str) -> str:
 
 
 def damage(complaints: Iterable[str], until: str = "") -> tuple[str, ...]:
-    """Return a note on a file that was read as far as possible: the first thing its library complained about."""
+    """Return a note on a damaged file that was read as far as possible: the first complaint of its library."""
     lines = list(dict.fromkeys(line.strip() for line in complaints if line.strip()))
     if not lines:
         return ()

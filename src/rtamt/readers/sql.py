@@ -59,7 +59,7 @@ def _open(url: str, query: str) -> Source:
 
 
 def _read_only(address: Any) -> Any:
-    """Return the address under which SQLite only reads: it makes a file where there is none."""
+    """Return the read-only address of an SQLite database: SQLite would create a missing file."""
     path = address.database
     if address.get_backend_name() != "sqlite" or not path or path == ":memory:":
         return address
@@ -74,7 +74,7 @@ def _read_only(address: Any) -> Any:
 
 @contextmanager
 def _reading(url: str) -> Iterator[None]:
-    """Turn what goes wrong in a database into one sentence."""
+    """Convert database errors to error messages."""
     exceptions = library("sqlalchemy.exc", "databases")
     with opening(shown(url), "a database"):
         try:

@@ -1,6 +1,6 @@
 """The column of timestamps: its name, its unit, and its values as times.
 
-Files, frames, queries, chunks and streams all come here. What does not follow from the name of the
+Shared by files, frames, queries, chunks and streams. What does not follow from the name of the
 column follows from its first timestamp, which every one of them has.
 """
 
@@ -70,7 +70,7 @@ def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
 class TimestampColumn:
     """How the timestamps of a column become times, a few at a time: the first one decides for all.
 
-    ``said``: the unit that the caller gives. ``notes``: what was guessed.
+    ``said``: the unit given by the caller. ``notes``: the inferences.
     """
 
     def __init__(self, field: Field, said: str | None, guessed: bool, source: str) -> None:
@@ -177,7 +177,7 @@ class TimestampColumn:
 
 
 def _objects(raw: Raw) -> list[Any]:
-    """Return an array as a list in which None stands for what is missing."""
+    """Return an array as a list, with None for missing values."""
     whole = raw.astype(object)
     return list(np.ma.filled(whole, None) if is_masked(whole) else whole)
 

@@ -89,7 +89,7 @@ class _Watched:
 
     def read(self, size: int) -> bytes:
         data = self._file.read(size)
-        # At the end of a whole file the three bytes of a further header are asked for, and none is there.
+        # At the end of an intact file, pyulog reads three bytes of a further header and finds none.
         self.cut |= len(data) < size and (len(data) > 0 or size != _HEADER)
         self._left -= size
         if self._left < 0:

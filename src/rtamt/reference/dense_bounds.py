@@ -1,8 +1,8 @@
 """The definition of bounds in dense time: formula and partial knowledge of signals to [L, U] at every instant.
 
 As in discrete time (``discrete_bounds.py``), on step functions. A sample is known to hold its value for the tick of
-its own time, and from there up to the next sample of its variable, as far as no other sample can come between them.
-Elsewhere only the declared range is known, until no more samples come: then the last value is held for ever.
+its own time, and from there up to the next sample of its variable, as far as no other sample can arrive between them.
+Elsewhere only the declared range is known, until no more samples arrive: then the last value is held for ever.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class DenseKnowledge:
     """The known part of signals: the samples of every variable so far, each with bounds of its value.
 
     ``ranges`` are the declared ones, which hold where nothing else is known; without one a variable may be
-    anything. ``finished``: no more samples will come. ``closed``: of variables the tick up to which, inclusive,
-    no more samples will come; without one that of the newest sample. ``later``: what is supposed of variables where
+    anything. ``finished``: no more samples will arrive. ``closed``: of variables the tick up to which, inclusive,
+    no more samples will arrive; without one that of the newest sample. ``later``: what is supposed of variables where
     nothing but the range is known after their newest samples: bounds from each time on, the last for ever.
     """
 
@@ -63,7 +63,7 @@ class DenseKnowledge:
 
     @property
     def start(self) -> int | None:
-        """The tick at which the trace begins; None while the first sample of a variable may still come."""
+        """The tick at which the trace begins; None while the first sample of a variable may still arrive."""
         firsts = []
         for name, (times, _, _) in self.samples.items():
             if not len(times) or (int(times[0]) > self.until(name) and not self.finished):

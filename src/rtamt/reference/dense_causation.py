@@ -1,6 +1,6 @@
 """The definition of causation in dense time: by how much the newest samples alone violate or satisfy a formula.
 
-As in discrete time (``discrete_causation.py``), on step functions. An event is what comes at once: samples of some
+As in discrete time (``discrete_causation.py``), on step functions. An event is what arrives at once: samples of some
 variables, a watermark or the end of the trace. A predicate has its bounds where the event has made a variable of it
 known; one that reads several instants, where the event has moved them. The minimum of ``viol`` at an instant over the
 events so far, and of the upper bound before any of them, is U; the maximum of ``sat``, and of that lower bound, is L.
@@ -155,7 +155,7 @@ def _new(node: Formula, before: DenseKnowledge | None, now: DenseKnowledge) -> S
 
 
 def _unseen(now: DenseKnowledge) -> DenseKnowledge:
-    """Return what is known when the trace starts and nothing of it has been seen."""
+    """Return the bounds when the trace starts, before any sample."""
     start = now.start
     assert start is not None
     return DenseKnowledge({name: ([start], [-inf], [inf]) for name in now.samples})

@@ -69,7 +69,7 @@ def evaluate(formula: Formula, signals: Mapping[str, Events], tick: Fraction) ->
     values, shape (m,), each held until the next, the last for ever. ``tick`` is seconds. The result spans
     [t₀, tₙ], from the latest first time to the latest last time; its first event is at t₀.
 
-    Raises :class:`EvaluationError` where an operation has no value (0/0, the root of a negative
+    Raises :class:`EvaluationError` if an operation has no value (0/0, the root of a negative
     number, inf - inf), wherever in the formula that is, at any instant that the result can depend on.
     Raises :class:`SpecificationError` at an operator that only discrete time has.
 
@@ -134,7 +134,7 @@ class DenseReferenceMonitor:
         self._kept, self._until, self._finished = state
 
     def push(self, chunks: Mapping[str, Events]) -> list[Known]:
-        """Take new events of some of the variables, times later than all that came before of the same one.
+        """Take new events of some variables, each later than all previous ones of its variable.
 
         Returns for every output what became known: with K the earliest last time over all variables,
         the output is known up to and including K - H(φ), and nowhere while a variable has not appeared.
@@ -154,7 +154,7 @@ class DenseReferenceMonitor:
         return known
 
     def finish(self) -> list[Known]:
-        """Return for every output the rest, up to the latest last time: no more events will come.
+        """Finish: return the rest of every output, up to the latest time of any variable.
 
         After this the monitor takes no more events until :meth:`reset`. If a variable never appeared there
         is no trace and nothing is known.
@@ -260,7 +260,7 @@ def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
 
 
 def _with_dense_meaning(formula: Formula, tick: Fraction) -> Formula:
-    """Replace the operators in time that dense time knows only by their expansions (a user's own)."""
+    """Replace the temporal operators that dense time defines only by their expansions (custom ones)."""
     check_dense(formula)
     formula = spelled_out(ground(formula, tick, continuous=True))
 
@@ -288,7 +288,7 @@ def _ahead(node: Formula, tick: Fraction) -> int | None:
 def last_read(formula: Formula, last: int, tick: Fraction) -> Limits:
     """Return, by identity of each sub-formula, how far values up to ``last`` of the whole formula read it."""
     limits: dict[int, int | None] = {id(formula): last}
-    for node in reversed(postorder(formula)):  # whoever reads a node comes before it
+    for node in reversed(postorder(formula)):  # readers of a node precede it
         limit, ahead = limits[id(node)], _ahead(node, tick)
         reach = None if limit is None or ahead is None else limit + ahead
         for operand in children(node):

@@ -41,7 +41,7 @@ class Knowledge:
     """The known part of a trace: bounds of every variable at each of the ``n`` samples so far.
 
     ``ranges`` are the declared ones, which hold for all later samples; without one, a variable may be
-    anything. ``finished``: no more samples will come. ``closed``: how many samples, from the first on,
+    anything. ``finished``: no more samples will arrive. ``closed``: how many samples, from the first on,
     are as well known as they will ever be; by default all n.
     """
 
@@ -72,8 +72,8 @@ def bounds(
     receives the bounds of all parts; ``earlier`` are those of less knowledge, which hold where an operation that has
     no value yet is no error.
 
-    Raises :class:`EvaluationError` where an operation has no value whatever the trace is that agrees
-    with what is known, at a sample from which on no better knowledge comes; and
+    Raises :class:`EvaluationError` if an operation has no value whatever the trace is that agrees
+    with what is known, at a sample after which nothing more becomes known; and
     :class:`SpecificationError` at an operator that has no interval extension.
 
     >>> from fractions import Fraction
@@ -132,7 +132,7 @@ def _exact(node: Formula, below: tuple[Enclosure, ...], n: int) -> NDArray[np.bo
 
 
 def _merged(value: Enclosure, known: Knowledge) -> Enclosure:
-    """Return bounds without the entries at the end that repeat, those of the samples that came aside."""
+    """Return bounds without repeated entries at the end, except those of samples that have arrived."""
     if known.finished:
         return value
     n = len(value.lower)
@@ -164,7 +164,7 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
     if known.finished:
         return _by_bound(node, below, window)
     # Operands are constant after their last entry. So is the result: of an operator of the future from
-    # there on, and of the past when the window has left all that came before.
+    # there on, and of the past when the window has left everything that has arrived before.
     behind, ahead = _reach(node, window)
     n = _longest(below) + behind
     lower, upper = _by_bound(node, tuple(_padded(x, n + ahead) for x in below), window)
@@ -174,7 +174,7 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
 def summed(x: Enclosure, a: int, b: int | None, known: Knowledge) -> Enclosure:
     """Return the bounds of ``sum[a,b](x)``: sums of bounds, in the order in which the samples are added.
 
-    Where the trace goes on as far as a whole window, the order is open: the hull of all orders is taken. A sum since
+    Where the trace continues as far as a whole window, the order is open: the hull of all orders is taken. A sum since
     the start is bounded there by 0 or not at all.
     """
     pairs = list(zip(x.lower.tolist(), x.upper.tolist(), strict=True))
@@ -248,7 +248,7 @@ def pointwise(node: Apply, operands: tuple[Enclosure, ...]) -> Enclosure:
 def componentwise(node: Apply) -> None:
     """Raise :class:`SpecificationError` unless an operator takes minima and maxima of its operands in time."""
     if not isinstance(node.op.kernel, Window | Rank | Shift | Ahead | Since | Until):
-        # No operator of the table comes here: pointwise ones have an extension or expand to such.
+        # No operator of the table reaches this: pointwise ones have an extension or expand to such.
         assert not isinstance(node.op.kernel, Pointwise)
         raise SpecificationError(
             f"the operator '{node.op.name}' has no interval extension, which bounds need; "

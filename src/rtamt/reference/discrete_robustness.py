@@ -40,7 +40,7 @@ def evaluate(
     ``columns`` maps each variable to its ``n`` values, shape (n,); ``period`` and ``start``, the time
     of sample 0, are seconds. The result has shape (n,) and is the caller's to keep.
 
-    Raises :class:`EvaluationError` where an operation has no value (0/0, the root of a negative
+    Raises :class:`EvaluationError` if an operation has no value (0/0, the root of a negative
     number, inf - inf), wherever in the formula that is.
 
     >>> import numpy as np
@@ -91,7 +91,7 @@ class ReferenceMonitor:
     :meth:`push` takes, at least one: a formula without variables counts samples by it.
     Output k is known ``horizons[k]`` samples late. ``history`` is how many samples behind t any output
     can depend on (:func:`history`), None to keep the whole trace. ``period`` and ``start``, the time of
-    sample 0, are seconds; ``start`` may be set until the first sample comes.
+    sample 0, are seconds; ``start`` may be set until the first sample arrives.
 
     >>> import numpy as np
     >>> from fractions import Fraction

@@ -65,7 +65,7 @@ def verdicts(formula: Formula, known: Knowledge, period: Fraction) -> list[list[
     return news
 
 
-#: The samples that come at one time, in ticks: of each variable the bounds of its value.
+#: The samples that arrive at one time, in ticks: of each variable the bounds of its value.
 Update = tuple[int, "Mapping[str, Range]"]
 
 
@@ -80,7 +80,7 @@ def dense_verdicts(
 ) -> list[list[Decided]]:
     """Return, for each update, the ticks whose verdicts it makes known; of a finished trace also the rest.
 
-    ``updates`` are in the order in which they come, ``names`` the variables. An entry stands for the
+    ``updates`` are in the order of arrival, ``names`` the variables. An entry stands for the
     instants from its tick up to the next. An instant is reached by the first sample that is not before it.
     """
     truth = boolean(formula)

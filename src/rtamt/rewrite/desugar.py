@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class SourceSpan(Span):
-    """The span of a node that a rewriting has made, with the formula of the text that the node stands for."""
+    """The span of a rewritten node, with the formula of the text that it replaces."""
 
     source: Formula
 
@@ -34,7 +34,7 @@ def desugar(formula: Formula) -> Formula:
 
 
 def written(core: Formula, formulas: Iterable[Formula]) -> Formula:
-    """Return the part of ``formulas`` that a core formula stands for: what a message must name.
+    """Return the part of ``formulas`` that a core formula was made from, for messages.
 
     If no part expands to the core formula, it is returned itself.
 

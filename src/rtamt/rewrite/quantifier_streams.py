@@ -1,6 +1,6 @@
 """Quantifiers over members that come and go: one formula for any member, and an outer one that reads the results.
 
-A stream does not say which members there will be, so each quantifier becomes a formula over one member, in which its
+The members of a stream are not known in advance, so each quantifier becomes a formula over one member, in which its
 variable is the name of the member (``v.x``, ``valid(v)``), and a column of the outer formula: what the members give
 together. A monitor runs the formula once for each member. Where that looks ahead by d, the column is known d later, and
 the outer formula reads it d ahead.
@@ -158,7 +158,7 @@ class _StreamScope(Scope):
 
 
 def _keep(past: Fraction | None, inside: list[Quantified]) -> Fraction | None:
-    """Return how long a member matters that is gone: what the quantifiers inside have of it matters too."""
+    """Return how long an absent member matters, including for the quantifiers inside."""
     known = [each.keep + each.lag for each in inside if each.keep is not None]
     return None if past is None or len(known) < len(inside) else past + max(known, default=Fraction(0))
 

@@ -90,7 +90,7 @@ def resolved_document(
 
 @dataclass(frozen=True)
 class Scope(Known):
-    """The inside of quantifiers: the members that their variables stand for, and where all of these are present."""
+    """The scope of quantifiers: the members bound to their variables, and where all of these are present."""
 
     members: Members
     bound: Mapping[str, str] = field(default_factory=dict)
@@ -152,7 +152,7 @@ class Scope(Known):
         return rebuilt(node, args) if self.present is None else self._cut(node, args)
 
     def over_members(self, node: Apply, binder: Binder) -> Formula:
-        """Return the formula over all members that a quantifier stands for."""
+        """Return the expansion of a quantifier over all members."""
         (body,) = node.args
         inside = [self._inside(binder, member) for member in self.members.names[binder.group.name]]
         scopes = [scope for scope in inside if scope.keeps_apart(binder)]
@@ -174,7 +174,7 @@ class Scope(Known):
         return self._present(self.bound[binder.variable])
 
     def keeps_apart(self, binder: Binder) -> bool:
-        """Return whether the variables stand for different members where the quantifier says so."""
+        """Return whether variables that must be bound to different members are."""
         return all(self.bound[one] != self.bound[other] for one, other in binder.apart)
 
     # ---- cutting operators to where the members are present ----------------------------------------

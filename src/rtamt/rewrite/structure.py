@@ -28,7 +28,7 @@ NEVER = 2**60
 CHOOSING = ("min", "max")
 NEGATION = "neg"
 
-#: A sub-formula, and whether it stands under an even (+1) or odd (-1) number of negations.
+#: A sub-formula, and whether it is under an even (+1) or odd (-1) number of negations.
 Place = tuple[Formula, int]
 
 
@@ -43,7 +43,7 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """A core formula over variables that stand for predicates, and these predicates.
+    """A core formula over variables for predicates, and these predicates.
 
     ``core`` is expressed in cells (see :func:`in_cells`); ``order`` holds its distinct sub-formulas,
     operands first. ``polar`` is the formula at each place with every predicate split into two variables, one
@@ -68,7 +68,7 @@ class Structure:
 
 
 def literal(name: str, sign: int) -> str:
-    """Return the variable that stands for a predicate at places of one sign."""
+    """Return the variable for a predicate at places of one sign."""
     return f"{name}{'+' if sign > 0 else '-'}"
 
 

@@ -67,7 +67,7 @@ class Output:
     field: str
     topic: str
     type: MessageType
-    #: The requirement as a specification of its own.
+    #: The requirement as a separate specification.
     specification: Specification
     #: What is published, if it is not the robustness of every sample: bounds and verdict at the start of the trace
     #: (:data:`START`), bounds of every instant (:data:`EVERY`), or verdicts once they are decided (:data:`EAGER`).

@@ -39,7 +39,7 @@ class Notice:
 
 
 def begins_anew(group: Group) -> str:
-    """Return that the outputs of a group begin anew, as the start of a sentence."""
+    """Return the beginning of a message: the outputs of a group restart."""
     first, *others = (f"'{standing.output.name}'" for standing in group.standings)
     if not others:
         return f"{first} begins anew, its"

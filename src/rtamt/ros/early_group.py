@@ -179,7 +179,7 @@ def reports_of(output: Output, domain: TimeDomain) -> Reports:
 
 
 class _Reporting(Group):
-    """One output whose records come with samples."""
+    """One output with a record for each sample."""
 
     def __init__(self, reports: Reports) -> None:
         self._reports = reports

@@ -71,7 +71,7 @@ class Group(ABC):
     ) -> list[Record]:
         """Take numbers of one instant, return records for the topics that are wanted (None: all).
 
-        Raises :class:`StlError` where they cannot be used.
+        Raises :class:`StlError` if they cannot be used.
         """
 
     @abstractmethod
@@ -218,7 +218,7 @@ class _Channel:
         return self._held
 
     def trim(self) -> None:
-        """Drop all but so many messages while another topic is silent."""
+        """Drop the oldest messages above a limit while another topic is silent."""
         while len(self._waiting) > HELD:
             self._since, self._held = self._waiting.popleft()
 

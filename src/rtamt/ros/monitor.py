@@ -159,7 +159,7 @@ class RosMonitor:
             raise UsageError(f"a topic cannot be stale after {stale!r}; give a time, or 0 for never")
         return int(exact * 10**9)
 
-    # ---- what comes in ---------------------------------------------------------------------------
+    # ---- inputs ----------------------------------------------------------------------------------
 
     def message(self, topic: str, message: Any, now: int) -> list[Record]:
         """Take a message that arrived at ``now``; return the new records."""

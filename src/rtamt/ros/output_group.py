@@ -49,7 +49,7 @@ class Standing:
         """Return to the state before the first sample."""
         self.latest: float | None = None
         self.satisfied: bool | None = None
-        #: In dense time: the latest known truth; whether the first verdict is still to come.
+        #: In dense time: the latest known truth; whether the first verdict is pending.
         self.truth = 0.0
         self.undecided = True
 
@@ -127,7 +127,7 @@ class DiscreteGroup(SampledGroup):
     ) -> list[Record]:
         """Take one sample, return records for the topics that are wanted (None: all).
 
-        Raises :class:`StlError` where it cannot be used.
+        Raises :class:`StlError` if it cannot be used.
         """
         monitor = self._monitor
         monitor.step(*[values[name] for name in monitor.input_names])
@@ -178,7 +178,7 @@ class DenseGroup(MessageGroup):
     ) -> list[Record]:
         """Take the numbers of one message, return records for the topics that are wanted (None: all).
 
-        Raises :class:`StlError` where they cannot be used.
+        Raises :class:`StlError` if they cannot be used.
         """
         records: list[Record] = []
         while self._held:

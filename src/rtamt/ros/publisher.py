@@ -27,7 +27,7 @@ class Publisher:
     """Creates the messages that a node publishes.
 
     ``load``: from a type to its class, which can be called without arguments. ``stamp``: from
-    nanoseconds to the stamp of a header. ``level``: from a level to the level of a status message.
+    nanoseconds to the timestamp of a header. ``level``: from a level to the level of a status message.
     """
 
     def __init__(

@@ -278,7 +278,7 @@ class Shard:
         return found
 
     def _note_late(self, batch: _Batch, first: int, update: FleetUpdate, taken: Taken) -> None:
-        """Note which samples came too late."""
+        """Note which samples arrived too late."""
         for i in np.flatnonzero(update.late).tolist():
             sample = batch.samples[first + i]
             text = (

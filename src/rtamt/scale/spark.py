@@ -127,7 +127,7 @@ def _frame_of(spark: Any, recordings: Sequence[Recording], tasks: int | None = N
 
 
 def _known(spark: Any, results: str) -> Any:
-    """Return the results so far; None where there are none."""
+    """Return the results so far; None if there are none."""
     from pyspark.errors import AnalysisException
 
     try:

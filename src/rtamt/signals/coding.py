@@ -82,7 +82,7 @@ def encoded_value(value: Any, name: str, type_: ValueType | None, where: str, in
 
 
 def code_of(member: str, name: str, type_: Enumeration, where: str, index: int) -> float:
-    """Return the code of a member; raise :class:`TraceError` where there is none, with those that there are."""
+    """Return the code of a member; raise :class:`TraceError` if there is none, with those that there are."""
     code = type_.code(member)
     if code is None:
         raise TraceError(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     FloatArray = NDArray[np.float64]
     TickArray = NDArray[np.int64]
 
-#: How timestamps are called beside signals.
+#: The name of timestamps among signals.
 TIME = "time"
 
 #: Timestamps keep this distance from the ends of int64, so that bounds can be added to them.

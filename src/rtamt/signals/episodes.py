@@ -113,7 +113,7 @@ class EpisodeTracker:
             self._ended.append(episode)
 
     def episodes(self) -> list[Episode]:
-        """Return all episodes so far; the last one may still go on."""
+        """Return all episodes so far; the last one may still continue."""
         return [*self._ended, *([] if self._open is None else [self._open])]
 
     def summary(self) -> Episodes:
@@ -123,7 +123,7 @@ class EpisodeTracker:
         return Episodes(self._count + (self._open is not None), worst, known.first)
 
     def copied(self) -> EpisodeTracker:
-        """Return a tracker that goes on independently."""
+        """Return a tracker that continues independently."""
         twin = EpisodeTracker(continuous=self._continuous, few=self._few)
         twin._ended, twin._open = list(self._ended), self._open
         twin._count, twin._worst = self._count, self._worst
@@ -151,7 +151,7 @@ class WindowTracker:
         self._begin, self._end = begin, end
         self._continuous = continuous
         self._tracker = EpisodeTracker(continuous=continuous, few=few)
-        # In dense time the value at the beginning of the window, until a later one comes, and the last value so far.
+        # In dense time: the value at the beginning of the window, then the last value so far.
         self._held: float | None = None
         self._last: tuple[int, float] | None = None
 

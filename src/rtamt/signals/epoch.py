@@ -1,4 +1,4 @@
-"""Times since 1970 for people: a date, and the seconds since the start of the trace."""
+"""Human-readable times since 1970: a date, and the seconds since the start of the trace."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 A member is present where all its fields have a sample. A sample that is missing (``None``, a null of Arrow or polars,
 ``pandas.NA``, a masked value) ends its presence. Where it is absent its fields are 1, which nothing reads, and
-a channel that is 1 where it is present and 0 where it is not stands beside them.
+a further channel is 1 where the member is present, else 0.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def bound(
 ) -> Bound:
     """Return finished data with the members of groups as ordinary variables.
 
-    ``names``: the variables that formulas read beside those of members. Raises :class:`TraceError` for a group
+    ``names``: the variables that formulas read in addition to those of members. Raises :class:`TraceError` for a group
     without members.
     """
     known = names_of(data)
@@ -196,7 +196,7 @@ def on_one_time_base(
 
 
 def _field_values(data: Mapping[str, Any], member: Member, field: str) -> Any:
-    """Return the values of a field: a column of its own, or in the objects that the member's column has."""
+    """Return the values of a field: its own column, or attributes of the objects in the member's column."""
     column = member.column(field)
     return data[column] if column in data else in_objects(data[member.name], member.name, field)
 

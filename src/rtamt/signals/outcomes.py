@@ -152,7 +152,7 @@ class BoundedSignal(Signal):
         return Interval(float(self.lower[i]) + 0.0, float(self.upper[i]) + 0.0)  # no minus before a zero
 
     def value(self, i: int) -> float:
-        """Return the value at one of the times; raise :class:`EvaluationError` where it is not known."""
+        """Return the value at one of the times; raise :class:`EvaluationError` if it is not known."""
         lower, upper = float(self.lower[i]), float(self.upper[i])
         if lower != upper:
             raise EvaluationError(

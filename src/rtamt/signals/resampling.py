@@ -55,7 +55,7 @@ def resampled(
 ) -> tuple[FloatArray, list[str]]:
     """Return the values of a signal at the instants of a grid, and a note on samples that they leave out.
 
-    ``hold_for``: raise :class:`TraceError` where the last value is older (seconds). ``step``: the distance of the
+    ``hold_for``: raise :class:`TraceError` if the last value is older (seconds). ``step``: the distance of the
     instants, if they are apart by a period: a time that differs from one by the rounding of a double is that instant.
     """
     until = grid + _rounding(grid, step) if step is not None and grid.dtype.kind == "f" else grid
@@ -74,7 +74,7 @@ def resampled(
 class Sampler:
     """Takes signals in chunks, each with its own samples, and gives their values at the instants of a grid.
 
-    The grid is that of :func:`grid_of`; an instant comes once every signal has a sample there, or later.
+    The grid is that of :func:`grid_of`; an instant is reported once every signal has a sample there, or later.
     ``hold_for``: as for :func:`resampled`.
     """
 
@@ -107,9 +107,9 @@ class Sampler:
     def take_at(
         self, now: Any, chunk: Mapping[str, tuple[Times, FloatArray]]
     ) -> tuple[Times, dict[str, FloatArray]] | None:
-        """Return what is known before ``now``, when no sample with an earlier time is still to come.
+        """Return what is known before ``now``, when no earlier sample can arrive.
 
-        Raises :class:`TraceError` where a value is too old; instants up to ``now`` are then left out.
+        Raises :class:`TraceError` if a value is too old; instants up to ``now`` are then left out.
         """
         return self._up_to(exact_time(now), 1, closed=False) if self._add(chunk) else None
 

@@ -98,7 +98,7 @@ def _has_times(samples: Any) -> bool:
 
 
 def _channel(name: str, times: Any, values: Any) -> Channel:
-    """Return the samples of a variable that are there."""
+    """Return the samples of a variable that are not missing."""
     raw = arrays.as_array(values)
     absent = (
         np.ma.getmaskarray(values) if isinstance(values, np.ma.MaskedArray) else np.zeros(raw.shape, bool)

@@ -23,7 +23,7 @@ TOLERANCE = 0.1
 
 
 class RegularTimes:
-    """Timestamps one period apart from 0 s on, which are computed when they are first asked for.
+    """Timestamps one period apart from 0 s on, which are computed on first use.
 
     >>> RegularTimes(3, Fraction(1, 2)).array
     array([0. , 0.5, 1. ])
@@ -106,7 +106,7 @@ def has_period(times: FloatArray, period: Fraction) -> bool:
     gap, gaps = float(period), np.diff(times)
     blur = _precision(gap, times)
     same = np.abs(gaps - gap) <= blur
-    # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is none of them.
+    # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is not among them.
     step = coarse_place(gap)
     same &= np.abs(gaps - np.round(gaps / step) * step) > 1.001 * blur
     return 2 * int(same.sum()) > len(gaps)
@@ -147,7 +147,7 @@ def check_increasing(times: FloatArray, before: float | None = None, first: int 
 
 
 def never_set(time: float, count: int, name: str = TIME) -> TraceError:
-    """Return the error for timestamps that are all alike."""
+    """Return the error for timestamps that are all equal."""
     return TraceError(
         f"all {count} timestamps of '{name}' are {time:.15g} s, so they were never set: choose another column of "
         f"timestamps (time=, --time-column), or none ('')",

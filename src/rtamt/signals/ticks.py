@@ -127,7 +127,7 @@ class TimeScale:
         return denominator if quick else None
 
     def ticks(self, times: Any, name: str, first: int = 0) -> TickArray:
-        """Return times as ticks, rounded to the nearest; raise :class:`TraceError` where that cannot be.
+        """Return times as ticks, rounded to the nearest; raise :class:`TraceError` if that cannot be.
 
         ``times``: as :func:`sequence_of` returns them. Integers are exact. ``first`` is the index of
         ``times[0]`` in the recording of ``name``, for messages.
@@ -201,7 +201,7 @@ class TimeScale:
             i = int((~finite).argmax())
             raise not_finite(name, first + i, times[i])
         ticks = counted(numbers, ratio)
-        if exact.any():  # an integer is exact, whatever stands beside it
+        if exact.any():  # an integer is exact, whatever the other values are
             ticks[exact] = rescaled(
                 integers([t for t, is_exact in zip(times, exact.tolist(), strict=True) if is_exact]), ratio
             )
@@ -313,7 +313,7 @@ class TimeScale:
 
 
 def kind_of(times: Any) -> str:
-    """Return the kind of the first of some times, ``"seconds"`` where there are none."""
+    """Return the kind of the first of some times, ``"seconds"`` if there are none."""
     return next(iter(kinds_of(times)), "seconds")
 
 
@@ -344,7 +344,7 @@ def _kind_of_one(time: Any) -> str:
 
 
 def sequence_of(times: Any, name: str) -> Any:
-    """Return times as an array or a list; raise :class:`TraceError` where they are no sequence."""
+    """Return times as an array or a list; raise :class:`TraceError` if they are no sequence."""
     is_array = hasattr(times, "__array__")
     if not hasattr(times, "__iter__") or (is_array and arrays.as_array(times).ndim != 1):
         raise TraceError(
@@ -384,7 +384,7 @@ def date_of(seconds: float) -> np.datetime64:
 
 
 def not_finite(name: str, index: int, time: Any) -> TraceError:
-    """Return the error for a time that is none."""
+    """Return the error for an invalid time."""
     return TraceError(
         f"{times_of(name)} is {time} at sample {index}: give a finite time", variable=name, index=index
     )

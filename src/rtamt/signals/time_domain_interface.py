@@ -71,7 +71,7 @@ class TimeDomain(ABC):
         return getattr(import_module(module), name)
 
     # Settings; those that do not concern a time domain have their defaults.
-    #: The sampling period in seconds; None where there is none, or where it depends on the timestamps.
+    #: The sampling period in seconds; None if there is none, or where it depends on the timestamps.
     period: Fraction | None = None
     #: The fraction of the period by which a gap between samples may differ from it.
     tolerance: float = TOLERANCE

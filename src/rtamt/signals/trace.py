@@ -113,7 +113,7 @@ class Trace(WithTimeBases):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What reports show beside a verdict: :attr:`losses`, and signals whose unit was converted."""
+        """The notes that reports show with a verdict: :attr:`losses`, and signals whose unit was converted."""
         return (*self._conversions, *self._losses)
 
     @property
@@ -147,7 +147,7 @@ class Trace(WithTimeBases):
         return {name: channel.unit for name, channel in self._channels.items() if channel.unit}
 
     def channel(self, name: str) -> Channel:
-        """Return one signal with its unit; raise :class:`TraceError` where there is none of that name."""
+        """Return one signal with its unit; raise :class:`TraceError` if there is none of that name."""
         found = self._channels.get(name) or self._channels.get(self.aliases.get(name, ""))
         if found is None:
             raise TraceError(

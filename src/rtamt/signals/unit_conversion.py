@@ -91,7 +91,7 @@ def conversion_of(name: str, recorded: str, declared: str) -> Conversion | None:
 
 @lru_cache(maxsize=512)
 def _conversion(recorded: str, declared: str) -> Conversion | None:
-    """Return the conversion between two known units; None where there is none."""
+    """Return the conversion between two known units; None if there is none."""
     units, first, second = registry(), parsed(recorded), parsed(declared)
     if units.get_root_units(first)[1] != units.get_root_units(second)[1]:
         return None

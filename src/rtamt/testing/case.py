@@ -77,7 +77,7 @@ class Case:
 
 
 def hold(law: Callable[[Case, Any], None], case: Case, examples: int) -> None:
-    """Test a law on so many examples, always the same; raise its error on the smallest counterexample."""
+    """Test a law on a fixed set of examples; raise its error on the smallest counterexample."""
 
     @settings(
         max_examples=examples,

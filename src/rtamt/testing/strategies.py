@@ -194,7 +194,7 @@ def _intervals(
 
 @st.composite
 def _shares(draw: DrawFn, nominal: int, period: Fraction, discrete: bool) -> Share:
-    """Draw a share of a window of so many steps."""
+    """Draw a share of a window of ``steps`` steps."""
     if draw(st.booleans()):
         return Share(Fraction(draw(st.sampled_from((1, 30, 50, 75, 100)))), ShareKind.PERCENT)
     count = Fraction(draw(st.integers(1, nominal)))

@@ -75,7 +75,7 @@ class DiscreteStream(Stream):
             begin = output.known
             output.known += len(signal)
             output.take(range(begin, output.known), signal.values, times=signal.times)
-            # A tracker decides on a position when the next one comes, which needs the timestamp before.
+            # A tracker decides on a position at the next one, which needs the previous timestamp.
             violated = (t.violated for t in output.trackers if t.violated is not None)
             for position in {0, *violated}:
                 if position == begin - 1:
@@ -88,7 +88,7 @@ class DiscreteStream(Stream):
     def _time(self, position: int) -> Any:
         if position in self._kept:
             return self._kept[position]
-        # The last one, whose verdict was given at the end: there all outputs stand alike.
+        # The last one, whose verdict was decided at the end: all outputs end there.
         return next(iter(self._group.outputs.values())).last
 
     def finish(self) -> StreamResult:

@@ -84,7 +84,7 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
 
 
 def monitor_of(mode: Mode, domain: TimeDomain) -> Callable[..., EarlyMonitor]:
-    """Return the monitor of a mode in a time domain; raise :class:`UsageError` where there is none."""
+    """Return the monitor of a mode in a time domain; raise :class:`UsageError` if there is none."""
     found: Callable[..., EarlyMonitor] | None = domain.part(mode.name)
     if found is None:
         choices = " or ".join(name for name, each in DOMAINS.items() if mode.name in each.parts)

@@ -45,7 +45,7 @@ class Findings(NamedTuple):
 def findings_of(outputs: Sequence[Outputs], trace: DomainTrace, evaluate: Evaluate) -> list[Findings]:
     """Return robustness and verdict of each requirement, each over the trace of its own variables.
 
-    Raises :class:`EvaluationError` where a robustness has no value.
+    Raises :class:`EvaluationError` if a robustness has no value.
     """
     found: dict[int, Findings] = {}
     for numbers in by_start(outputs, trace):

@@ -129,7 +129,7 @@ class Prepared:
             return [self.part([i])._evaluate_alone(trace) for i in range(len(self))]
 
     def signals(self, trace: DomainTrace) -> list[Any]:
-        """Return the robustness signal of each requirement; raise :class:`EvaluationError` where one is undefined."""
+        """Return the robustness signal of each requirement; raise :class:`EvaluationError` if one is undefined."""
         assert self.robustness is not None
         found = trace.signals(self._run[0](trace))
         return [found[output] for output in self.outputs]
@@ -242,7 +242,7 @@ class Prepared:
                     violated += [at for at in (reduced[window][1],) if at is not None]
                 elif output is not None and not values[output] > 0:
                     violated.append(0)
-            # Programs that somebody has forged may be false without any part that is.
+            # A forged program may be false although none of its parts is.
             found.append(Found(satisfied=False, violation=min(violated, default=None)))
         return found
 

@@ -68,7 +68,7 @@ def carried_program(
     grounded = domain.ground(*(output for pair in pairs.values() for output in pair))
     cores = [_with_parameters(desugar(each), structural) for each in grounded]
     program = compile_program(cores, domain.step, inputs, domain=type(domain))
-    # What delays a parameter comes from it, too.
+    # A delayed parameter is derived from the parameter, too.
     constants = [
         origin if instruction.opcode == "const" else None
         for instruction, origin in zip(program.instructions, program.origins, strict=True)
@@ -102,7 +102,7 @@ def bounds_program(
 ) -> Program:
     """Compile a requirement for carriers that report outputs :data:`BOUNDS`, in discrete time.
 
-    Arguments as for :func:`carried_program`; ``ranges``: of variables, which bound samples that did not come yet. The
+    Arguments as for :func:`carried_program`; ``ranges``: of variables, which bound future samples. The
     future may be unbounded.
 
     >>> from rtamt.language.parsing.parser import parse_formula

@@ -45,7 +45,7 @@ class Tracker:
         self._pending = (int(positions[-1]), float(values[-1]))
 
     def finish(self) -> None:
-        """Take the last value: nothing comes after it."""
+        """Take the last value of the trace."""
         if self._pending is not None:
             position, value = self._pending
             stop = max(position, self._begin) + 1 if self._dense else position + 1

@@ -126,7 +126,7 @@ def _abbreviate(text: str) -> str:
 
 
 def _facts(path: str) -> str:
-    """Return size and date of a file; "" of what is none."""
+    """Return size and date of a file; "" if it is not a file."""
     if not os.path.isfile(path):
         return ""
     status = os.stat(path)
@@ -135,7 +135,7 @@ def _facts(path: str) -> str:
 
 
 def _row(outcome: Outcome) -> Row:
-    """Return what came of one requirement over one trace, as text."""
+    """Return the result of one requirement over one trace as text."""
     if not outcome.result_known:
         reason = outcome.error or outcome.unchecked
         return Row(outcome.requirement, outcome.trace, outcome.verdict, error=reason)

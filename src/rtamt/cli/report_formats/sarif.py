@@ -1,4 +1,4 @@
-"""SARIF 2.1.0, which code hosts show beside the code: a rule for each requirement, a result for each recording."""
+"""SARIF 2.1.0, which code hosts show next to the code: one rule per requirement, one result per recording."""
 
 from __future__ import annotations
 

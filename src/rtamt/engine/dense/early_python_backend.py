@@ -1,6 +1,6 @@
 """The definition of bounds and early verdicts behind the interface of the core's ``DenseEarlyMonitor``.
 
-Every question is answered from all samples that came, so that it is slow, and needs memory for the whole trace.
+Every query evaluates all samples so far: it is slow, and needs memory for the whole trace.
 Times are ticks; runs are half-open, from ``begin`` up to and without ``end``.
 """
 
@@ -35,7 +35,7 @@ Output: TypeAlias = "Sequence[tuple[Formula, tuple[str, ...]]]"
 
 @dataclass(frozen=True, slots=True)
 class _Came:
-    """All that came: of each input the bounds of its samples by tick, how many it had, and the newest tick of any."""
+    """The samples so far: their bounds by input and tick, their number per input, and the newest tick."""
 
     known: tuple[Mapping[int, Pair], ...]
     counts: tuple[int, ...]
@@ -70,8 +70,8 @@ class _Report:
 class PythonDenseEarlyMonitor:
     """Verdicts (``verdicts``) or bounds of some outputs, the first of which is that of the start.
 
-    ``hidden``: how many outputs are asked for at the start alone. ``lateness``: in ticks, by how much samples may come
-    late after the newest sample of any input; None where those of each input come in order.
+    ``hidden``: how many outputs are requested only at the start. ``lateness``: in ticks, how long after the newest
+    sample of any input a sample may arrive; None if those of each input arrive in order.
     """
 
     def __init__(
@@ -87,7 +87,7 @@ class PythonDenseEarlyMonitor:
     ) -> None:
         self._waits = causes  # for all traces to start
         self._before: _Came | None = None  # the last event
-        self._causes: dict[int, StepCauses | None] = {}  # of all formulas that were asked for
+        self._causes: dict[int, StepCauses | None] = {}  # of all formulas that were requested
         self._formulas, self._hidden = tuple(outputs), hidden
         self._ranges = dict(zip(names, ranges, strict=True))
         self._names = tuple(names)
@@ -103,9 +103,9 @@ class PythonDenseEarlyMonitor:
     # ---- samples ---------------------------------------------------------------------------------
 
     def learn(self, tick: int, values: Sequence[tuple[int, float, float]], after: int) -> None:
-        """Take samples of some inputs, (input, lower, upper), at a tick; ``after``: how many the caller knows of.
+        """Take samples of some inputs, (input, lower, upper), at a tick; ``after``: the caller's number of samples.
 
-        Until every input has a sample, and earlier ones can no longer come, the trace has not started.
+        The trace starts when every input has a sample, and earlier ones can no longer arrive.
         """
         if after != self.samples or self.finished or tick <= self.closed:
             raise RefusedError("order")
@@ -118,7 +118,7 @@ class PythonDenseEarlyMonitor:
         self._take(came, tick)
 
     def watermark(self, tick: int) -> None:
-        """Nothing at or before a tick will come."""
+        """Declare that no sample at or before a tick will arrive."""
         self._take(self._came.closed_up_to(tick), tick)
 
     def finish(self) -> None:
@@ -208,7 +208,7 @@ class PythonDenseEarlyMonitor:
 
     @property
     def samples(self) -> int:
-        """How many samples of any input came."""
+        """The number of samples of all inputs so far."""
         return sum(self._came.counts)
 
     @property
@@ -218,17 +218,17 @@ class PythonDenseEarlyMonitor:
 
     @property
     def last_times(self) -> tuple[int, ...]:
-        """The tick of the newest sample of each input, NEVER while there is none."""
+        """The tick of the newest sample of each input, NEVER if there is none."""
         return tuple(max(known, default=NEVER) for known in self._came.known)
 
     @property
     def newest(self) -> int:
-        """The tick of the newest sample of any input, NEVER while there is none."""
+        """The tick of the newest sample of any input, NEVER if there is none."""
         return self._came.newest
 
     @property
     def closed(self) -> int:
-        """The last tick at or before which no sample will come, NEVER while there is none."""
+        """The last tick at or before which no sample will arrive, NEVER if there is none."""
         return self._came.closed
 
     @property
@@ -300,7 +300,7 @@ class PythonDenseEarlyMonitor:
         return None if found is None else found.times[0]
 
     def at_start(self) -> Pair:
-        """The bounds at the start of the trace: of several formulas each at the start of its own."""
+        """The bounds at the start of the trace, for each formula at the start of its own trace."""
         return _at_starts(self._parts(0, self._came))
 
     def _caused(self, formula: int) -> StepCauses | None:
@@ -315,7 +315,7 @@ class PythonDenseEarlyMonitor:
             return None
         before = None if self._before is None else self._knowledge(self._before)
         if before is not None and before.start is None:
-            before = None  # what came until all traces have started is one event
+            before = None  # what arrived until all traces have started is one event
         return least_caused(
             [
                 causation(f, None if before is None else before.of(names), now.of(names), self._tick)

@@ -100,7 +100,7 @@ class UndefinedInPartError(Exception):
 
 
 class GroupSession(Session):
-    """Requirements with different variables, and formulas that are watched beside them."""
+    """Requirements with different variables, and the watched formulas."""
 
     def __init__(
         self,

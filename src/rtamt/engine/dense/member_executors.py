@@ -1,7 +1,7 @@
 """What executes quantifiers in dense time: one executor for each member that is present.
 
 A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
-state; one that is gone runs on, as absent, until what it had can no longer matter.
+state; that of an absent member runs until its samples can no longer matter.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ class _Running:
         return Steps(ticks, given, before)
 
     def is_over(self, known: int) -> bool:
-        """Return whether the member is gone for so long that nothing of it matters."""
+        """Return whether the member has been absent for so long that it no longer matters."""
         keep = self.plan.keep
         return keep is not None and self.gone is not None and known - self.gone > keep
 

@@ -255,7 +255,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         """Call the back end; convert its failures to errors."""
         try:
             return call()
-        except self._refused:  # all was checked, but a concurrent update came first
+        except self._refused:  # all was checked, but a concurrent update arrived first
             raise in_use() from None
         except self._undefined as error:
             raise self._no_value(error, scale) from None

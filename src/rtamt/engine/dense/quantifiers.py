@@ -38,7 +38,7 @@ class DenseMemberMonitor(QuantifierMonitor):
     Built by ``Specification.monitor(time="dense")``. :meth:`update` takes the fields of each member by name,
     ``**{"car_3.x": 5.0}``, or as an object with those fields, ``car_3=car``. A field holds its value until its next
     sample; None ends the presence of the member. Members do not delay the result: it is known up to the earliest last
-    sample of any other variable, so a sample of a member comes before that of the other variables, or with it.
+    sample of any other variable, so a sample of a member arrives before that of the other variables, or with it.
 
     >>> import rtamt
     >>> monitor = rtamt.parse('group cars = "car_*"; forall v in cars: v.x > ego').monitor(time="dense")

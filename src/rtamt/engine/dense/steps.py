@@ -131,7 +131,7 @@ class Inputs:
 
     @property
     def end(self) -> int | None:
-        """The end of the trace, should no more samples come."""
+        """The end of the trace if no more samples arrive."""
         return max((self.last[name] for name in self.names), default=self.now)
 
     def cut(self, until: int) -> tuple[int | None, dict[str, Steps]]:

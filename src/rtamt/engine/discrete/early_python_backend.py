@@ -1,6 +1,6 @@
 """The definition of bounds and early verdicts behind the interface of the core's ``EarlyMonitor``, discrete time.
 
-Every question is answered from all samples that came, so that it is slow, and needs memory for the whole trace.
+Every query evaluates all samples so far: it is slow, and needs memory for the whole trace.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class PythonEarlyMonitor:
         return Knowledge(columns, n, self._ranges, finished, closed)
 
     def _answer_anew(self) -> None:
-        """Forget the answers, which what came makes obsolete: of each formula by its identity."""
+        """Drop the cached answers, by formula identity, which new samples make obsolete."""
         self._found: dict[int, Enclosure] = {}
         self._parts: dict[int, list[Enclosure]] = {}
         self._causation: dict[int, list[Causation]] = {}
@@ -199,7 +199,7 @@ class PythonEarlyMonitor:
             return inf, -inf
         found = self._causation.get(id(formula), [])
         if sample >= len(found):
-            until = max(sample, self.newest) if sample else 0  # the start is often all that is asked for
+            until = max(sample, self.newest) if sample else 0  # the start is often all that is requested
             found = self._causation[id(formula)] = causation(
                 formula, self._knowledge(), self._period, until + 1
             )
@@ -226,7 +226,7 @@ class PythonEarlyMonitor:
         return runs
 
     def watermark(self, time: float) -> None:
-        """Nothing at or before a time will come."""
+        """Declare that no sample at or before a time will arrive."""
         if self.newest >= 0:
             steps = floor((time - self._last) / float(self._period) + self._tolerance)
             before, self.closed = self.closed, max(self.closed, self.newest + steps)

@@ -118,7 +118,7 @@ class DiscreteFleet:
         return timestamps.seconds, found
 
     def check(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> None:
-        """Raise :class:`TraceError` for a value that is none of its type."""
+        """Raise :class:`TraceError` for a value that does not have its type."""
         for name, type_ in self._monitor._types.items():
             require_truths(
                 name,
@@ -211,7 +211,7 @@ class DiscreteFleet:
         return int(self._core.size)
 
     def contains(self, key: NDArray[Any]) -> bool:
-        """Return whether the key of an array of one is there."""
+        """Return whether the key in an array of one element exists."""
         return bool(self._core.contains(rows_of(key)))
 
     def keys(self) -> list[Any]:

@@ -1,7 +1,7 @@
 """What executes quantifiers in discrete time: one executor for each member that is present.
 
 A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
-state; one that is gone runs on, as absent, until what it had can no longer matter.
+state; that of an absent member runs until its samples can no longer matter.
 """
 
 from __future__ import annotations

@@ -133,7 +133,7 @@ class PythonMonitor:
     def push(
         self, times: FloatArray, columns: Sequence[FloatArray], after: int | None = None
     ) -> list[FloatArray]:
-        """Take many samples, checked by the caller, unless others than ``after`` samples came before."""
+        """Take many checked samples, unless the number of earlier samples differs from ``after``."""
         if after not in {None, self._monitor.samples}:
             raise in_use()
         off = [self._off(a, b) for a, b in zip([self._last_time, *times], times, strict=False)]

@@ -97,7 +97,7 @@ class Reading(NamedTuple):
     """How ``DirectEvaluator`` of the core has read recordings: their variables, their period, whether it was given.
 
     What it returns is ``found``: memory in rows, the number of samples, and whether there are timestamps. Arrays are
-    made of it when they are asked for.
+    made of it when they are requested.
     """
 
     names: tuple[str, ...]

@@ -173,7 +173,7 @@ class ReorderBuffer:
         return int(self._core.state_bytes)
 
     def contains(self, key: NDArray[Any]) -> bool:
-        """Return whether the key of an array of one is there."""
+        """Return whether the key in an array of one element exists."""
         return bool(self._core.contains(rows_of(key)))
 
     def keys(self) -> list[Any]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Complaint = tuple[str, Span]
     Tokens = Sequence[Token]
 
-#: What stands for characters that other notations use.
+#: Replacements for characters of other notations.
 _MEANT = {
     "#": "a comment begins with //",
     **{
@@ -149,7 +149,7 @@ def is_function(language: Language, word: str) -> bool:
 
 
 def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, Token]:
-    """Return the operator that was probably meant, and its position: ``x adn y``, ``alway x``."""
+    """Return the probably intended operator, and its position: ``x adn y``, ``alway x``."""
     infix = [s for op in language for s in op.spellings if language.infix(s) is op and len(s) > 2]
     prefix = [s for op in language for s in op.spellings if op.fixity is Fixity.PREFIX and len(s) > 2]
     for suspect, words in ((token, infix), (before, prefix)):

@@ -86,7 +86,7 @@ class ImportParser(RequirementParser):
         self._templates: dict[str, Template] = {}
         self._tables: dict[str, Operator] = {}
         self._groups: dict[str, Group] = dict(scope.groups)
-        #: The names of what is wrong, which stand for anything.
+        #: Names from wrong statements, which match anything.
         self._unknown: dict[str, Argument] = {}
 
     @abstractmethod
@@ -207,7 +207,7 @@ class ImportParser(RequirementParser):
         return self.error(message, token.span, type(error)) if outermost else type(error)(message)
 
     def _from(self, name: str) -> str:
-        """Return where a name comes from, for messages: "" if it is of this text."""
+        """Return the origin of a name for messages: "" for this text."""
         return f" (it is imported from '{called(self.origins[name])}')" if name in self.origins else ""
 
     def _take_name(self, what: str, *, quotes: bool = False) -> Token:

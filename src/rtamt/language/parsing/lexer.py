@@ -30,7 +30,7 @@ from rtamt.lazy_tuples import NamedTuple
 if TYPE_CHECKING:
     from rtamt.language.operators import Language
 
-#: Not an operator, but one token, so that ``gap => 5`` gets a message of its own.
+#: Not an operator, but one token, so that ``gap => 5`` has its own message.
 NO_ARROW = "=>"
 
 PUNCTUATION = [*"( ) [ ] , : ; = @ %".split(), NO_ARROW]
@@ -64,7 +64,7 @@ class Token(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The name that it stands for, without quotes."""
+        """The name without quotes."""
         return unquoted(self.text) if self.kind == "quoted" else self.text
 
     def __str__(self) -> str:
@@ -72,7 +72,7 @@ class Token(NamedTuple):
 
 
 class Tokens(Sequence[Token]):
-    """The tokens of a text, the last one of kind ``end``: columns, and a :class:`Token` where one is asked for.
+    """The tokens of a text, the last one of kind ``end``: columns, and a :class:`Token` where one is requested.
 
     Most tokens are read once, by their characters alone.
     """
@@ -225,5 +225,5 @@ def quoted(name: str) -> str:
 
 
 def unquoted(text: str) -> str:
-    """Return the name that a token of kind ``quoted`` stands for."""
+    """Return the name of a token of kind ``quoted``."""
     return text[1:-1].replace('""', '"')

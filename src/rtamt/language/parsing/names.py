@@ -159,7 +159,7 @@ class NameParser:
         return before is None or before.kind == "symbol" or before.end < slash.start
 
     def _meaning(self, name: str, span: Span, *, plain: bool = True) -> Formula:
-        """Return the formula that a name stands for."""
+        """Return the formula of a name."""
         scope = self.scope
         if scope.free:
             return self._undefined(name, span, plain=plain)
@@ -192,7 +192,7 @@ class NameParser:
         return member or self._undefined(name, span, plain=plain)
 
     def _undefined(self, name: str, span: Span, *, plain: bool) -> Formula:
-        """Return what a name stands for that is not defined: a variable, if these need no declaration."""
+        """Return the meaning of an undefined name: a variable, if these need no declaration."""
         if plain:
             if name == INFINITY:
                 return Const(inf, span)
@@ -219,7 +219,7 @@ class NameParser:
 
     @abstractmethod
     def _member(self, name: str, span: Span) -> Const | None:
-        """Return the member of an enumeration that a name stands for, if there is one."""
+        """Return the enumeration member of a name, if there is one."""
 
     @abstractmethod
     def _undeclared(self, name: str, span: Span) -> SpecificationError:

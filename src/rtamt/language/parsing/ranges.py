@@ -1,4 +1,4 @@
-"""What a declaration says of the values of a variable: ``input float speed [m/s] in [0, 60] rate [-8, 3]``.
+"""The declared range and rate of a variable: ``input float speed [m/s] in [0, 60] rate [-8, 3]``.
 
 ::
 
@@ -7,7 +7,7 @@
 
 Analyses that know no recording suppose that the variable stays in its range, and that its change from sample to sample,
 divided by the sampling period in seconds, stays in its rate. Verdicts before the horizon suppose the range of
-samples that did not come yet, and reject a sample outside. Evaluations of exact recordings check neither.
+future samples, and reject a sample outside. Evaluations of exact recordings check neither.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""All errors of a text: after each, the parser goes on where the next statement begins.
+"""Find all errors of a text: after each, the parser continues at the next statement.
 
 What a wrong statement declares stands for anything from there on, like a parameter of a template, so that no error
 follows from another one.
@@ -153,7 +153,7 @@ class _RecoveringParser(DocumentParser):
         return name in self._declarations or name in self._given or name in self._taken_names()
 
     def _assume(self, begin: int, end: int) -> None:
-        """Let what a wrong statement may have declared stand for anything."""
+        """Let names that a wrong statement may have declared match anything."""
         names = list(self._names_in(begin, end))
         self._unknown |= {name: anything(name) for name in names}
         for name in names:
@@ -198,7 +198,7 @@ class _RecoveringParser(DocumentParser):
                     yield name
             at = last + 1
 
-    # ---- what stands for anything ----------------------------------------------------------------
+    # ---- wildcards -------------------------------------------------------------------------------
 
     def _parse_application(self, at: int) -> Formula | None:
         """Take the use of a wrong template or table for anything."""
@@ -223,7 +223,7 @@ class _RecoveringParser(DocumentParser):
             return Var(name, span, UNKNOWN)
         return super()._meaning(name, span, plain=plain)
 
-    # ---- where it goes on ------------------------------------------------------------------------
+    # ---- resynchronisation -----------------------------------------------------------------------
 
     def _next_statement(self, begin: int) -> int:
         """Return the index of the token that begins the statement after the one at ``begin``."""
@@ -254,7 +254,7 @@ class _RecoveringParser(DocumentParser):
         )
 
     def _cannot_continue(self, at: int) -> bool:
-        """Return whether an operand stands at the beginning of a line, and the line before ends with one."""
+        """Return whether a line begins with an operand, and the line before ends with one."""
         before, text = self.texts[at - 1], self.texts[at]
         complete = before == ")" or is_numeral(before) or is_quoted(before) or self._is_plain(before)
         operand = is_name(text) or is_quoted(text) or is_numeral(text)

@@ -6,7 +6,7 @@
     duration = number , [ "/" , number ] , [ unit of time ]
 
 It holds in discrete time: the sampling period and, with ``hold``, that each variable has its latest value at each
-instant, whenever its samples came; with ``skip nan`` samples that are NaN are left out.
+instant, whenever its samples arrived; with ``skip nan`` samples that are NaN are left out.
 """
 
 from __future__ import annotations

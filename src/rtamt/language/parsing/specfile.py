@@ -93,7 +93,7 @@ def parse_document(
     return DocumentParser(text, language, unit, scope, parameters or {}, library, truths).document()
 
 
-#: The message for texts that only others can import, and that for declarations that come too late.
+#: The messages for texts that can only be imported, and for declarations after formulas.
 NO_FORMULA = "the text has declarations but no formula"
 LATE = "declarations and annotations stand before the first formula"
 
@@ -137,7 +137,7 @@ class DocumentParser(GroupParser):
         )
 
     def _statements(self) -> None:
-        """Take what stands here up to the end: declarations, unless there are formulas before, and formulas."""
+        """Parse the rest of the text: declarations, unless formulas precede them, and formulas."""
         if self.index == 0:
             self._called = self._header()
         while not self._found and self._begins(self._import):
@@ -213,7 +213,7 @@ class DocumentParser(GroupParser):
                     pending[name] = f"'{name}' is used in its own definition"
                 formula = self.formula()
                 whole = Span(self.starts[first], self.ends[self.index - 1])
-                # A name stands for what it was given, a Boolean for a number too.
+                # A name has the type of its formula; a Boolean is also a number.
                 found.append(
                     Assertion(name, self.standing_alone(formula, whole, named=name is not None), whole)
                 )

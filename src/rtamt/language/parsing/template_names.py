@@ -1,6 +1,6 @@
-"""Names in the formula of a template: what its parameters stand for.
+"""Names in the formula of a template: the arguments of its parameters.
 
-A parameter stands for a formula, or for a signal whose fields are read, or bounds an interval.
+A parameter is a formula, a signal whose fields are read, or the bound of an interval.
 """
 
 from __future__ import annotations

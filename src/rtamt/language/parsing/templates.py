@@ -9,7 +9,7 @@
     duration  = number , [ "/" , number ] , unit of time
 
 A use stands for the formula of the template, read again with what its parameters mean there: arguments are
-shared, not copied, and so are equal uses. The formula knows nothing of templates.
+shared, not copied, and so are equal uses. The formula itself has no reference to templates.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Argument(NamedTuple):
 
 
 def anything(name: str) -> Argument:
-    """Return what stands for any formula or duration."""
+    """Return the placeholder for any formula or duration."""
     return Argument(Var(name, type=UNKNOWN), unknown=True)
 
 
@@ -318,7 +318,7 @@ def placed(formula: Formula, span: Span, borrowed: set[int] | frozenset[int] = f
 def all_placed(
     formulas: Iterable[Formula], span: Span, borrowed: set[int] | frozenset[int] = frozenset()
 ) -> list[Formula]:
-    """Do what :func:`placed` does for formulas that share nodes, and go on sharing them."""
+    """Apply :func:`placed` to formulas that share nodes, and keep the sharing."""
     made: dict[int, Formula] = {}
     found = []
     for formula in formulas:

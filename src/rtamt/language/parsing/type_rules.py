@@ -84,7 +84,7 @@ def as_formula(formula: Formula) -> Formula:
 def typed(
     op: Operator, args: Sequence[Formula], texts: Texts, member: MemberText
 ) -> tuple[Operator, tuple[Formula, ...]]:
-    """Return the operator and the operands that are meant; raise :class:`MistypedError` where a type is wrong.
+    """Return the intended operator and operands; raise :class:`MistypedError` if a type is wrong.
 
     A Boolean in place of a formula is its truth. Members of enumerations are resolved by the type of the other
     operand, and compared by truth.

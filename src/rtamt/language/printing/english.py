@@ -36,7 +36,7 @@ def to_english(
     units: Mapping[str, str] | None = None,
     limit: int = LONGEST,
 ) -> str:
-    """Return what a formula says, without a capital letter and a full stop.
+    """Return a formula in English, without a capital letter and a full stop.
 
     ``names``: from the ID of a part to the name that stands for it. ``units``: of variables, constants and parameters.
 

@@ -93,7 +93,7 @@ def _latex_binder(symbol: str, binder: Binder) -> str:
 
 
 def _latex_of(op: Operator, operands: int) -> str:
-    """Return an operator's template for so many operands, or one built from its first spelling."""
+    """Return an operator's template for a number of operands, or one built from its first spelling."""
     if op.latex:
         return op.latex
     word = op.spellings[0].replace("{", "{{").replace("}", "}}")

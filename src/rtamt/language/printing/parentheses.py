@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def written_operand(formula: Formula) -> Formula:
-    """Return what stands in the text: a Boolean itself, not its truth; a number, not the guard around it."""
+    """Return the operand as written: a Boolean itself, not its truth; a number, not the guard around it."""
     while isinstance(formula, Apply) and formula.op in (TRUTH, WHERE_PRESENT, PRESENT):
         formula = formula.args[-1]
     return formula
 
 
 def truth_of(node: Apply) -> Piece:
-    """Return what stands for the truth of a Boolean in the text: of a parameter, its value as a formula."""
+    """Return the written form of the truth of a Boolean; for a parameter, its value as a formula."""
     (operand,) = node.args
     return ("true" if operand.value else "false") if isinstance(operand, Parameter) else operand
 

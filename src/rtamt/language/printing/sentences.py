@@ -1,4 +1,4 @@
-"""The sentences of a document: what each requirement says, and what the names in it mean."""
+"""The sentences of a document: each requirement in English, and the meanings of its names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Sentence(NamedTuple):
-    """What a requirement says: ``text`` in English, and for each name in it what that means."""
+    """A requirement in English: ``text``, and the meaning of each name in it."""
 
     text: str
     names: Mapping[str, str]

@@ -58,7 +58,7 @@ class Resolved:
 
 
 def same_text(first: str, second: str) -> bool:
-    """Return whether two units are written alike, apart from spaces."""
+    """Return whether two units are spelled the same, apart from spaces."""
     return "".join(first.split()) == "".join(second.split())
 
 
@@ -89,7 +89,7 @@ def parsed(unit: str) -> Any:
 
 
 def product(powers: Powers) -> Any:
-    """Return a product of units; raise :class:`UnknownUnitError` for a text that is none."""
+    """Return a product of units; raise :class:`UnknownUnitError` for any other text."""
     found = registry().parse_units("")
     for text, exponent in powers:
         unit = parsed(text)

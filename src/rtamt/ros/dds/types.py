@@ -27,7 +27,7 @@ class Types:
 
     ``distro``: such as ``"humble"``. ``folders``: where packages with definitions of the user's own are
     (``<folder>/<package>/msg/<Name>.msg``), besides those that the environment names. Raises
-    :class:`UsageError` where there is no such distribution, or the packages are not installed.
+    :class:`UsageError` if the distribution is unknown, or the packages are not installed.
     """
 
     def __init__(self, distro: str | None = None, folders: Sequence[str] = ()) -> None:

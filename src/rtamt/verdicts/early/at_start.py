@@ -39,7 +39,7 @@ class StartMonitor:
 
     @property
     def samples(self) -> int:
-        """How many samples came."""
+        """The number of samples so far."""
         return self.bounds.samples
 
     @property

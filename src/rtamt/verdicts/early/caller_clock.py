@@ -14,7 +14,7 @@ from rtamt.signals.caller_times import CallerTimes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-#: How many times may be kept before it is looked which of them can still be asked for.
+#: The number of kept times above which those that can no longer be requested are dropped.
 _FEW = 64
 
 
@@ -53,7 +53,7 @@ class CallerClock:
         return copy
 
     def read(self, time: Any, samples: int) -> Timestamp | None:
-        """Return a time, None for a number of seconds; ``samples``: how many came before.
+        """Return a time, None for a number of seconds; ``samples``: the number of earlier ones.
 
         Raises :class:`TraceError` for what is no time, or of another form than the times before.
         """

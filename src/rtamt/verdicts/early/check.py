@@ -64,7 +64,7 @@ def holds_at_end(spec: Specification) -> bool:
 
 
 def in_parts(trace: Trace, size: int = 4096) -> Iterator[Trace]:
-    """Yield a trace as traces that follow one another, each of about so many times.
+    """Yield consecutive parts of a trace, each with about ``size`` timestamps.
 
     >>> import rtamt
     >>> [part["x"].values.tolist() for part in in_parts(rtamt.read({"time": [0, 1, 2], "x": [5, 6, 7]}), 2)]
@@ -102,7 +102,7 @@ class EarlyCheck(ABC):
 
     @property
     def decided(self) -> list[Decided] | None:
-        """What came of each specification; None while one is open."""
+        """The outcome of each specification; None while one is open."""
         return None if self._open or not self._found else [self._found[i] for i in range(len(self._specs))]
 
     @abstractmethod

@@ -91,7 +91,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
 
     @exclusive
     def watermark(self, time: Any) -> Causation:
-        """Declare that no sample at or before a time will come: every variable holds its value up to it.
+        """Declare that no sample at or before a time will arrive: every variable holds its value up to it.
 
         Return by how much that alone violates and satisfies the formula at the start of the trace.
         """

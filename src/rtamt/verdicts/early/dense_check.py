@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class DenseEarlyCheck(EarlyCheck):
     """The check in dense time, whose positions are ticks.
 
-    A chunk may have samples of some variables only, as long as those of each come in order.
+    A chunk may have samples of some variables only; those of each variable must be in order.
     """
 
     def __init__(self, specs: Sequence[Specification]) -> None:

@@ -79,7 +79,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         self._set_time_scale()
 
     def _check_open(self, tick: int, scale: TimeScale) -> None:
-        """Raise the error for a sample of a time at which none can come any more."""
+        """Raise the error for a sample at a time that is already closed."""
         backend = self._backend
         if tick > backend.closed:
             return

@@ -64,7 +64,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
 
     @property
     def _count(self) -> int:
-        """How many samples came, also if they are not in the back end yet."""
+        """The number of samples so far, including those not yet passed to the back end."""
         return self.samples
 
     def _stamp(self, time: Any) -> Timestamp:
@@ -118,7 +118,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         return [low for low, _ in row], [high for _, high in row]
 
     def _check_order(self, time: float) -> None:
-        """Raise the error for a time at which no sample of an ordered trace can come."""
+        """Raise the error for a time at which no sample of an ordered trace can arrive."""
         backend = self._backend
         if backend.newest < 0:
             return
@@ -130,7 +130,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             raise irregular(self.samples, time, last, self._step, self._tolerance)
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
-        """Take a sample that comes after all others, or report what is wrong with it."""
+        """Take the next sample in order, or raise an error."""
         with self._usage:
             flat = self._read_by_formula(values)
             if self._finished:

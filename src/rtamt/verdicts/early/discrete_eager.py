@@ -57,10 +57,10 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
     def explain(self, verdict: Verdict) -> list[Cause]:
         """Return a minimal set of values that decides a verdict of the formula.
 
-        They decide it whatever all other values are, and the last of them came at ``verdict.decided_at``. For monitors
-        made with ``explain=True``, which remember samples, and take each some microseconds slower. A verdict
-        is explained as long as its samples are remembered: until the next one is reported, or for ever if
-        the formula has an operator without an upper bound.
+        They decide it independently of all other values, and the last of them arrived at ``verdict.decided_at``.
+        Needs a monitor made with ``explain=True``, which keeps samples and takes some microseconds longer for each. A
+        verdict can be explained until the next one is reported, or for ever if the formula has an operator without an
+        upper bound.
 
         >>> import rtamt
         >>> spec = rtamt.parse("always[0:9](x >= 3 or y >= 1)")

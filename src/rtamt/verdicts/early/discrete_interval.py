@@ -49,14 +49,14 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _forget(self) -> None:
         super()._forget()
-        # How often the back end took what is no sample: that there is none.
+        # The number of steps of the back end without a sample.
         self._filled = 0
         #: What that changed of each output, since the last sample or watermark.
         self._noted: dict[int, tuple[Any, ...]] = {}
         self._rest: tuple[Any, ...] = ()
         #: Of each output the samples whose bounds were open when the trace ended.
         self._open_at_end: tuple[tuple[int, ...], ...] = ()
-        # Samples that came before it is known where the trace starts.
+        # Samples that arrived before the start of the trace was known.
         self._early: tuple[Any, ...] = ()
         # A back end that has taken them, and what their corrections are replayed on.
         self._rehearsal: tuple[Any, tuple[Any, ...], tuple[Any, ...]] | None = None
@@ -80,7 +80,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         super()._connect(SlowPath(inner_of(backend)) if self._noted else backend)
 
     def _note(self, noted: dict[int, tuple[Any, ...]]) -> None:
-        """Remember what one sample changed beside the last step of the back end."""
+        """Record what one sample changed apart from the last step of the back end."""
         if noted != self._noted:
             self._noted = noted
             self._connect(inner_of(self._backend))

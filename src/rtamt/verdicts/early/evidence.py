@@ -48,7 +48,7 @@ class Evidence:
             self._limit = 2 * len(self._samples) + _FEW
 
     def _trim(self, begin: float) -> None:
-        """Forget what came before a step, but for the values that still hold then."""
+        """Drop the samples before a step, except for values that still hold then."""
         kept: list[Sample] = []
         held: set[str] = set()
         for step, time, values in reversed(self._samples):
@@ -60,7 +60,7 @@ class Evidence:
         self._samples = kept[::-1]
 
     def copied(self) -> Evidence:
-        """Return evidence that goes on independently."""
+        """Return an independent copy."""
         twin = Evidence(self._span, continuous=self._continuous)
         twin._samples, twin._newest, twin._limit = list(self._samples), dict(self._newest), self._limit
         return twin
@@ -70,11 +70,11 @@ class Evidence:
     ) -> list[Cause]:
         """Return the samples that decide a verdict without any other.
 
-        ``decided``: when it was decided, in steps. ``monitor``: makes the monitor anew, without evidence; ``ended``:
+        ``decided``: when it was decided, in steps. ``monitor``: makes a new monitor, without evidence; ``ended``:
         whether the trace has ended.
         """
         samples = self._samples
-        # Those of a variable that lags behind may be earlier than what came before them.
+        # Those of a variable that lags behind may be earlier than what arrived before them.
         last = max((place for place, (step, _, _) in enumerate(samples) if step == decided), default=-1)
         items = [
             (place, name)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import Change, Interval
     from rtamt.signals.time_domain_interface import TimeDomain
 
-#: How many samples come between two snapshots of a monitor that replays corrections.
+#: The number of samples between two snapshots of a monitor that replays corrections.
 _SNAPSHOT_EVERY = 64
 
 STARTS = ("start", "every")
@@ -32,7 +32,7 @@ CORRECTIONS = ("reject", "replay")
 
 
 class LateSampleError(TraceError):
-    """A sample came later than the lateness allows; a :class:`TraceError` to users."""
+    """A sample arrived later than the lateness allows; a :class:`TraceError` to users."""
 
 
 class IntervalMonitor(EarlyMonitor):
@@ -100,7 +100,7 @@ class IntervalMonitor(EarlyMonitor):
             """Take what is known at one time: of a variable a number, bounds ``(lower, upper)``, or None if missing.
 
             Times are seconds, numbers of ``time_unit=``, dates or durations, and reported as they were given.
-            With a ``lateness``, samples may come in any order, variables one by one, and may be made more precise.
+            With a ``lateness``, samples may arrive in any order, variables one by one, and may be made more precise.
             Raises :class:`TraceError` for wrong data and :class:`EvaluationError` where an operation has no
             value; the monitor is then as it was.
             """
@@ -207,7 +207,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @abstractmethod
     def _mark_at(self, time: Any, *, late: bool = False) -> None:
-        """Set the watermark; ``late``: that of samples which come by the lateness after a time."""
+        """Set the watermark; ``late``: whether it follows from the lateness."""
 
     def _watermark(self, time: float) -> None:
         self._backend.watermark(time)

@@ -43,7 +43,7 @@ class EarlyMonitor(OnlineMonitor):
     _reports_causes = False
     #: The conjuncts of the formula, where each has its own trace.
     _requirements: tuple[Formula, ...] = ()
-    #: By how many steps at most a sample may be late; None where all come in order.
+    #: The greatest lateness of a sample in steps; None if all arrive in order.
     _late: int | None = None
     #: Whether samples may correct earlier ones.
     _replays = False
@@ -79,7 +79,7 @@ class EarlyMonitor(OnlineMonitor):
         self._formulas = tuple(map(tracked, self._formulas))
         #: The variables and the channels of their presence, which is what the back end reads.
         self._inputs = (*self.input_names, *self._channels.values())
-        # A formula that is asked for at the start alone is no output.
+        # A formula that is requested only at the start is not an output.
         self._hidden, self._at_start = 0 if every else 1, start
 
     def _prepare(self) -> None:
@@ -105,7 +105,7 @@ class EarlyMonitor(OnlineMonitor):
 
     @property
     def _outputs(self) -> range:
-        """The numbers of the formula, unless it is asked for at the start alone, and of what is watched."""
+        """The indices of the formula, unless it is requested only at the start, and of the watched formulas."""
         return range(len(self._formulas) - self._hidden)
 
     def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
@@ -157,7 +157,7 @@ class EarlyMonitor(OnlineMonitor):
         self._undefined: Any = self._session.undefined
 
     def _forget(self) -> None:
-        """Forget all that came, apart from what the back end remembers."""
+        """Reset everything except the state of the back end."""
         self._finished = False
         if self._explained:
             span = span_of(self._formulas[0], self._step)
@@ -184,7 +184,7 @@ class EarlyMonitor(OnlineMonitor):
 
     @property
     def _settled(self) -> bool:
-        """Whether a sample that is missing now will not come later."""
+        """Whether a sample that is missing now cannot arrive later."""
         return self._late is None
 
     def _known_of(self, name: str, given: Any, index: int, moment: str) -> tuple[float, float] | None:
