@@ -20,7 +20,7 @@ namespace rtamt::c_api {
 inline constexpr const char* out_of_memory = "There is not enough memory.";
 inline constexpr const char* no_place = "The place for the result is null: pass an address.";
 
-// Calls `work` and returns its status; `say` takes the message of a failure.
+// Calls `work` and returns its status; `say` receives the message of a failure.
 template <class Work, class Say>
 [[nodiscard]] rtamt_status guarded(Work&& work, Say&& say) noexcept {
     try {

@@ -52,7 +52,7 @@ class Monitor {
     [[nodiscard]] std::string undefined(const Undefined& failure) const;
 
   private:
-    std::uint32_t checksum_ = 0; // of the program as it came, without parameters set since
+    std::uint32_t checksum_ = 0; // of the program as loaded, without parameters set since
     Metadata metadata_;
     std::unique_ptr<Runner> runner_;
     bool apart_ = false;  // requirements read different inputs

@@ -1,4 +1,4 @@
-// Step functions as events: from each time on the value beside it holds, until the next event, and
+// Step functions as events: from each time on its value holds, until the next event, and
 // the last value for ever. Times are ticks from -(2^63 - 1) on and increase strictly.
 //
 // Memory: 8 bytes and a value an event. A list grows to twice its size, by realloc, which moves
@@ -25,7 +25,7 @@ inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
     return time > never - distance ? never : time + distance;
 }
 
-// Events that somebody else owns.
+// Events owned by others.
 template <class Value>
 struct BasicEvents {
     const std::int64_t* times = nullptr;
@@ -37,7 +37,7 @@ struct BasicEvents {
         return {times + skipped, values + skipped, count - skipped};
     }
 
-    // How many of the first `limit` events come at this time or before.
+    // How many of the first `limit` events are at this time or before.
     [[nodiscard]] std::size_t until(std::int64_t time, std::size_t limit) const noexcept {
         const std::size_t size = std::min(count, limit);
         if (size == 0 || times[size - 1] <= time) return size;

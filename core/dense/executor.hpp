@@ -72,19 +72,19 @@ class BasicExecutor {
     // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
-    // A whole trace at once, the last values held for `extra` ticks more, whatever came before.
-    // Then only another whole trace may follow; after a failure, nothing.
+    // A whole trace at once, the last values held for `extra` more ticks, independent of earlier
+    // input. Then only another whole trace may follow; after a failure, nothing.
     [[nodiscard]] std::optional<Failure> evaluate(Inputs inputs, std::int64_t extra,
                                                   Outputs outputs);
 
-    // A whole trace with an executor of its own.
+    // A whole trace with a separate executor.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program, Inputs inputs,
                                                          std::int64_t extra, Outputs outputs);
 
     [[nodiscard]] const Program& program() const noexcept { return wiring_.program(); }
     [[nodiscard]] bool finished() const noexcept { return finished_; }
 
-    // When the trace begins, once every input has come so far.
+    // When the trace begins, once every input has a sample.
     [[nodiscard]] std::optional<std::int64_t> start() const noexcept;
 
     // Until when an output is known, that instant included.

@@ -173,7 +173,7 @@ bool BasicExecutor<D>::one_block() const noexcept {
     });
 }
 
-// With no more samples to come, steps of the frontier such that each brings about a block of
+// Without further samples, steps of the frontier such that each brings about a block of
 // events.
 template <ValueDomain D>
 std::int64_t BasicExecutor<D>::stride_to(std::int64_t target) const noexcept {

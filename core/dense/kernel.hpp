@@ -47,7 +47,7 @@ class Kernel {
     // checkpoint() and rollback(). A kernel that reads has begun as the one that wrote.
     virtual void transfer(Snapshot& snapshot, std::int64_t frontier) = 0;
 
-    // How many events can come without any more from the operands.
+    // How many events can follow without any more from the operands.
     [[nodiscard]] virtual std::size_t pending() const noexcept { return 0; }
 
     [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;

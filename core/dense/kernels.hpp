@@ -13,7 +13,7 @@ namespace rtamt::dense {
 template <ValueDomain D>
 struct Kernels {
     // Null for inputs and constants: a constant is an event where its reader's operands begin, and
-    // so a kernel of its own for each such lag. `sort` is that of the instruction's value.
+    // so a separate kernel for each such lag. `sort` is that of the instruction's value.
     [[nodiscard]] static std::unique_ptr<Kernel> make(const Instruction& instruction, Sort sort);
 
     [[nodiscard]] static std::unique_ptr<Kernel> constant(Sort sort, std::int64_t lag, double x);

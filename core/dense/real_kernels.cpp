@@ -1,4 +1,4 @@
-// The kernels of reals in a file of their own: in a larger one the compiler inlines less, and
+// The kernels of reals in a separate file: in a larger one the compiler inlines less, and
 // windows are a tenth slower.
 #include "../values/real.hpp"
 

@@ -92,7 +92,7 @@ class Ring {
     // logarithm of the result.
     template <class Condition>
     [[nodiscard]] std::size_t count_while(Condition&& condition) const noexcept {
-        std::size_t low = 0; // so many do
+        std::size_t low = 0; // the number that do
         std::size_t step = 1;
         while (low + step <= size() && condition(low + step - 1)) {
             low += step;

@@ -96,7 +96,7 @@ class Wedge final : public Temporal<typename Algebra::Domain> {
     void arrive(std::int64_t time, Value value) {
         if (!wedge_.empty()) {
             const Value last = wedge_.back().value;
-            if (last == value) return; // the segment goes on
+            if (last == value) return; // the segment continues
             if (Algebra::join(last, value) != value) {
                 wedge_.edit(wedge_.size() - 1).expiry = later(time, width_);
             } else {

@@ -40,7 +40,7 @@ class Chain final : public Kernel {
     [[nodiscard]] std::span<const std::uint32_t> columns() const noexcept { return code_.columns; }
     [[nodiscard]] const void** column(std::size_t i) noexcept { return &operands_[i].values; }
 
-    // For blocks of so many slots.
+    // For blocks of a number of slots.
     void make_room(std::size_t slots);
 
     std::size_t run(const Block& block) noexcept override;

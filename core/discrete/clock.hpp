@@ -1,4 +1,4 @@
-// Which times an online monitor takes, and how evenly they came.
+// The times that an online monitor accepts, and how regular they were.
 //
 // Cost: a few comparisons a sample. Memory: that of timestamps.hpp.
 #pragma once
@@ -20,7 +20,7 @@ class Clock {
         : timestamps_(period, history), period_(period), tolerance_(tolerance),
           slack_(tolerance * period), strict_(strict) {}
 
-    // Whether the next sample may come at this time.
+    // Whether the next sample may have this time.
     [[nodiscard]] bool accepts(double time) const noexcept {
         if (!std::isfinite(time)) return false;
         const auto last = timestamps_.last();
@@ -28,7 +28,7 @@ class Clock {
         return strict_ ? time > *last && even(time - *last) : time >= *last;
     }
 
-    // A sample came at a time that was accepted.
+    // A sample arrived at an accepted time.
     void advance(double time) noexcept {
         if (const auto last = timestamps_.last(); last && !even(time - *last)) ++violations_;
         anchor_ = time;
@@ -36,7 +36,7 @@ class Clock {
         timestamps_.add(time);
     }
 
-    // Samples came one period apart, the first of a trace at time 0. Times are counted from one
+    // Samples arrived one period apart, the first of a trace at time 0. Times are counted from one
     // that was given, so that they do not drift.
     void tick(std::size_t count) noexcept {
         for (std::size_t i = 0; i < count; ++i) {
@@ -46,7 +46,7 @@ class Clock {
         }
     }
 
-    // The time of the sample after so many more that come one period apart.
+    // The time of the sample after a number of further ones, one period apart.
     [[nodiscard]] double upcoming(std::size_t more) const noexcept {
         if (timestamps_.regular()) return timestamps_.regular_at(timestamps_.count() + more);
         return anchor_ + (steps_ + static_cast<double>(more) + 1.0) * period_;

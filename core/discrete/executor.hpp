@@ -90,8 +90,8 @@ class BasicExecutor {
     // program. Discard an executor that could not read.
     void transfer(Snapshot& snapshot);
 
-    // A whole trace at once, `count` values an output, whatever came before. Then only another
-    // whole trace may follow; after a failure, nothing.
+    // A whole trace at once, `count` values an output, independent of earlier input. Then only
+    // another whole trace may follow; after a failure, nothing.
     [[nodiscard]] std::optional<Failure> evaluate(Columns columns, std::size_t count,
                                                   Outputs outputs);
 
@@ -99,7 +99,7 @@ class BasicExecutor {
     [[nodiscard]] std::optional<Failure> evaluate(Columns columns, std::size_t count,
                                                   Outputs outputs, const Part& part);
 
-    // A whole trace with an executor of its own.
+    // A whole trace with a separate executor.
     [[nodiscard]] static std::optional<Failure> evaluate(Program program, Columns columns,
                                                          std::size_t count, Outputs outputs);
 

@@ -294,7 +294,7 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
     wiring_.each_value(last_, [&](auto& value) { snapshot.item(value); });
 }
 
-// Before up to `count` samples of a trace that is there as a whole.
+// Before up to `count` samples of a complete trace.
 template <ValueDomain D>
 void BasicExecutor<D>::begin_trace(std::size_t count) {
     if (slot_ != 0) reset();

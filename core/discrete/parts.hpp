@@ -37,7 +37,7 @@ inline constexpr std::size_t shortest_part = std::size_t{1} << 17U;
 [[nodiscard]] std::vector<std::size_t> parts(const Program& program, std::size_t count,
                                              std::size_t least = shortest_part);
 
-// Executor::evaluate() in parts, between the given places, on so many threads. `executor` is one
+// Executor::evaluate() in parts, between the given places, on several threads. `executor` is one
 // for this program, or null; afterwards one that may be used again, or null.
 [[nodiscard]] std::optional<Failure> evaluate_parts(const Program& program,
                                                     std::span<const std::size_t> places,

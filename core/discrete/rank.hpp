@@ -1,7 +1,7 @@
 // The c-th smallest (or largest) value of the last w slots, +inf (or -inf) where fewer are present:
 // atleast, wasatleast.
 //
-// Each component of a value has a selection of its own. An update is taken back slot by slot: the
+// Each component of a value has its own selection. An update is rolled back slot by slot: the
 // journal holds what was in those that it has overwritten.
 //
 // Cost: O(log w) a sample and component. Memory: 24 bytes a slot and component, touched as far as

@@ -24,7 +24,7 @@ namespace rtamt::discrete {
 
 namespace detail {
 
-// What is not written alike for a number and a vector; `seen`: whether any was NaN.
+// Operations that differ between a number and a vector; `seen`: whether any was NaN.
 RTAMT_INLINE void set_abs(double& x) noexcept {
     x = std::fabs(x);
 }

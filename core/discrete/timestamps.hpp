@@ -75,7 +75,7 @@ class Timestamps {
     // How many of the last times are still here.
     [[nodiscard]] std::size_t available() const noexcept { return std::min(count_, size_); }
 
-    // Writes the last `count` times, oldest first; there are so many available.
+    // Writes the last `count` times, oldest first; that many are available.
     void copy(std::size_t count, double* out) const noexcept {
         const std::size_t stored = std::min(count, count_ - regular_);
         for (std::size_t i = 0; i < count - stored; ++i)

@@ -100,7 +100,7 @@ class TruthBits {
     }
 };
 
-// A ring of truth values, one a slot, and what is written, kept and taken back alike.
+// A ring of truth values, one a slot, and the shared logic to write, keep and roll back.
 class TruthRing : public Kernel {
   public:
     // `width` bits in whole words at `ring`, and as many at `journal`, if there is one.

@@ -31,7 +31,8 @@ struct Item {
 
 class BoundsAtStart {
   public:
-    // The last item is that of the formula. `follows`: whether items go on when they are decided.
+    // The last item is that of the formula. `follows`: whether items continue after they are
+    // decided.
     BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine, bool follows = false);
 
     // The last tick of each node that is looked at, where it is later.
@@ -40,7 +41,7 @@ class BoundsAtStart {
     // What is read at every tick.
     [[nodiscard]] std::vector<std::uint32_t> read_forever() const;
 
-    // Looks at what the engine knows now.
+    // Reads the current bounds of the engine.
     void read(const BoundsEngine& engine);
 
     [[nodiscard]] Bounds value() const noexcept { return bounds_of(items_.size() - 1); }

@@ -34,7 +34,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arri
             inputs_.emplace_back(0, range);
     }
     find_beyond({});
-    (void)propagate(true); // what has no value before it is seen is not known
+    (void)propagate(true); // what has no value before its sample is not known
     clear();
 }
 

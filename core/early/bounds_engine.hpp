@@ -3,12 +3,12 @@
 // Register 0 of a node holds its lower bounds L, register 1 its negated upper bounds -U. As
 // knowledge grows both only rise, so one set of kernels serves both: what takes the greatest in the
 // one takes the least in the other. A node reports changes to its readers in pieces, runs with one
-// old and one new value, and only these are looked at: knowledge may come in any order.
+// old and one new value, and only these are examined: knowledge may arrive in any order.
 //
-// Cost: proportional to the pieces, whatever the bounds. Memory: the runs of what is still wanted.
+// Cost: proportional to the pieces, independent of bounds. Memory: the runs that are still needed.
 //
-// To compute all open ticks anew after each sample is faster for short windows: zone_engine.hpp
-// does where samples come in order.
+// Recomputing all open ticks after each sample is faster for short windows of samples in order: see
+// zone_engine.hpp.
 #pragma once
 
 #include "graph.hpp"
@@ -49,7 +49,7 @@ class BoundsEngine {
     // `ranges`: what is known of each input before it is seen.
     BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arrival);
 
-    // The values of all inputs at a tick later than all before, of which nothing more will come.
+    // The values of all inputs at a tick later than all before; they are final.
     // What fails changes nothing.
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const double> values);
     [[nodiscard]] std::optional<Failure> row(Tick t, std::span<const Bounds> values);
@@ -84,7 +84,7 @@ class BoundsEngine {
         Tick r;
         Bounds bounds;
     };
-    // `newest`: the tick of the newest sample. `ended`: no more will come, and every input holds
+    // `newest`: the tick of the newest sample. `ended`: no more will arrive, and every input holds
     // its last value.
     [[nodiscard]] std::optional<Failure> learn(std::span<const Observation> observations,
                                                Tick newest, bool ended = false);
@@ -110,7 +110,7 @@ class BoundsEngine {
     // What was learned of an input.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick t) const noexcept;
 
-    // Bounds of what a reference points to, at a tick that is wanted.
+    // Bounds of what a reference points to, at a tick that is still needed.
     [[nodiscard]] Bounds at(std::uint32_t ref, Tick t) const noexcept;
 
     // What the last change raised.
@@ -133,7 +133,7 @@ class BoundsEngine {
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
     [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }
 
-    // Nothing more will come at or before `closed`. `wanted`: by node, the first tick that is still
+    // No sample will arrive at or before `closed`. `wanted`: by node, the first tick that is still
     // required by others than nodes. Drops what nothing needs.
     void settle(Tick closed, std::span<const Tick> wanted);
 
@@ -155,7 +155,7 @@ class BoundsEngine {
     struct State {
         Registers own;
         std::array<std::vector<Piece>, 2> out;
-        Tick from = 0;     // the first tick that may still change and is wanted
+        Tick from = 0;     // the first tick that may still change and is needed
         Tick keep = 0;     // the first tick that anybody reads
         Tick to = forever; // the last tick that anybody will read
         Tick beyond = 0;   // how many ticks behind the last sample it is read when the trace ends
@@ -199,11 +199,11 @@ class BoundsEngine {
     std::vector<double> numbers_;              // a row of numbers
     std::vector<std::uint32_t> touched_;       // the atoms of a row
     std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
-    Tick seen_ = -1;                           // the newest tick of which samples came
+    Tick seen_ = -1;                           // the newest tick with samples
     Tick seen_before_ = -1;                    // the last change
     Tick complete_ = -1;                       // up to where all inputs are as well known as ever
     Tick complete_before_ = -1;                // the last change
-    bool ended_ = false;                       // no more samples will come
+    bool ended_ = false;                       // no more samples will arrive
     std::vector<WindowSums> sums_;             // by node, of sums
     std::vector<std::pair<Tick, Tick>> spans_; // where a sum may have changed
 

@@ -11,7 +11,7 @@ namespace rtamt::early {
 
 // ---- a register ---------------------------------------------------------------------------------
 
-// Turns a range of ticks around; false where nothing is in it.
+// Reverses a range of ticks; false if it is empty.
 bool View::turn(Tick& l, Tick& r) const noexcept {
     if (reversed_) l = -std::exchange(r, -l);
     l = std::max<Tick>(0, l); // before the start there is nothing
@@ -163,7 +163,7 @@ void CausedUntil::near(Pieces& pieces, const Run& run) const {
         const double best = goal.most(t + 1, to);
         const double now = Real::meet(cap, best);
         Tick begin = std::max({first, run.begin + 1, rest.begin - 1});
-        if (best < cap) { // until a better goal comes
+        if (best < cap) { // until there is a better goal
             begin = std::max(begin, goal.last<Above>(begin + 1, t, best));
         }
         if (now > -infinity) { // until the best one leaves

@@ -11,7 +11,7 @@ namespace rtamt::early {
 
 namespace {
 
-// How many calls come between two looks at what is not needed any more.
+// The number of calls between two clean-ups of what is no longer needed.
 constexpr std::int64_t pause = 64;
 
 [[nodiscard]] std::vector<Bounds> of_every(std::vector<Bounds> ranges, std::size_t inputs) {

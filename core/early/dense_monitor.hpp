@@ -45,9 +45,9 @@ class DenseMonitor {
     };
     // Samples at one time, which they may have. What fails changes nothing.
     [[nodiscard]] std::optional<Failure> take(Tick time, std::span<const Given> given);
-    // Nothing at or before a time will come.
+    // No sample at or before a time will arrive.
     [[nodiscard]] std::optional<Failure> watermark(Tick time);
-    // Nothing will come: every signal holds its last value.
+    // The trace ends: every signal holds its last value.
     [[nodiscard]] std::optional<Failure> finish();
 
     // The same in steps, where several monitors take what comes or none of them does; for settings

@@ -36,7 +36,7 @@ class DenseOutput {
     [[nodiscard]] Tick held() const noexcept { return held_; }
 
     // Forgets what is final; returns the first tick that is still needed. `closed`: the last tick
-    // of which everything has come.
+    // whose samples have all arrived.
     [[nodiscard]] Tick settle(const BoundsEngine& engine, Tick closed) noexcept;
 
     [[nodiscard]] std::uint32_t ref() const noexcept { return ref_; }

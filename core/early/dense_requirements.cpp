@@ -11,10 +11,10 @@ namespace rtamt::early {
 
 namespace {
 
-// How many calls come between two looks at what is not needed any more.
+// The number of calls between two clean-ups of what is no longer needed.
 constexpr std::int64_t pause = 64;
 
-// The minimum of as many inputs, of which each is final so many ticks after its instant.
+// The minimum of several inputs, each of which is final a number of ticks after its instant.
 [[nodiscard]] Graph minimum_of(std::span<const Tick> horizons) {
     Graph graph;
     graph.inputs = static_cast<std::uint32_t>(horizons.size());
@@ -53,7 +53,7 @@ DenseRequirements::DenseRequirements(std::vector<Group> groups, std::size_t requ
             if (home.group == none) home = {number, i};
         }
         group.settings.several = groups.size() > 1;
-        // Until all traces have started all that came is one event, which causes what it does.
+        // Everything that arrives before all traces have started is one event.
         group.settings.waits = group.settings.several && group.settings.causes.has_value();
         monitors_.emplace_back(std::move(group.graph), std::move(group.settings));
         inputs_.push_back(std::move(group.inputs));

@@ -8,7 +8,7 @@ namespace rtamt::early {
 
 namespace {
 
-// How many samples come between two looks at what is not needed any more.
+// The number of samples between two clean-ups of what is no longer needed.
 constexpr std::int64_t pause = 64;
 
 [[nodiscard]] std::optional<BoundsAtStart> at_start_of(std::vector<Item> items,
@@ -49,7 +49,7 @@ DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
             zone_ = ZoneEngine::of(graph, outputs_, settings.at_start, ranges_, settings.zone);
         }
     }
-    // What is known before any sample came, such as the truth of constants, waits for the first.
+    // Facts known before any sample, such as the truth of constants, are reported with the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
         waiting_[i].begin(engine_, outputs_[i]);
 }
@@ -119,7 +119,7 @@ void DiscreteMonitor::advance(Tick index, double time) {
 
 // Reads what the last change of the engine has changed up to the newest sample.
 void DiscreteMonitor::note(Tick before) {
-    if (zone_) return; // it is asked for changes
+    if (zone_) return; // it provides the changes
     const Tick newest = times_.newest();
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (decides_) {

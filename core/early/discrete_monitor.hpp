@@ -2,7 +2,7 @@
 // out.
 //
 // Ticks are indices of samples, of which the first is 0. Where windows are short, bounds at all
-// open ticks are computed anew after each sample (zone_engine.hpp); else what changes is followed.
+// open ticks are recomputed after each sample (zone_engine.hpp); else changes are propagated.
 //
 // Cost: that of the engine. Memory: its runs, and times as SampleTimes keeps them.
 #pragma once
@@ -32,10 +32,10 @@ struct DiscreteSettings {
     std::vector<Bounds> ranges;         // of the inputs
     double period = 0;
     double tolerance = 0;              // in periods
-    std::optional<Tick> lateness;      // by how many samples at most; none: samples come in order
+    std::optional<Tick> lateness;      // by how many samples at most; none: samples are in order
     bool decides = false;              // verdicts; if not, bounds
     std::optional<CauseGraph> causes;  // what samples cause, in addition to bounds
-    Tick zone = ZoneEngine::crossover; // up to where bounds are computed anew
+    Tick zone = ZoneEngine::crossover; // up to where bounds are recomputed
 };
 
 class DiscreteMonitor {
@@ -50,17 +50,17 @@ class DiscreteMonitor {
     [[nodiscard]] std::optional<Tick> place(double time) const noexcept {
         return times_.place(time);
     }
-    // Whether a sample may come where all come in order.
+    // Whether a sample at this time is in order.
     [[nodiscard]] bool in_order(Tick index) const noexcept;
 
-    // The values or bounds of all inputs at a sample that comes in order. What fails changes
+    // The values or bounds of all inputs at the next sample in order. What fails changes
     // nothing.
     template <class Value>
     [[nodiscard]] std::optional<Failure> row(Tick index, double time, std::span<const Value> row);
     // Those of some inputs at any sample after `closed`, within what is known of them.
     [[nodiscard]] std::optional<Failure> learn(Tick index, double time,
                                                std::span<const Observation> observations);
-    // Nothing at or before a time will come.
+    // No sample at or before a time will arrive.
     [[nodiscard]] std::optional<Failure> watermark(double time);
 
     // What the end of the trace makes of bounds: of each output those from a tick on, and those at
@@ -73,7 +73,7 @@ class DiscreteMonitor {
         std::vector<Rest> outputs;
         std::optional<Bounds> at_start;
     };
-    // Nothing will come. Verdicts are then in decisions(), and there are no bounds.
+    // The trace ends. Verdicts are then in decisions(), and there are no bounds.
     [[nodiscard]] std::variant<End, Failure> finish();
 
     // ---- results
@@ -110,7 +110,9 @@ class DiscreteMonitor {
     [[nodiscard]] Tick newest() const noexcept { return times_.newest(); }
     [[nodiscard]] double last_time() const noexcept { return times_.last(); }
     [[nodiscard]] double earliest() const noexcept { return times_.earliest(); }
-    [[nodiscard]] Tick closed() const noexcept { return closed_; } // nothing up to here will come
+    [[nodiscard]] Tick closed() const noexcept {
+        return closed_;
+    } // no sample up to here will arrive
     [[nodiscard]] bool late() const noexcept { return lateness_.has_value(); }
     [[nodiscard]] bool finished() const noexcept { return finished_; }
     [[nodiscard]] bool computes_zone() const noexcept { return zone_.has_value(); }

@@ -41,7 +41,7 @@ inline void transfer(Snapshot& snapshot, std::vector<Decision>& decisions) {
 
 class EagerVerdicts {
   public:
-    // What is decided before any sample came; the first is to date it.
+    // The verdicts decided before any sample; they get the time of the first.
     void begin(const BoundsEngine& engine, std::uint32_t ref) {
         for (Tick t = 0; t < forever;) {
             const Run lower = engine.runs(ref, 0).at(t);

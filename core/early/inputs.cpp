@@ -1,4 +1,4 @@
-// What becomes known of the inputs: atoms and maps are computed anew where it may change them.
+// New knowledge of the inputs: atoms and maps are recomputed where it may change them.
 #include "bounds_engine.hpp"
 
 #include <algorithm>

@@ -103,7 +103,7 @@ void BoundsEngine::rank(std::uint32_t index, int reg, bool up) {
             }
         };
         const Tick t = std::max(state.from, plus(piece.l, -own.high));
-        // All is alike from the last run of the operand on.
+        // The value is constant from the last run of the operand on.
         const Run rest = operand.at(forever);
         const Tick tail = std::max(t, plus(rest.begin, -own.low));
         const Tick far = plus(piece.r, -own.low);

@@ -1,4 +1,4 @@
-// The times of samples by their index, where samples come about a period apart.
+// The times of samples by their index, for samples about one period apart.
 //
 // Cost: a comparison a sample. Memory: two words for each sample that does not come exactly a whole
 // number of periods after the last such sample; none while all others do.

@@ -54,7 +54,7 @@ void Samples::close(Tick time) noexcept {
     find_start();
 }
 
-// Behind what is closed no sample can come, so that a first one there is the first of all.
+// No sample can arrive up to the closed tick, so the first one after it is the first of all.
 std::optional<Tick> Samples::first_start() const noexcept {
     if (now_.start || inputs_.empty()) return now_.start;
     Tick start = -forever;

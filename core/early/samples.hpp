@@ -1,11 +1,11 @@
 // Samples of step signals, each with its own times, and what of the signals they make known.
 //
 // A sample holds its value until the next one of its input. Its own tick is known at once; what
-// follows, as far as no other sample of the input can come any more: up to its newest sample where
-// samples of an input come in order, else up to what is closed. The trace starts at the latest
-// first sample of an input, when no earlier one can come; samples are kept until then.
+// follows, as far as no other sample of the input can arrive: up to its newest sample if
+// samples of an input are in order, else up to the closed tick. The trace starts at the latest
+// first sample of an input, when no earlier one can arrive; samples are kept until then.
 //
-// Cost: a search for each sample; samples that come late move those after them. Memory: the samples
+// Cost: a search for each sample; late samples move those after them. Memory: the samples
 // behind what is known, and one more for each input.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace rtamt::early {
 class Samples {
   public:
     // `lateness`: by how many ticks a sample may be older than the newest one of any input; none:
-    // the samples of an input come in order.
+    // the samples of an input are in order.
     // `waits`: whether the trace starts at release() or later.
     Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness, bool waits = false);
 
@@ -37,7 +37,7 @@ class Samples {
     // A sample of another trace, of this time, has come.
     void reach(Tick time) noexcept;
 
-    // Nothing at or before a time will come; nothing at all.
+    // No sample at or before a time will arrive; none at all.
     void close(Tick time) noexcept;
     void finish() noexcept { close(at_end); }
     [[nodiscard]] bool ended() const noexcept { return now_.closed == at_end; }
@@ -60,7 +60,7 @@ class Samples {
     // The newest sample of any input, and of one.
     [[nodiscard]] std::optional<Tick> newest() const noexcept { return now_.newest; }
     [[nodiscard]] std::optional<Tick> newest(std::uint32_t input) const noexcept;
-    // Nothing at or before this time will come.
+    // No sample at or before this time will arrive.
     [[nodiscard]] std::optional<Tick> closed() const noexcept;
     // Up to which tick of the trace each input is known.
     [[nodiscard]] const std::vector<Tick>& settled() const noexcept { return settled_; }

@@ -1,6 +1,6 @@
 // A step function of time as its maximal runs, in an ordered map.
 //
-// Runs lie in chunks; a directory keeps the first tick of each chunk. The last run goes on for
+// Runs lie in chunks; a directory keeps the first tick of each chunk. The last run continues for
 // ever; runs that nothing needs any more are dropped at the front.
 //
 // Cost: a search in the directory and one in a chunk for each access; a chunk is moved in part when
@@ -139,7 +139,7 @@ inline auto StepMap<Value>::find(Tick t) const noexcept -> Place {
         --high;
         if (high - low >= near && chunk.start[high - near] <= t) { // most accesses are near the end
             int later = 0;
-            for (int i = 0; i < near; ++i) // without branches, which nobody predicts
+            for (int i = 0; i < near; ++i) // without branches, which are unpredictable
                 later += chunk.start[high - i] > t ? 1 : 0;
             return {c, high - later};
         }

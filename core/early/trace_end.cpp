@@ -1,5 +1,5 @@
-// Bounds at the end of a trace: the samples that were expected do not come, so that windows are cut
-// there. That is no narrowing, so it is computed anew, tick by tick, wherever it was not final.
+// Bounds at the end of a trace: the expected samples do not arrive, so windows are cut there. That
+// may widen bounds, so they are recomputed, tick by tick, wherever they were not final.
 #include "bounds_engine.hpp"
 
 #include <algorithm>

@@ -52,7 +52,7 @@ bool ZoneEngine::fits(Tick each) {
         switch (node.kind) {
         case Kind::atom: {
             const Wrong wrong = enclose(node.steps, ranges_, bounds_);
-            if (wrong.any != none) return false; // what is not seen has no value
+            if (wrong.any != none) return false; // future samples have no value
             const Bounds& unseen = bounds_[node.steps.size() - 1];
             columns_[i].rest = {unseen.lower, -unseen.upper};
             break;
@@ -73,7 +73,7 @@ bool ZoneEngine::fits(Tick each) {
         }
         if (is_recursive(node)) {
             recursive_ = true;
-            own.behind = node.horizon; // what comes before that is final
+            own.behind = node.horizon; // earlier values are final
         }
     }
     const auto keep_until_final = [this](std::uint32_t ref) {
@@ -154,7 +154,7 @@ void ZoneEngine::append(std::span<const Bounds> results) {
     }
 }
 
-// Samples before a tick that never came. After so many of them that all columns hold nothing else,
+// Missing samples before a tick. After so many of them that all columns hold nothing else,
 // more of them only move columns on.
 void ZoneEngine::skip(Tick t) {
     std::vector<Bounds> unseen;

@@ -1,4 +1,4 @@
-// Bounds of every open instant where windows are short: after each sample, all of them anew.
+// Bounds of every open instant for short windows: all are recomputed after each sample.
 //
 // A node has a column for each register (bounds_engine.hpp): its values from the first tick that
 // may still change, or that a reader looks at, up to where the samples so far reach, and one value
@@ -6,7 +6,7 @@
 // operands.
 //
 // Cost: proportional to the length of all columns. Memory: the columns. Below a few dozen ticks
-// that is less than to follow what changes (benchmarks/zone_bench.cpp). Samples must come in order,
+// that is less than to follow what changes (benchmarks/zone_bench.cpp). Samples must be in order,
 // and operators must be those that take the least or the greatest of their operands; both engines
 // give the same bounds.
 #pragma once

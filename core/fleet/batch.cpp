@@ -122,7 +122,7 @@ void Fleet::describe(Rejected& wrong, const Batch& batch) {
     }
 }
 
-// Sorts the samples by how often their key came before, if one comes twice.
+// Sorts the samples by the number of earlier ones of their key, if a key occurs twice.
 void Fleet::take_turns(std::size_t count, std::uint32_t most) {
     rounds_.clear();
     order_.clear();
@@ -168,7 +168,7 @@ std::optional<std::size_t> Fleet::drop(const KeySpan& keys) {
         if (!place_of(keys, i)) return i;
     }
     for (std::size_t i = 0; i < keys.size(); ++i) {
-        if (const auto place = place_of(keys, i)) erase(*place); // the same key may come again
+        if (const auto place = place_of(keys, i)) erase(*place); // the same key may occur again
     }
     return std::nullopt;
 }

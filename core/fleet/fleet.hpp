@@ -105,7 +105,7 @@ class Fleet {
     std::vector<std::uint32_t> places_;
     std::vector<std::uint32_t> order_; // indices, each key once in a stretch of these
     std::vector<std::size_t> rounds_;  // the ends of these stretches; none: one, in order
-    std::vector<std::uint32_t> turns_; // by index, how often its key came before
+    std::vector<std::uint32_t> turns_; // by index, the number of earlier samples of its key
     std::vector<std::byte> saved_;
 
     [[nodiscard]] std::byte* record(std::size_t place) noexcept {

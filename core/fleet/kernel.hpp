@@ -20,7 +20,7 @@ inline constexpr std::size_t block_size = 64;
 struct Block {
     std::size_t count = 0;
     std::byte* const* records = nullptr;
-    const std::int64_t* slots = nullptr; // how many samples of the key came before
+    const std::int64_t* slots = nullptr; // the number of earlier samples of the key
     std::int64_t least = 0;              // of these
 
     // Whether the operands of this lag are present for every key.
@@ -60,7 +60,7 @@ class Kernel {
     // The state after `pushes` operands of which nothing is remembered.
     virtual void start(std::byte* /*record*/, std::int64_t /*pushes*/) const noexcept {}
 
-    // Whether a state that was read can be gone on with; may complete what follows from the rest.
+    // Whether the monitor can continue with a restored state; may complete derived values.
     [[nodiscard]] virtual bool accept(std::byte* /*record*/) const noexcept { return true; }
 
     // How many operands before the last one a value is computed from; endless: all.

@@ -5,7 +5,7 @@
 // to a table several times as large.
 //
 // Places are 0, 1, 2, ... without a gap: the last key takes the place of one that is erased. The
-// hash has a random seed, so that nobody can choose keys that collide.
+// hash has a random seed, so that colliding keys cannot be chosen.
 //
 // Cost: a look-up is one access to the array or the table; of a text also its comparison. Memory:
 // 24 to 136 bytes a key, and the texts.
@@ -43,7 +43,7 @@ class Keys {
   public:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    // What the table knows of a key; `mark` is the caller's, 0 at first.
+    // The entry of a key; `mark` is the caller's, initially 0.
     struct Entry {
         std::uint64_t key = 0; // the number, or the hash of the text
         std::uint32_t place = none;
@@ -56,7 +56,7 @@ class Keys {
         return textual() ? texts_.size() : integers_.size();
     }
     [[nodiscard]] KeyKind kind() const noexcept { return kind_; }
-    // Whether keys are texts or bytes, which are stored alike.
+    // Whether keys are texts or bytes, which have the same storage.
     [[nodiscard]] bool textual() const noexcept {
         return kind_ == KeyKind::text || kind_ == KeyKind::bytes;
     }

@@ -328,7 +328,7 @@ std::optional<std::size_t> ReorderBuffer::drop(const KeySpan& keys) {
         if (!place_of(keys, i)) return i;
     }
     for (std::size_t i = 0; i < keys.size(); ++i) {
-        if (const auto place = place_of(keys, i)) erase(*place); // the same key may come again
+        if (const auto place = place_of(keys, i)) erase(*place); // the same key may occur again
     }
     return std::nullopt;
 }

@@ -1,4 +1,4 @@
-// Samples that come in any order, and leave in the order of their times: a buffer for each key.
+// Samples that arrive in any order, and leave in the order of their times: a buffer for each key.
 //
 // The watermark of a key is its newest time minus the lateness, or the watermark of all keys if
 // that is later. A sample waits until the watermark has reached it. One that is before the
@@ -57,7 +57,7 @@ class ReorderBuffer {
     // batch is accepted or withdrawn, as it has to be next unless it is rejected.
     [[nodiscard]] std::optional<Rejected> offer(const Batch& batch, std::uint8_t* late);
 
-    // The same without samples: none before this time will come. `places` are those of keys.
+    // The same without samples: none before this time will arrive. `places` are those of keys.
     [[nodiscard]] std::optional<Rejected> advance(double watermark);
 
     // The same of some keys alone: all that waits of them leaves. Keys that are not there are left

@@ -144,7 +144,7 @@ void Fleet::snapshot(std::span<std::uint8_t> out) const noexcept {
 
 namespace {
 
-// What of a stored record goes on in the record of a layout.
+// The parts of a stored record that continue in the record of a layout.
 class Move {
   public:
     Move(const Program& program, const Layout& layout, const Stored& stored)
@@ -153,7 +153,7 @@ class Move {
             found_.push_back(find(stored, layout, part));
     }
 
-    // Whether something has to begin anew, or has begun anew before.
+    // Whether something has to restart, or has restarted before.
     [[nodiscard]] static bool warms(const Layout& layout, const Stored& stored) {
         return stored.warming || layout.times() > std::max<std::uint64_t>(stored.times, 1) ||
                std::ranges::any_of(layout.parts(), [&](const Layout::Part& part) {
@@ -168,7 +168,7 @@ class Move {
         if (samples < 0 || samples >= endless / 2 || !std::isfinite(header.last)) {
             refuse("a record has an impossible time");
         }
-        // The first sample whose time is known, of those that may still be asked for.
+        // The first sample with a known time, of those that may still be requested.
         std::int64_t timed = stored_.warming ? exact_at(old, 0) : 0;
         if (layout_.clocked()) timed = std::max(timed, move_clock(old, header, record));
         exact_.assign(program_.instructions.size(), 0);

@@ -1,4 +1,4 @@
-// A fleet whose samples come in any order: a reorder buffer before it.
+// A fleet with samples in any order: a reorder buffer in front of it.
 //
 // A batch changes both or, where it is rejected, neither. What has left the buffer is monitored in
 // the same call, whether it is of the batch or waited.
@@ -55,7 +55,7 @@ class Stream {
 
     // Takes a batch and notes which of its samples are late.
     [[nodiscard]] std::optional<Failure> take(const Batch& batch, std::uint8_t* late);
-    // No sample before this time will come.
+    // No sample before this time will arrive.
     [[nodiscard]] std::optional<Failure> advance(double watermark);
     // What the last call that succeeded let leave.
     [[nodiscard]] const Released& released() const noexcept { return released_; }

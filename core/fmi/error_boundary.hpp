@@ -1,4 +1,4 @@
-// Calls that come from a simulator: no exception leaves, each failure becomes a sentence.
+// Calls from a simulator: no exception leaves, each failure becomes a message.
 #pragma once
 
 #include "component.hpp"
@@ -17,7 +17,7 @@ enum class Outcome : std::uint8_t {
     failed,  // out of memory, or a mistake of ours
 };
 
-// Does the work; where that fails, `say` takes its outcome and the sentence.
+// Does the work; if that fails, `say` receives its outcome and the message.
 template <class Work, class Say>
 [[nodiscard]] Outcome error_boundary(const Component* component, Work&& work, Say&& say) noexcept {
     constexpr const char* out_of_memory = "There is not enough memory.";

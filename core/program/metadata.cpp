@@ -28,7 +28,7 @@ class NoteReader {
         return reader_.take<Unsigned>();
     }
 
-    // So many records follow, each of at least 4 bytes.
+    // The number of records that follow, each of at least 4 bytes.
     [[nodiscard]] std::uint32_t count() {
         const auto count = number<std::uint32_t>();
         need(std::size_t{4} * count);

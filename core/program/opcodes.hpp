@@ -1,7 +1,7 @@
 // Every instruction of a program: code (its place in the list), name, operands and what it needs.
 //
 // The order is part of the program format: new opcodes go to the end. A call runs a kernel that is
-// not of the core (rtamt/kernel.hpp); its operands are listed beside the program.
+// not of the core (rtamt/kernel.hpp); its operands are listed next to the program.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ enum class Opcode : std::uint8_t {
     rank_min,
 };
 
-// What the number n of an instruction means. Of a rank it is a width, and x says which value.
+// What the number n of an instruction means. Of a rank it is a width, and x is the rank.
 enum class Count : std::uint8_t { none, input, distance, width, rank, call };
 
 // What an instruction works on. `either`: on numbers or on formulas, and it gives what it takes.

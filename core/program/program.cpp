@@ -83,7 +83,7 @@ Header read_header(Reader& reader, std::size_t size) {
     return header;
 }
 
-// The first thing that is wrong with one instruction, given those before it.
+// The first error of an instruction, given those before it.
 class Checker {
   public:
     Checker(const Program& program, std::size_t index)
@@ -187,7 +187,7 @@ class Checker {
         }
     }
 
-    // Of w values the c-th is wanted; the one after the last stands for none.
+    // The c-th of w values is selected; the one after the last means none.
     void rank() const {
         const double x = instruction_.x;
         if (x >= 1.0 && x <= static_cast<double>(instruction_.n) + 1.0 && x == std::floor(x))
@@ -315,7 +315,7 @@ bool Program::is_truth(const Instruction& instruction) const noexcept {
     case Opcode::holds_eq:
         return true;
     case Opcode::shift: {
-        // What stands for absent values, unless it is itself absent everywhere.
+        // The replacement of absent values, unless it is itself absent everywhere.
         const bool hidden = instruction.lag == operand_lag(instruction) + instruction.n;
         return truth(instruction.a) && (hidden || std::isinf(instruction.x));
     }

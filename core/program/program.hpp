@@ -114,7 +114,7 @@ struct Program {
     // By instruction, whether it is guarded: it can fail, or one that can is computed from it.
     [[nodiscard]] std::vector<bool> guarded() const;
 
-    // Whether an operand is a constant; no_operand is none.
+    // Whether an operand is a constant; no_operand is not.
     [[nodiscard]] bool is_constant(std::uint32_t operand) const noexcept {
         return operand != no_operand && instructions[operand].opcode == Opcode::constant;
     }

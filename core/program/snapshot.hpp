@@ -57,7 +57,7 @@ class Snapshot {
         optional = present ? std::optional(value) : std::nullopt;
     }
 
-    // How many values follow, of so many bytes each.
+    // The number of values that follow, of a given size in bytes.
     void count(std::size_t& count, std::size_t size) {
         item(count);
         require(count <= rest_.size() / size);

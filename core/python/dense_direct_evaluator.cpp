@@ -20,7 +20,7 @@ using dense::Events;
 
 namespace {
 
-// What is kept for another recording: more would be memory that nobody expects here.
+// The memory kept for the next recording is limited to this size.
 constexpr std::size_t most_kept = std::size_t{1} << 16U;
 
 [[nodiscard]] nb::object new_bytes(std::size_t count) {

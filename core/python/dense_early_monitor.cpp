@@ -21,7 +21,7 @@ using early::Tick;
 
 namespace {
 
-// What stands for no tick; NEVER in compiler/early.py.
+// The value for no tick; NEVER in compiler/early.py.
 constexpr Tick never = -forever;
 
 [[nodiscard]] std::vector<std::tuple<Tick, Tick, double, double>>

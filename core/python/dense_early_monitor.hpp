@@ -28,7 +28,7 @@ class DenseEarlyMonitor : public EarlyBackend {
 
     struct Settings {
         std::vector<Bounds> ranges;
-        bool late;                               // samples may come in any order
+        bool late;                               // samples may arrive in any order
         bool decides;                            // verdicts; if not, bounds
         bool replays;                            // update() takes nothing by itself
         std::optional<ResultClass<2>> causation; // of what update() returns

@@ -189,7 +189,7 @@ const char* DenseMonitor::read_values(const Values& values, const Numbers& numbe
     });
 }
 
-// Makes events of the instant; returns whether it may come now.
+// Makes events of the instant; returns whether it is in order.
 bool DenseMonitor::bind_buffers() noexcept {
     if (time_ > executor_.last_possible()) return false;
     for (std::size_t input = 0; input < row_.size(); ++input) {

@@ -1,6 +1,6 @@
 // Monitors of verdicts and bounds before the horizon, as Python sees them, in discrete time.
 //
-// update takes plain numbers that come in order; whatever else there is, it refuses, and the Python
+// update takes plain numbers in order; it rejects anything else, and the Python
 // caller brings it in the form of take() or learn().
 #pragma once
 
@@ -45,7 +45,7 @@ class EarlyMonitor : public EarlyBackend {
     [[nodiscard]] nb::object
     learn(double time, const std::vector<std::tuple<std::uint32_t, double, double>>& values,
           std::int64_t after);
-    // Nothing at or before a time will come.
+    // No sample at or before a time will arrive.
     [[nodiscard]] nb::object watermark(double time);
     [[nodiscard]] nb::object finish();
 

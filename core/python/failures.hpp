@@ -18,7 +18,7 @@ struct Exceptions {
     nb::object refused;   // an update was rejected
     nb::object in_use;    // makes the one for a monitor that is in the middle of another call
     nb::object undefined; // an operation made NaN: instruction, sample or tick; and, of a call that
-                          // failed, what it said
+                          // failed, its message
 };
 
 // What the module's functions throw when memory runs out becomes Python's MemoryError, with the

@@ -23,7 +23,7 @@ Known& known() noexcept {
     return known;
 }
 
-// Calls a Python method of the monitor with the arguments as they came.
+// Calls a Python method of the monitor with unchanged arguments.
 PyObject* carefully(PyObject* self, const char* method, std::span<PyObject* const> positional,
                     const Named& named) noexcept {
     try {

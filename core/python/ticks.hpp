@@ -43,7 +43,7 @@ inline constexpr double exact = 0x1p53;
 
 // The tick of a plain time, of which 1 is `rate` ticks: of a float or an int, rounded to the
 // nearest and halves to the even one; where times are `whole`, of an integer of any kind, without a
-// double in between, which may run Python code. Nothing where Python has to say what is wrong.
+// double in between, which may run Python code. Nothing if Python has to report the error.
 [[nodiscard]] inline std::optional<std::int64_t> tick_of(PyObject* time, double rate,
                                                          bool whole) noexcept {
     if (whole) {

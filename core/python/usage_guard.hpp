@@ -29,7 +29,7 @@ class UsageGuard {
         return nullptr;
     }
 
-    // Whether samples may come now; if not, a Python exception is set.
+    // Whether samples are accepted now; if not, a Python exception is set.
     [[nodiscard]] bool open(bool finished) const noexcept {
         if (!busy_ && !finished) [[likely]] {
             return true;
