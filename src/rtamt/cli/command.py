@@ -288,6 +288,19 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
     return parse(spec, **options)
 
 
+def read_text(path: str, encoding: str = "utf-8-sig", newline: str | None = None) -> str:
+    """Return the text of a specification file; raise :class:`CommandError` if it cannot be read."""
+    try:
+        with open(path, encoding=encoding, newline=newline) as file:
+            return file.read()
+    except OSError as error:
+        raise CommandError(f"cannot read '{path}': {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise CommandError(
+            f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"
+        ) from None
+
+
 def find_pack(spec: str) -> str | None:
     """Return the pack that SPEC names, None if it names none; a file of the same name is an error."""
     if spec.startswith(PACK):

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import CommandError, add_specification_options, read_specification, write_output
+from rtamt.cli.command import (
+    CommandError,
+    add_specification_options,
+    read_specification,
+    read_text,
+    write_output,
+)
 from rtamt.cli.parser import OK, VIOLATED, WRITTEN, complain
 from rtamt.cli.terminal import say
 from rtamt.errors import UsageError
@@ -93,13 +99,7 @@ def _read(args: argparse.Namespace) -> Conversion:
             raise UsageError(
                 f"--{name} is for --to: it is about specifications, and --from reads another format"
             )
-    try:
-        with open(args.spec, encoding="utf-8-sig") as file:
-            text = file.read()
-    except OSError as error:
-        raise CommandError(f"cannot read '{args.spec}': {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise CommandError(f"'{args.spec}' is no text in UTF-8") from None
+    text = read_text(args.spec)
     period = None if args.period is None else positive_period(args.period)
     try:
         return format_named(args.source).read(text, period)

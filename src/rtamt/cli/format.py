@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from rtamt.cli.command import CommandError, write_output
+from rtamt.cli.command import CommandError, read_text, write_output
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import say
@@ -70,15 +70,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _reformat(file: str, language: Language) -> str | None:
     """Return the new text of a file; None if it has the layout."""
-    try:
-        with open(file, encoding="utf-8", newline="") as opened:
-            text = opened.read()
-    except OSError as error:
-        raise CommandError(f"cannot read '{file}': {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise CommandError(
-            f"'{file}' is not UTF-8 text (byte {error.start}); is it a specification?"
-        ) from None
+    text = read_text(file, "utf-8", newline="")
     mark, body = (_MARK, text[1:]) if text.startswith(_MARK) else ("", text)
     folder = os.path.dirname(file) or os.curdir
     try:

@@ -11,7 +11,7 @@ import tempfile
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.command import CommandError, add_time_option, find_pack, is_trace
+from rtamt.cli.command import CommandError, add_time_option, find_pack, is_trace, read_text
 from rtamt.cli.parser import OK
 from rtamt.cli.terminal import say
 from rtamt.extras import library
@@ -172,15 +172,7 @@ def _page_state(args: argparse.Namespace) -> tuple[Given, str | None, str]:
             raise CommandError(f"the link '{spec}' contains nothing: it must have a part after '#'")
     elif spec is not None and os.path.isfile(spec):
         name, folder = os.path.basename(spec), os.path.dirname(os.path.abspath(spec))
-        try:
-            with open(spec, encoding="utf-8-sig") as file:
-                text = file.read()
-        except OSError as error:
-            raise CommandError(f"cannot read '{spec}': {error.strerror or error}") from None
-        except UnicodeDecodeError as error:
-            raise CommandError(
-                f"'{spec}' is not UTF-8 text (byte {error.start}); is it a specification?"
-            ) from None
+        text = read_text(spec)
     elif spec is not None and spec.endswith(".stl"):
         raise CommandError(f"there is no file '{spec}'")
     elif spec is not None:

@@ -48,3 +48,10 @@ def test_what_cannot_be_converted_is_an_error(run, write):
             f"{option} is for --to: it is about specifications, and --from reads another format\n"
         )
     assert "cannot read 'none.json'" in run("convert", "none.json", "--from", "fret").err
+
+
+def test_a_file_that_is_not_text_is_an_error(run, tmp_path):
+    (tmp_path / "odd.json").write_bytes(b"[\xff]")
+    answer = run("convert", "odd.json", "--from", "fret")
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err == "rtamt: 'odd.json' is not UTF-8 text (byte 1); is it a specification?\n"
