@@ -1,4 +1,4 @@
-"""One session of Spark in local mode for all tests: a JVM takes seconds to start."""
+"""One session of Spark in local mode for all tests, since a JVM takes seconds to start, and a mock cluster of Kafka."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import os
 import shutil
 
 import pytest
+
+from tests.support.brokers import broker
 
 #: The marks of a module that uses Spark.
 SPARK = [
@@ -37,3 +39,9 @@ def session(tmp_path_factory):
     found.sparkContext.setLogLevel("ERROR")
     yield found
     found.stop()
+
+
+@pytest.fixture(scope="module")
+def brokers():
+    with broker() as address:
+        yield address
