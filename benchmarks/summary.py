@@ -1,4 +1,4 @@
-"""The head of RESULTS.md: the targets, how many rows meet them, and which do not."""
+"""The summary of RESULTS.md: the targets, and the rows that meet or miss them."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from cases import Case
 
 WHY = """\
-Why these: in dense time an update answers with a signal, an object for each update, and mstlo (Rust) pays little
-more than the call from Python, as ours does; a recording of 100 samples costs the call and the checks of the data,
-10 to 60 µs, of which the core takes 3 to 5; a formula that is parsed in Rust is ready sooner than one parsed in
-Python; numpy takes longer to load than we do, and than tools that need none; a fused loop reads each sample once,
-the engine once an operator, from the cache."""
+Reasons: in dense time every update returns a signal, which is an object, and both mstlo (Rust) and rtamt cost little
+more than the call from Python. The time for a recording of 100 samples, 10 to 60 µs, is that of the call and the
+checks of the data; the core takes 3 to 5 µs of it. Parsing in Rust is faster than in Python. Loading numpy takes
+longer than loading rtamt, and than tools without numpy. A fused loop reads each sample once, the engine once per
+operator, from the cache."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One comparison: what it is of, where on its curve, and how it ends."""
+    """One comparison: its subject, its position on the curve, the ratio, and whether the target is met."""
 
     of: str
     at: str
@@ -50,12 +50,12 @@ def write(
         "start-up: no peer is faster": [
             Row(f"start-up, {label}", "", ratio, ratio >= 1) for label, ratio in ready.items()
         ],
-        "offline: at most 1.5× of a loop by hand, from 10⁴ samples on": [
+        "offline: at most 1.5× the time of a hand-written loop, from 10⁴ samples on": [
             Row(f"by hand, `{row['formula']}`", f"{row['samples']:,}", row["ratio"], row["ratio"] <= 1.5)
             for row in machine
         ],
     }
-    lines = ["## In short", "", "| aimed at | rows | met | not met | median |", "|---|---:|---:|---:|---:|"]
+    lines = ["## Summary", "", "| target | rows | met | missed | median |", "|---|---:|---:|---:|---:|"]
     for goal, rows in goals.items():
         if not rows:
             continue
@@ -86,7 +86,7 @@ def _curve(case: Case) -> str:
 
 
 def _short(goal: str, rows: Sequence[Row]) -> list[str]:
-    """Return a line for each curve with rows that fall short."""
+    """Return a line for each curve with rows that miss the target."""
     curves: dict[str, list[Row]] = defaultdict(list)
     for row in rows:
         if not row.met:
@@ -95,4 +95,4 @@ def _short(goal: str, rows: Sequence[Row]) -> list[str]:
         f"- {of}: " + ", ".join(f"{row.ratio:.2g}×" + (f" at {row.at}" if row.at else "") for row in short)
         for of, short in curves.items()
     ]
-    return ["", f'Not met, of "{goal}":', "", *lines] if lines else []
+    return ["", f'Missed targets, "{goal}":', "", *lines] if lines else []
