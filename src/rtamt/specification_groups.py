@@ -83,7 +83,7 @@ class QuantifiedText(RecordedSpecification):
     def _over(self) -> dict[Any, Any]:
         return {}
 
-    def _resolved_over(self, members: Members) -> Self:
+    def _resolve_over(self, members: Members) -> Self:
         from rtamt.rewrite.quantifiers import resolved_document
 
         roles = dict(self.roles)

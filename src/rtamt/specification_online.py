@@ -227,7 +227,7 @@ class OnlineSpecification(QuantifiedText):
         watch: tuple[str | Formula, ...],
         time_unit: str | None,
     ) -> OnlineMonitor:
-        """Return a monitor of quantifiers over members that come and go."""
+        """Return a monitor of quantifiers over dynamic groups."""
         from rtamt.rewrite.quantifier_streams import Splitting  # other monitors do not wait for it
 
         domain = self._domain_for(time, period, tolerance, resolution).online

@@ -129,7 +129,7 @@ def test_wrong_chunk_leaves_the_monitor_as_it_was(backend: str) -> None:
         "sample 3 at 4 s is 2 s after the one before, expected 1 s (within 10%): "
         "give the right period, or resample the trace"
     )
-    assert said(rtamt.TraceError, monitor.update_many, None) == (
+    assert check_message(rtamt.TraceError, monitor.update_many, None) == (
         "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got NoneType"
     )
     np.testing.assert_array_equal(monitor.update_many({"x": [0.0]}).values, [2.0])

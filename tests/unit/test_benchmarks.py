@@ -62,7 +62,10 @@ def test_the_summary_names_every_row_that_falls_short_and_where():
     )
     assert "| online, an update: a peer takes at least 5× | 2 | 1 | 1 | 5.1× |" in text
     assert "| both: no peer is faster | 2 | 2 | 0 | 5.1× |" in text
-    assert "| offline: at most 1.5× the time of a hand-written loop, from 10⁴ samples on | 1 | 1 | 0 | 1.5× |" in text
+    assert (
+        "| offline: at most 1.5× the time of a hand-written loop, from 10⁴ samples on | 1 | 1 | 0 | 1.5× |"
+        in text
+    )
     assert "- online, dense time, `always[0:{k}](a >= -2)`, mstlo: 3.2× at 10\n" in text
     assert "- start-up, Reelay: 0.4×\n" in text
     assert text.count("\n- ") == 2

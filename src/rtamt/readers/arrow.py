@@ -96,7 +96,7 @@ def table_of_arrow(table: Any) -> Table:
     """Return an arrow table; a struct is a column for each of its fields, called ``struct.field``."""
     arrow = library("pyarrow", "arrow tables")
     flat = _flattened(table, arrow)
-    fields = _fields(flat.schema, arrow, _dated(flat, _texts(flat.schema, arrow), arrow))
+    fields = _fields(flat.schema, arrow, _date_columns(flat, _texts(flat.schema, arrow), arrow))
     return Table(fields, lambda wanted: _raws(flat, wanted))
 
 

@@ -10,7 +10,7 @@ from rtamt.engine import offline_bounds
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, TickDefinition, named
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, settling
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
-from rtamt.engine.native import calls_of, core, not_made
+from rtamt.engine.native import calls_of, core, creation_error
 from rtamt.language.undefined_value import UndefinedAtTickError, undefined
 from rtamt.lazy_dataclasses import replace
 from rtamt.reference import dense_robustness as reference

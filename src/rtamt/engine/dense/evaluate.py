@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.plan import DEFINED, Stage
 from rtamt.compiler.shared import Shape
 from rtamt.engine.direct import Direct
-from rtamt.engine.native import calls_of, core, culprit, not_made
+from rtamt.engine.native import calls_of, core, creation_error, culprit
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text

@@ -10,7 +10,7 @@ from rtamt.compiler.shared import Shape
 from rtamt.engine.cores import threads
 from rtamt.engine.direct import Direct
 from rtamt.engine.discrete.recording import Reading, frame_columns
-from rtamt.engine.native import calls_of, core, culprit, not_made
+from rtamt.engine.native import calls_of, core, creation_error, culprit
 from rtamt.engine.user_operators import defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text

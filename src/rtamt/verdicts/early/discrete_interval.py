@@ -163,7 +163,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self._remember(stamp, begun=begun)
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
-        """Keep the first samples until no earlier one can come: only then it is known where the trace starts."""
+        """Buffer the first samples until no earlier one can arrive: the start of the trace is unknown before."""
         self._rehearse(time, known)
         self._keep()
         self._early = (*self._early, (time, known))
