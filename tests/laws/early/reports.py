@@ -160,6 +160,6 @@ def as_defined(rng: Random, backend: str) -> None:
         monitors = [one, other]
         finished = kind == "finish" or (finished and kind != "reset")
         if case.settings.get("explain") and isinstance(first, list) and first:
-            assert _tried(one.explain, first[-1]) == _tried(other.explain, second[-1])
+            assert _try(one.explain, first[-1]) == _try(other.explain, second[-1])
         reports = [list(_reports(monitor, case, tick, finished=finished)) for monitor in monitors]
-        assert all(map(_alike, *reports))
+        assert all(map(_same_reports, *reports))
