@@ -306,7 +306,7 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
     Several formulas that share nodes are walked in time proportional to the number of nodes.
     """
     if len(formulas) != 1:
-        return _distinct(formulas)
+        return _distinct_of_several(formulas)
     (formula,) = formulas
     if not isinstance(formula, Apply):
         return formulas
@@ -321,19 +321,30 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
 
 def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
-    seen: set[int] = set()
     found: list[Formula] = []
     stack = list(formulas)
-    while stack:  # the last operands first, each before its own operands
+    while stack and len(found) <= _KEPT:  # the last operands first, each before its own operands
         node = stack.pop()
-        if id(node) in seen:
-            return _distinct_of_graph(formulas)
-        seen.add(id(node))
         found.append(node)
         if isinstance(node, Apply):
             stack += node.args
+    if stack or len(set(map(id, found))) < len(found):  # large, or not a tree
+        return _distinct_of_graph(formulas)
     found.reverse()
     return tuple(found)
+
+
+def _distinct_of_several(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    """Return what :func:`_distinct` does for formulas of which each has been, or will be, walked alone."""
+    found: dict[int, Formula] = {}
+    walked = 0
+    for formula in formulas:
+        nodes = postorder(formula)
+        walked += len(nodes)
+        if walked > 20 * _KEPT:  # each may contain the ones before
+            return _distinct_of_graph(formulas)
+        found.update(zip(map(id, nodes), nodes, strict=True))
+    return tuple(found.values())
 
 
 def _distinct_of_graph(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:

@@ -8,6 +8,7 @@ whole; what their windows hold does not depend on how long they are.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import product
 from math import inf, isnan
 from typing import TYPE_CHECKING
@@ -26,6 +27,7 @@ from rtamt.language.operators import (
     Sum,
     Until,
     Window,
+    builtin,
 )
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import number
@@ -35,7 +37,7 @@ from rtamt.lazy_numpy import np
 from rtamt.lint.found import Found
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from rtamt.language.formula import Formula, Interval
     from rtamt.language.operators import Operator
@@ -63,6 +65,9 @@ class _Enclosed:
 
     def of(self, formula: Formula) -> Range:
         """Return the bounds of a formula, by its truth, or of a number."""
+        known = self._known.get(id(formula))
+        if known is not None:
+            return known
         for node in postorder(formula):
             if id(node) not in self._known:
                 self._known[id(node)] = self._bounds(node)
@@ -85,10 +90,12 @@ class _Enclosed:
         ]
         if operands and all(each == ANYTHING for each in operands):
             return ANYTHING
+        if builtin(node.op.name) is node.op:
+            return _apply_builtin(node.op, tuple(operands), node.interval)
         return _apply(node.op, operands, node.interval)
 
 
-def _apply(op: Operator, operands: list[Range], interval: Interval | None) -> Range:
+def _apply(op: Operator, operands: Sequence[Range], interval: Interval | None) -> Range:
     """Return the bounds of an operator from those of its operands."""
     if op.source is not None:
         taken = [operands[k] for k in op.keeps if k < len(operands)]
@@ -112,7 +119,11 @@ def _apply(op: Operator, operands: list[Range], interval: Interval | None) -> Ra
     return ANYTHING
 
 
-def _expand(expansion: object, operands: list[Range], interval: Interval | None) -> Range:
+#: An editor asks for the same bounds at every change of a text.
+_apply_builtin = lru_cache(4096)(_apply)
+
+
+def _expand(expansion: object, operands: Sequence[Range], interval: Interval | None) -> Range:
     """Return the bounds of an expansion, with variables in place of the operands."""
     names = [str(k) for k in range(len(operands))]
     assert callable(expansion)
@@ -120,7 +131,7 @@ def _expand(expansion: object, operands: list[Range], interval: Interval | None)
     return _Enclosed(dict(zip(names, operands, strict=True))).of(formula)
 
 
-def _extend(op: Operator, operands: list[Range]) -> Range:
+def _extend(op: Operator, operands: Sequence[Range]) -> Range:
     from rtamt.language.definitions.enclosures import Enclosure, extended
 
     assert op.definition is not None
@@ -134,7 +145,7 @@ def _extend(op: Operator, operands: list[Range]) -> Range:
     return ANYTHING if isnan(low) or isnan(high) else (low, high)
 
 
-def _leaves_domain(op: Operator, operands: list[Range]) -> bool:
+def _leaves_domain(op: Operator, operands: Sequence[Range]) -> bool:
     """Return whether a function has no value at a corner of the ranges of its operands."""
     corners = np.array(list(product(*operands))).clip(-_FAR, _FAR).T
     assert op.definition is not None
@@ -142,7 +153,7 @@ def _leaves_domain(op: Operator, operands: list[Range]) -> bool:
         return bool(np.isnan(op.definition(*corners)).any())
 
 
-def _over_time(op: Operator, operands: list[Range], interval: Interval | None) -> Range:
+def _over_time(op: Operator, operands: Sequence[Range], interval: Interval | None) -> Range:
     window: tuple[object, ...] = ()
     if op.bounds is not Bounds.NONE:
         window = _window(interval)

@@ -37,6 +37,8 @@ READ = {
     "requirements": numbered("require R{0}: x >= {0};\n"),
     "formulas": numbered("x >= {0};\n"),
     "declarations": numbered("float v{0} ") + "v1",
+    "constants and formulas": numbered("const float c{0} = {0} [m] ", LENGTH // 2)
+    + numbered("a{0} = x >= c{0}\n", LENGTH // 2),
     "imports": "".join(f"from a import C{i}\n" for i in range(3000))
     + "".join(f"C{i} v{i}\n" for i in range(3000))
     + "v1.y",

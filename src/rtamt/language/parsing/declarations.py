@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import NameInFormulaError, did_you_mean
-from rtamt.language.document import Declaration, constant_units
+from rtamt.language.document import Declaration
 from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
@@ -70,14 +70,21 @@ class DeclarationParser(ImportParser):
             return False
         token = self._at(1)
         table = parse_table(self)
-        if table.name in (*self._declarations, *self._given, *self._taken_names()):
+        if self._is_taken(table.name):
             raise self.error(f"'{table.name}' is declared twice{self._from(table.name)}", token.span)
         self._tables[table.name] = table
         return True
 
-    def _taken_names(self) -> set[str]:
-        """Return the names of what a text declares or defines, apart from variables."""
-        return {*self._constants, *self._tables, *self._definitions, *self._templates, *self._groups}
+    def _is_taken(self, name: str) -> bool:
+        """Return whether a text declares or defines a name."""
+        declared = name in self._declarations or name in self._given
+        return declared or name in self._constants or self._is_defined(name)
+
+    def _is_defined(self, name: str) -> bool:
+        """Return whether a text defines a name: that of a formula, a template, a table or a group."""
+        return any(
+            name in known for known in (self._tables, self._definitions, self._templates, self._groups)
+        )
 
     def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
         """Return what names mean by now."""
@@ -93,7 +100,7 @@ class DeclarationParser(ImportParser):
             enumerations=self._enumerations,
             tables=self._tables,
             groups=self._groups,
-            units=constant_units(self._declarations.values()),
+            units=self._units,
         )
 
     def _declaration(self) -> bool:
@@ -189,8 +196,8 @@ class DeclarationParser(ImportParser):
         if type_ is not None:
             self._types[name] = type_
         unit = unit or self._unit(token)
-        self._declarations[name] = Declaration(
-            name, type_name, kind, role, value, unit, columns, optional, range_, rate, token.span
+        self._add_declarations(
+            Declaration(name, type_name, kind, role, value, unit, columns, optional, range_, rate, token.span)
         )
 
     def _columns(self, name: str, type_name: str) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ class GroupParser(DeclarationParser):
         name = self.next()
         if "." in name.text:
             raise self.error(f"the name of a group is one word, and '{name.text}' has a dot", name.span)
-        if name.text in (*self._declarations, *self._given, *self._taken_names()):
+        if self._is_taken(name.text):
             raise self.error(f"'{name.text}' is declared twice{self._from(name.text)}", name.span)
         self.next()
         pattern = self.next()

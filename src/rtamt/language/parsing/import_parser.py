@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, line_and_column
-from rtamt.language.document import Declaration, Import
+from rtamt.language.document import Declaration, Import, constant_units
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import (
@@ -82,6 +82,8 @@ class ImportParser(RequirementParser):
         self._constants = dict(scope.constants)
         self._given = tuple(scope.variables or ())
         self._declarations: dict[str, Declaration] = {}
+        #: The declared units of constants.
+        self._units: dict[str, str] = {}
         self._topics: dict[str, str] = {}
         self._templates: dict[str, Template] = {}
         self._tables: dict[str, Operator] = {}
@@ -145,7 +147,7 @@ class ImportParser(RequirementParser):
         definitions, templates = placed(span)
         self._constants.update(document.constants)
         self._parameters.update(document.parameters)
-        self._declarations.update({each.name: each for each in document.declarations})
+        self._add_declarations(*document.declarations)
         self._definitions.update(definitions)
         self._templates.update(templates)
         self._enumerations.update(document.enumerations)
@@ -154,6 +156,11 @@ class ImportParser(RequirementParser):
         self._types.update(document.types)
         self._topics.update(document.topics)
         self._imports.update({each.name: each for each in document.imports})
+
+    def _add_declarations(self, *declarations: Declaration) -> None:
+        """Take over declarations."""
+        self._declarations.update({each.name: each for each in declarations})
+        self._units.update(constant_units(declarations))
 
     def _read_file(self, file: str, text: str) -> Imported:
         """Parse an imported file, if it was not parsed before."""

@@ -11,7 +11,7 @@ from rtamt.errors import BoundError, NameInFormulaError, choices, did_you_mean
 from rtamt.language.formula import Interval, Span, span_of
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.parsing.grammar import INFINITY
-from rtamt.language.parsing.lexer import is_numeral
+from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.template_names import bound, constants_of
 from rtamt.language.units.durations import UNITS, exact, is_less
 from rtamt.language.value_types import BOOLEAN
@@ -163,14 +163,14 @@ def _begins_open(parser: FormulaParser, op: Operator) -> bool:
 
 def _behind_bound(parser: FormulaParser, at: int) -> int | None:
     """Return the index of the token after a bound that begins at this token; None if none does."""
-    tokens = parser.tokens
-    at += tokens[at].text == "-"
-    if tokens[at].kind not in ("number", "name", "quoted"):
+    texts = parser.texts
+    at += texts[at] == "-"
+    if not (is_numeral(texts[at]) or is_name(texts[at]) or is_quoted(texts[at])):
         return None
     at += 1
-    if tokens[at].text == "/" and tokens[at + 1].kind == "number":
+    if texts[at] == "/" and is_numeral(texts[at + 1]):
         at += 2
-    return at + 1 if tokens[at].text in UNITS else at
+    return at + 1 if texts[at] in UNITS else at
 
 
 def _unbounded_error(parser: FormulaParser, at: int, first: int, last: int) -> SpecificationError:

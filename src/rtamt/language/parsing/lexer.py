@@ -16,9 +16,9 @@ end        after the last token
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import lru_cache
-from itertools import accumulate
+from itertools import accumulate, compress
 from typing import TYPE_CHECKING, overload
 
 from rtamt.errors import UsageError
@@ -77,7 +77,7 @@ class Tokens(Sequence[Token]):
     Most tokens are read once, by their characters alone.
     """
 
-    __slots__ = ("_made", "_symbols", "ends", "starts", "texts")
+    __slots__ = ("_kinds", "_made", "_symbols", "ends", "starts", "texts")
 
     def __init__(
         self, texts: list[str], starts: list[int], ends: list[int], symbols: Collection[str]
@@ -87,6 +87,7 @@ class Tokens(Sequence[Token]):
         self.ends = ends
         self._symbols = symbols
         self._made: list[Token | None] = [None] * len(texts)
+        self._kinds: dict[str, str] = {}  # most tokens occur several times
 
     def __len__(self) -> int:
         return len(self.texts)
@@ -98,12 +99,16 @@ class Tokens(Sequence[Token]):
     def __getitem__(self, at: slice) -> list[Token]: ...
 
     def __getitem__(self, at: int | slice) -> Token | list[Token]:
+        made = self._made[at]
+        if type(made) is Token:
+            return made
         if isinstance(at, slice):
             return [self[i] for i in range(*at.indices(len(self.texts)))]
-        token = self._made[at]
-        if token is None:
-            text = self.texts[at]
-            token = self._made[at] = Token(kind_of(text, self._symbols), text, self.starts[at], self.ends[at])
+        text = self.texts[at]
+        kind = self._kinds.get(text)
+        if kind is None:
+            kind = self._kinds[text] = kind_of(text, self._symbols)
+        token = self._made[at] = Token(kind, text, self.starts[at], self.ends[at])
         return token
 
     def between(self, first: int, last: int) -> Tokens:
@@ -150,10 +155,10 @@ def tokenize(text: str, language: Language) -> Tokens:
     pieces = pattern.split(text)  # space, token, space, token, ..., space
     places = list(accumulate(map(len, pieces)))
     texts, starts, ends = pieces[1::2], places[::2], places[1::2]
-    if "/" in text and any(map(_is_comment, texts)):
-        kept = [at for at, piece in enumerate(texts) if piece[0] != "/" or not _is_comment(piece)]
-        texts, ends = [texts[at] for at in kept], [ends[at] for at in kept]
-        starts = [*(starts[at] for at in kept), len(text)]
+    if "/" in text:
+        kept = [piece[0] != "/" or not _is_comment(piece) for piece in texts]
+        texts, ends = list(compress(texts, kept)), list(compress(ends, kept))
+        starts = [*compress(starts, kept), len(text)]
     if texts and _is_unclosed(texts[-1]):
         texts[-1] = "/*" if texts[-1][0] == "/" else '"'
         ends[-1] = starts[len(texts) - 1] + len(texts[-1])
@@ -182,6 +187,14 @@ def _is_comment(piece: str) -> bool:
 def _is_unclosed(piece: str) -> bool:
     """Return whether a piece other than a comment begins a comment or quoted name that does not end."""
     return piece.startswith("/*") or (piece.startswith('"') and '"' not in piece[1:])
+
+
+def places_of(text: str, texts: Sequence[str], first: int = 0) -> Iterator[int]:
+    """Yield the indices of the tokens of this text, from the index ``first`` on."""
+    for _ in range(texts[first:].count(text) if first else texts.count(text)):
+        first = texts.index(text, first)
+        yield first
+        first += 1
 
 
 def kind_of(text: str, symbols: Collection[str]) -> str:

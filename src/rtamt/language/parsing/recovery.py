@@ -150,7 +150,7 @@ class _RecoveringParser(DocumentParser):
         )
 
     def _is_declared(self, name: str) -> bool:
-        return name in self._declarations or name in self._given or name in self._taken_names()
+        return self._is_taken(name)
 
     def _assume(self, begin: int, end: int) -> None:
         """Let names that a wrong statement may have declared match anything."""

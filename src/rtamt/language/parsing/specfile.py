@@ -33,7 +33,7 @@ that no other assertion uses; if there are none of these either, the last assert
 
 from __future__ import annotations
 
-from itertools import accumulate
+from itertools import accumulate, repeat
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -45,6 +45,7 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.groups import GroupParser
 from rtamt.language.parsing.imports import Library
+from rtamt.language.parsing.lexer import places_of
 from rtamt.language.parsing.sampling_clause import begins_sampling, parse_sampling
 from rtamt.language.parsing.scope import Scope
 from rtamt.language.parsing.template_order import templates_to_come
@@ -96,6 +97,8 @@ def parse_document(
 #: The messages for texts that can only be imported, and for declarations after formulas.
 NO_FORMULA = "the text has declarations but no formula"
 LATE = "declarations and annotations stand before the first formula"
+
+_PARENTHESES: Mapping[str, int] = MappingProxyType({"(": 1, ")": -1})
 
 
 class DocumentParser(GroupParser):
@@ -292,20 +295,18 @@ class DocumentParser(GroupParser):
         if "=" not in self.words:
             return {}
         # Except where an assertion may begin, '=' is a mistaken comparison: always(x = 3), or names an argument.
-        depth = accumulate((text == "(") - (text == ")") for text in self.texts)
+        depth = list(accumulate(map(_PARENTHESES.get, self.texts, repeat(0))))
         names = [
             self.tokens[at].name
-            for at, (inside, after) in enumerate(zip(depth, self.texts[1:], strict=False))
-            if after == "="
-            and at >= self.index
-            and inside <= 0
+            for at in (after - 1 for after in places_of("=", self.texts, self.index + 1))
+            if depth[at] <= 0
             and self.tokens[at].kind in ("name", "quoted")
             and (at == self.index or self.texts[at - 1] == ";" or self._begins_a_line(at))
         ]
         return {n: f"'{n}' is only defined further down; move its definition up" for n in names}
 
     def _check_new(self, name: str, token: Token) -> None:
-        if name in self._taken_names() - self._constants.keys() or name in self._names:
+        if (self._is_defined(name) and name not in self._constants) or name in self._names:
             raise self.error(f"'{name}' is defined twice{self._from(name)}", token.span)
         if name in self._constants:
             raise self.error(f"'{name}' is a constant already{self._from(name)}", token.span)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from rtamt.language.parsing.lexer import places_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
@@ -19,7 +21,7 @@ def templates_to_come(parser: FormulaParser) -> dict[str, str]:
     if "def" not in parser.words:
         return {}
     words = parser.texts
-    starts = [at for at in range(parser.index, len(words) - 2) if words[at] == "def" and words[at + 2] == "("]
+    starts = [at for at in places_of("def", words, parser.index) if words[at + 2 : at + 3] == ["("]]
     names = {words[at + 1] for at in starts}
     uses = {
         words[at + 1]: {
@@ -40,15 +42,15 @@ def templates_to_come(parser: FormulaParser) -> dict[str, str]:
 
 def _end(parser: FormulaParser, at: int, until: int) -> int:
     """Return about where a definition ends: at a semicolon, at the next one, or where a line does not continue it."""
-    tokens, infix, opening = parser.tokens, parser.language.infix, parser.language.opening
-    while at < until and tokens[at].text != ";":
-        before, token = tokens[at - 1], tokens[at]
-        line = parser.text[before.end : token.start]
-        complete = before.text == ")" or (
-            before.kind != "symbol" and not (infix(before.text) or opening(before.text))
-        )
-        if "\n" in line and complete and token.kind == "name" and infix(token.text) is None:
-            break
+    infix, opening = parser.language.infix, parser.language.opening
+    while at < until and parser.texts[at] != ";":
+        if "\n" in parser.text[parser.ends[at - 1] : parser.starts[at]]:
+            before, token = parser.tokens[at - 1], parser.tokens[at]
+            complete = before.text == ")" or (
+                before.kind != "symbol" and not (infix(before.text) or opening(before.text))
+            )
+            if complete and token.kind == "name" and infix(token.text) is None:
+                break
         at += 1
     return at
 
