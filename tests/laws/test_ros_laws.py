@@ -272,3 +272,62 @@ def test_a_node_in_dense_time_agrees_with_check_on_the_bag_before_the_end(folder
         assert (record.decided_at is None) == (record.satisfied is None)
         assert lower is None or (lower <= record.lower and record.upper <= upper)
         lower, upper = record.lower, record.upper
+
+
+def listened(reports):
+    """Return the samples that an output takes from now on: stamps and values."""
+    samples, take = [], reports.take
+
+    def taking(stamp, values):
+        samples.append((stamp, dict(values)))
+        return take(stamp, values)
+
+    reports.take = taking
+    return samples
+
+
+def expected_records(output, time, samples):
+    """Yield what a monitor of an output reports of samples, in the form of a node's records."""
+    eager = output.early == "eager"
+    verdict = {"verdict": "eager"} if eager else {"verdict": "interval", "at": "every"}
+    monitor = output.specification.monitor(
+        **verdict, time=time, time_unit="ns", **({"period": 1} if time == "discrete" else {})
+    )
+    for stamp, values in samples:
+        found = monitor.update(stamp, **values)
+        for each in found if eager else monitor.changes():
+            begin, end = (each.time, each.time) if hasattr(each, "time") else (each.begin, each.end)
+            if eager:
+                yield stamp, each.satisfied, each.decided_at, begin, end
+            else:
+                yield stamp, each.interval.lower, each.interval.upper, begin, end
+
+
+@settings(max_examples=25)
+@given(st.data(), st.sampled_from(["eager", "interval"]), st.sampled_from(["discrete", "dense"]))
+def test_every_output_of_a_node_has_the_reports_of_a_monitor_of_its_own(data, verdict, time):
+    first, second = (data.draw(st.sampled_from([*PAST, *FUTURE])).format(p="2s") for _ in range(2))
+    spec = rtamt.parse(f"{HEAD} rob.value = {first}; other.value = {second}")
+    bound = bind(spec, verdict, "every" if verdict == "interval" else None)
+    monitor = RosMonitor(bound, time=time, stale=0, **({"period": 1} if time == "discrete" else {}))
+    taken = {group._reports.output.name: listened(group._reports) for group in monitor.groups}
+    sent = data.draw(traffic(SECOND))
+    records = delivered(monitor, sent)
+    assert len(taken) == 2
+    for output in bound.outputs:
+        mine = [record for record in records if record.output is output]
+        got = [
+            (r.stamp, r.satisfied, r.decided_at, r.begin, r.end)
+            if verdict == "eager"
+            else (r.stamp, r.lower, r.upper, r.begin, r.end)
+            for r in mine
+        ]
+        samples = taken[output.name]
+        assert got == list(expected_records(output, time, samples))
+        # In dense time each message is a sample, and none that comes before every topic has one is lost.
+        read = {
+            known.topic for known in bound.inputs if set(known.fields) & set(output.specification.input_names)
+        }
+        arrivals = {(one.topic, one.at) for one in sent if one.topic in read}
+        if time == "dense" and {topic for topic, _ in arrivals} == read:
+            assert len(samples) == len(arrivals)
