@@ -321,15 +321,17 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
 
 def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
+    seen: set[int] = set()
     found: list[Formula] = []
     stack = list(formulas)
-    while stack and len(found) <= _KEPT:  # the last operands first, each before its own operands
+    while stack:  # the last operands first, each before its own operands
         node = stack.pop()
+        if id(node) in seen:
+            return _distinct_of_graph(formulas)
+        seen.add(id(node))
         found.append(node)
         if isinstance(node, Apply):
             stack += node.args
-    if stack or len(set(map(id, found))) < len(found):  # large, or not a tree
-        return _distinct_of_graph(formulas)
     found.reverse()
     return tuple(found)
 
