@@ -189,15 +189,15 @@ ChainCode chain_code(const Program& program, const Fusion& fusion,
     return Maker(program, fusion, members).make();
 }
 
-Chain::Chain(ChainCode code, std::int64_t lag)
+Chain::Chain(ChainCode code, std::int64_t lag, std::size_t width)
     : Kernel(lag), code_(std::move(code)),
-      operands_(code_.columns.size() + code_.constants.size() + code_.stored) {
+      operands_(code_.columns.size() + code_.constants.size() + code_.stored), width_(width) {
     for (std::size_t i = 0; i < code_.columns.size(); ++i)
         operands_[i].moves = ~std::size_t{0};
 }
 
 void Chain::make_room(std::size_t slots) {
-    const std::size_t stride = slots < strip_width ? 1 : strip_width;
+    const std::size_t stride = slots * width_ < strip_width ? 1 : strip_width;
     if (stride == stride_) return;
     stride_ = stride;
     const std::size_t constants = code_.constants.size() * stride_;
@@ -214,7 +214,9 @@ Memory Chain::memory(std::span<const Step> steps) noexcept {
 }
 
 std::size_t Chain::run(const Block& block) noexcept {
-    const auto [begin, end] = block.present(lag());
+    const Range present = block.present(lag());
+    const std::size_t begin = present.begin * width_;
+    const std::size_t end = present.end * width_;
     const Memory memory = this->memory(code_.steps);
     auto* values = out<double>();
     bool undefined = false;
@@ -224,25 +226,33 @@ std::size_t Chain::run(const Block& block) noexcept {
         for (std::size_t place = begin; place < end; ++place)
             undefined |= run_sample(memory, place, values[place]);
     }
-    return undefined ? first_undefined({begin, end}) : defined;
+    return undefined ? first_undefined(present) : defined;
 }
 
 std::uint32_t Chain::culprit(std::uint32_t /*root*/) const noexcept {
     return culprit_;
 }
 
-// The first place with a member that is NaN, and of these the first one.
+// The first slot with a member that is NaN, and of these the first one.
 std::size_t Chain::first_undefined(Range range) noexcept {
-    for (std::size_t place = range.begin; place < range.end; ++place) {
-        double value = 0.0;
-        for (std::size_t i = 0; i < code_.steps.size(); ++i) {
-            (void)run_sample(memory({&code_.steps[i], 1}), place, value);
-            if (code_.computes[i] == no_operand || !std::isnan(value)) continue;
-            culprit_ = code_.computes[i];
-            return place;
-        }
+    for (std::size_t slot = range.begin; slot < range.end; ++slot) {
+        std::size_t first = code_.steps.size();
+        for (std::size_t place = slot * width_; place < (slot + 1) * width_; ++place)
+            first = std::min(first, first_undefined_step(place));
+        if (first == code_.steps.size()) continue;
+        culprit_ = code_.computes[first];
+        return slot;
     }
     return defined;
+}
+
+std::size_t Chain::first_undefined_step(std::size_t place) noexcept {
+    double value = 0.0;
+    for (std::size_t i = 0; i < code_.steps.size(); ++i) {
+        (void)run_sample(memory({&code_.steps[i], 1}), place, value);
+        if (code_.computes[i] != no_operand && std::isnan(value)) return i;
+    }
+    return code_.steps.size();
 }
 
 } // namespace rtamt::discrete

@@ -4,11 +4,14 @@
 // accumulator, everything else is stored for a strip. A value that may be NaN is checked unless NaN
 // reaches a member that is; only when one was seen is every member looked at.
 //
+// Lanes are computed as so many doubles more at a slot.
+//
 // Cost: that of strip.hpp. Memory: a strip for each constant and each value that is stored.
 #pragma once
 
 #include "../program/fusion.hpp"
 #include "../program/program.hpp"
+#include "../values/lanes.hpp"
 #include "kernel.hpp"
 #include "step.hpp"
 
@@ -32,9 +35,18 @@ struct ChainCode {
 [[nodiscard]] ChainCode chain_code(const Program& program, const Fusion& fusion,
                                    std::span<const std::uint32_t> members);
 
+// How many doubles a value of a domain is for a chain; 0 if there are no chains.
+template <class D>
+inline constexpr std::size_t chain_width = 0;
+template <>
+inline constexpr std::size_t chain_width<Real> = 1;
+template <std::size_t n>
+inline constexpr std::size_t chain_width<Lanes<n>> = n;
+
 class Chain final : public Kernel {
   public:
-    Chain(ChainCode code, std::int64_t lag);
+    // `width`: doubles at each slot.
+    Chain(ChainCode code, std::int64_t lag, std::size_t width = 1);
 
     // The instructions whose registers are read, and where the addresses of these belong.
     [[nodiscard]] std::span<const std::uint32_t> columns() const noexcept { return code_.columns; }
@@ -51,11 +63,13 @@ class Chain final : public Kernel {
     ChainCode code_;
     std::vector<Operand> operands_;
     std::vector<double> memory_; // constants, and what steps store
-    std::size_t stride_ = 0;     // of strips in memory
+    std::size_t width_;
+    std::size_t stride_ = 0; // of strips in memory
     std::uint32_t culprit_ = 0;
 
     [[nodiscard]] Memory memory(std::span<const Step> steps) noexcept;
     [[nodiscard]] std::size_t first_undefined(Range range) noexcept;
+    [[nodiscard]] std::size_t first_undefined_step(std::size_t place) noexcept;
 };
 
 } // namespace rtamt::discrete

@@ -148,11 +148,12 @@ template <Monoid M>
 struct Stretch<M> {
     using Element = typename M::Element;
     using Value = typename M::Value;
-    using Wide = LaneLoops<M, 8, 4>;
-    using Loops = LaneLoops<M, 8, 2>;
+    static constexpr std::size_t lanes = 8;
+    using Wide = LaneLoops<M, lanes, 4>;
+    using Loops = LaneLoops<M, lanes, 2>;
 
     static void flip(Element* ring, std::size_t width) noexcept {
-        vectorised<typename Wide::Flip, typename Loops::Flip>(width, ring, width);
+        vectorised<typename Wide::Flip, typename Loops::Flip>(lanes * width, ring, width);
     }
     [[nodiscard]] static Element grow(Operands<M> in, Element* cells, Element back, Value* out,
                                       std::size_t count) noexcept {
@@ -168,8 +169,8 @@ struct Stretch<M> {
     static Element push(Operands<M> in, Element* cells, Element back, Value* out,
                         std::size_t count) noexcept {
         return vectorised<typename Wide::template Push<sliding>,
-                          typename Loops::template Push<sliding>>(count, in, cells, back, out,
-                                                                  count);
+                          typename Loops::template Push<sliding>>(lanes * count, in, cells, back,
+                                                                  out, count);
     }
 };
 

@@ -34,7 +34,9 @@ template <class Value>
 
 template <ValueDomain D>
 Wiring<D>::Plan Wiring<D>::plan(const Program& program) {
-    Plan plan{sorts(program), std::same_as<D, Real> ? fused(program) : unfused(program), {}};
+    Plan plan{sorts(program),
+              chain_width<D> == 0 ? unfused(program) : fused(program, chain_width<D> > 1),
+              {}};
     std::size_t numbers = 0;
     for (std::size_t i = 0; i < program.instructions.size(); ++i) {
         const std::size_t state = Kernels<D>::state_size(program.instructions[i], plan.sorts[i]);
@@ -176,8 +178,9 @@ std::unique_ptr<Kernel> Wiring<D>::make_call(std::uint32_t index) {
 
 template <ValueDomain D>
 std::unique_ptr<Kernel> Wiring<D>::make_chain(std::span<const std::uint32_t> members) {
-    auto kernel = std::make_unique<Chain>(chain_code(program_, fusion_, members),
-                                          program_.instructions[members.back()].lag);
+    auto kernel =
+        std::make_unique<Chain>(chain_code(program_, fusion_, members),
+                                program_.instructions[members.back()].lag, chain_width<D>);
     chains_.push_back(kernel.get());
     return kernel;
 }

@@ -86,8 +86,9 @@ namespace detail {
     return fusion;
 }
 
-// The chains of a program, unless it leaves the pass out.
-[[nodiscard]] inline Fusion fused(const Program& program) {
+// The chains of a program, unless it leaves the pass out. `singles`: what could be a member of a
+// chain is one by itself if there is no other.
+[[nodiscard]] inline Fusion fused(const Program& program, bool singles = false) {
     constexpr std::uint32_t unread = std::numeric_limits<std::uint32_t>::max();
     Fusion fusion = unfused(program);
     if (!program.applies(Pass::fuse)) return fusion;
@@ -109,6 +110,7 @@ namespace detail {
     }
     // A chain is guarded if a member is, and so is what it reads.
     for (std::uint32_t i = 0; i < reader.size(); ++i) {
+        if (singles && fusable(program.instructions[i].opcode)) fusion.chained[i] = true;
         if (fusion.guarded[i]) fusion.guarded[fusion.roots[i]] = true;
         if (fusion.inside(i)) fusion.chained[i] = fusion.chained[fusion.roots[i]] = true;
     }

@@ -104,9 +104,10 @@ class Rows:
     def has_nan(self) -> bool:
         """Whether a sample is NaN; samples after the end of their trace do not count."""
         for column in self.columns.values():
-            wrong = np.isnan(column)
-            if wrong.any() and (wrong & (np.arange(self.width) < self.lengths[:, None])).any():
-                return True
+            if column.size and np.isnan(column.min()):  # no array of truths where there is none
+                wrong = np.isnan(column) & (np.arange(self.width) < self.lengths[:, None])
+                if wrong.any():
+                    return True
         return False
 
 
