@@ -1,10 +1,10 @@
-// The page: its state, what is asked of the server, and where the answers are shown.
+// The page: its state, requests to the server, and the presentation of results.
 
 import { Editor } from "./editor.js";
 import { decode, encode, fromBase64, toBase64 } from "./link.js";
-import { OverTime } from "./online.js";
-import { Chart, room, seen } from "./chart.js";
-import { bytesOf, cancel, Follower, ask, start, upload } from "./server.js";
+import { Timeline } from "./online.js";
+import { Chart, valueRange, visibleRange } from "./chart.js";
+import { bytesOf, cancel, LatestRequest, ask, start, upload } from "./server.js";
 import { Signal } from "./signal.js";
 import { Verdict } from "./verdict.js";
 import { View } from "./view.js";
@@ -19,15 +19,15 @@ const EXAMPLE = {
 };
 
 const state = { text: "", time: "discrete", period: "1s", duration: 30, signals: {}, recording: null, resample: "", focus: null, at: null };
-const named = (signals) => Object.assign(Object.create(null), signals); // any name, even __proto__
-state.signals = named({});
+const withoutPrototype = (signals) => Object.assign(Object.create(null), signals); // any name, even __proto__
+state.signals = withoutPrototype({});
 let answer = null; // the last one without an error
 let changes = 0; // of what is evaluated
 let charts = new Map();
 
 const width = () => Math.max($("charts").clientWidth - 68, 100);
 
-const wish = (more = {}) => ({
+const makeRequest = (more = {}) => ({
   text: state.text, time: state.time, period: state.period, duration: state.duration, resample: state.resample, focus: state.focus,
   signals: state.recording ? {} : state.signals, recording: state.recording?.number ?? null, width: width(), view: view.part, change: changes, ...more,
 });
@@ -41,28 +41,28 @@ const toast = (text) => {
 
 // ---- answers
 
-const evaluation = new Follower("evaluate", () => wish(), (found, begun, { text, recording }) => {
+const evaluation = new LatestRequest("evaluate", () => makeRequest(), (found, begun, { text, recording }) => {
   if (text !== state.text || recording !== (state.recording?.number ?? null)) return; // of another text, or other data
   show(found);
   const { dataset } = document.documentElement; // for measurements
   dataset.took = (performance.now() - begun).toFixed(2);
   dataset.updates = Number(dataset.updates || 0) + 1;
 }, 40);
-const replay = new Follower("replay", () => (answer ? wish({ view: null }) : null), (found) => {
-  over.replayed(found);
-  if (view.part) closer.watched.soon(0);
-  if (state.at !== null) moment.soon(0);
+const replay = new LatestRequest("replay", () => (answer ? makeRequest({ view: null }) : null), (found) => {
+  timeline.replayed(found);
+  if (view.part) details.watched.schedule(0);
+  if (state.at !== null) cursorState.schedule(0);
 }, 120);
-const moment = new Follower("cursor", () => (answer && state.at !== null ? wish({ at: state.at }) : null), (found, _, { at, change }) => { if (change === changes) over.known(found, at); }, 30);
-// What is seen of a part of the time, in full detail.
-const closer = {
-  drawn: new Follower("redraw", () => (answer && view.part ? wish() : null), (found, _, { change }) => {
+const cursorState = new LatestRequest("cursor", () => (answer && state.at !== null ? makeRequest({ at: state.at }) : null), (found, _, { at, change }) => { if (change === changes) timeline.known(found, at); }, 30);
+// The visible part of the time span, in full detail.
+const details = {
+  drawn: new LatestRequest("redraw", () => (answer && view.part ? makeRequest() : null), (found, _, { change }) => {
     if (found.error || change !== changes) return;
     answer.near = found.near;
     arrange(answer.variables);
-    over.draw();
+    timeline.draw();
   }, 50),
-  watched: new Follower("redraw_replay", () => (answer && over.found && !over.found.error && view.part ? wish() : null), (found, _, { change }) => { if (change === changes) over.rewatched(found); }, 100),
+  watched: new LatestRequest("redraw_replay", () => (answer && timeline.found && !timeline.found.error && view.part ? makeRequest() : null), (found, _, { change }) => { if (change === changes) timeline.redrawn(found); }, 100),
 };
 
 const view = new View({
@@ -71,24 +71,24 @@ const view = new View({
   viewed: () => {
     if (!answer) return;
     arrange(answer.variables);
-    over.draw();
+    timeline.draw();
     point();
     remember();
-    closer.drawn.soon();
-    closer.watched.soon();
+    details.drawn.schedule();
+    details.watched.schedule();
   },
 });
 
 const changed = ({ delay, kept = true } = {}) => {
   changes += 1;
   if (kept) remember();
-  evaluation.soon(delay);
+  evaluation.schedule(delay);
 };
 
 const editor = new Editor(() => { state.text = editor.text; changed(); });
 const verdict = new Verdict((name) => { state.focus = name; changed({ delay: 0 }); });
-const over = new OverTime({
-  moved: (at) => { state.at = at; view.reveal(at); point(); moment.soon(); remember(); },
+const timeline = new Timeline({
+  moved: (at) => { state.at = at; view.reveal(at); point(); cursorState.schedule(); remember(); },
   at: () => state.at,
   drawn: () => drawn(),
   view,
@@ -107,7 +107,7 @@ function show(found) {
     $("period").disabled = found.declared; // by the text
     $("period").value = found.declared ? `${found.period}s` : state.period;
     editor.names = state.recording ? state.recording.signals.map((each) => each.name) : found.variables;
-    if (!state.recording && found.missing.length) { provide(found.missing); return; }
+    if (!state.recording && found.missing.length) { addSignals(found.missing); return; }
   }
   if (found.error) {
     problem.textContent = where(found.error) + found.error.message;
@@ -121,9 +121,9 @@ function show(found) {
   $("period").placeholder = found.step === null ? "inferred" : `${Number(found.step.toPrecision(6))} s`;
   verdict.show(found);
   arrange(found.variables);
-  over.evaluated(found);
+  timeline.evaluated(found);
   point();
-  replay.soon();
+  replay.schedule();
 }
 
 const where = ({ start: at }) => {
@@ -142,7 +142,7 @@ const tidy = (names) => {
   }
 };
 
-function provide(names) {
+function addSignals(names) {
   const unknown = names.filter((name) => !(name in state.signals));
   for (const name of unknown) { state.signals[name] = { hold: true, points: [[0, 0]] }; provided.add(name); }
   if (unknown.length) changed({ delay: 0 });
@@ -202,14 +202,14 @@ class Recorded {
     const place = document.createElement("div");
     host.append(head, place);
     this.chart = new Chart(place, { height: 96, label: `Signal ${name}` });
-    over.listen(this.chart);
+    timeline.listen(this.chart);
   }
 
   draw() {
     if (!this.data || !answer) return;
     this.unit.textContent = this.data.unit;
-    const part = seen(this.data.x, view.times);
-    this.chart.frame(view.times, room([...this.data.y.slice(...part).map(Number), ...this.levels]));
+    const part = visibleRange(this.data.x, view.times);
+    this.chart.frame(view.times, valueRange([...this.data.y.slice(...part).map(Number), ...this.levels]));
     for (const [from, to] of this.because) this.chart.band(from, to, "because");
     for (const level of this.levels) this.chart.level(level);
     this.chart.line(this.data.x, this.data.y, { held: answer.dense, dots: true });
@@ -219,7 +219,7 @@ class Recorded {
 
 function point() {
   for (const { chart } of charts.values()) chart.point(state.at);
-  over.point();
+  timeline.point();
 }
 
 // ---- recordings
@@ -293,7 +293,7 @@ $("link").addEventListener("click", async () => {
 
 async function restore(saved) {
   for (const name of Object.keys(state)) if (name !== "recording" && name in saved) state[name] = saved[name];
-  state.signals = named(state.signals);
+  state.signals = withoutPrototype(state.signals);
   const { recording } = saved;
   if (recording?.bytes) await load(new File([fromBase64(recording.bytes)], recording.name));
   else if (recording) {
@@ -337,10 +337,10 @@ addEventListener("drop", (event) => {
 });
 new ResizeObserver(() => {
   for (const { chart } of charts.values()) chart.measure();
-  over.measure();
+  timeline.measure();
   if (!answer) return;
   arrange(answer.variables);
-  over.draw();
+  timeline.draw();
   point();
 }).observe($("charts"));
 
@@ -350,7 +350,7 @@ for (const button of document.querySelectorAll("[data-wanted]")) {
     for (const each of buttons) each.disabled = true;
     $("cancel").hidden = false;
     $("answer").textContent = "searching …";
-    const found = await ask("find_trace", wish({ wanted: button.dataset.wanted }));
+    const found = await ask("find_trace", makeRequest({ wanted: button.dataset.wanted }));
     for (const each of buttons) each.disabled = false;
     $("cancel").hidden = true;
     $("answer").textContent = found.error ? found.error.message : found.sentence;
@@ -380,7 +380,7 @@ if (saved) await restore(saved);
 else {
   state.time = given.time;
   if (given.text) state.text = given.text.trimEnd();
-  else if (!given.recording) Object.assign(state, { text: EXAMPLE.text, signals: named(structuredClone(EXAMPLE.signals)) });
+  else if (!given.recording) Object.assign(state, { text: EXAMPLE.text, signals: withoutPrototype(structuredClone(EXAMPLE.signals)) });
   if (given.recording) state.recording = given.recording;
   if (given.period || given.recording) state.period = given.period;
   if (given.complaint) toast(given.complaint);

@@ -27,8 +27,8 @@ export const ticks = (low, high, most) => {
   return found;
 };
 
-// The range of finite values, with room around it.
-export const room = (values) => {
+// The range of finite values, with a margin.
+export const valueRange = (values) => {
   let low = Infinity, high = -Infinity;
   for (const value of values) {
     if (!Number.isFinite(value)) continue;
@@ -40,14 +40,14 @@ export const room = (values) => {
   return [low - pad, high + pad];
 };
 
-// Enough digits to tell neighbouring ticks apart.
+// Enough digits to distinguish neighbouring ticks.
 const digitsOf = (times) => {
   const [low, high] = [times[0], times.at(-1)], step = (high - low) / Math.max(times.length - 1, 1);
   return Math.min(Math.max(Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (step || 1))) + 2, 6), 15);
 };
 
 // The points of a line in a part of the time, with the one before it and the one after it.
-export const seen = (x, [from, to]) => {
+export const visibleRange = (x, [from, to]) => {
   const first = Math.max(x.findIndex((each) => each >= from) - 1, 0), last = x.findLastIndex((each) => each <= to) + 2;
   return x.length && x[x.length - 1] < from ? [x.length - 1, x.length] : [first, last];
 };

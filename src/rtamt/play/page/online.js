@@ -1,20 +1,20 @@
-// Robustness over time, and what an online monitor knows while the samples arrive.
+// Robustness over time, and the state of an online monitor while samples arrive.
 
-import { Chart, number, room, seen, svg } from "./chart.js";
+import { Chart, number, svg, valueRange, visibleRange } from "./chart.js";
 
 const $ = (id) => document.getElementById(id);
 const STEPS = 1000;
 const LASTS = 8000; // milliseconds in which a recording is played
 
-export class OverTime {
+export class Timeline {
   // `page`: moved(at), at(), drawn() and view.
   constructor(page) {
     this.page = page;
     this.values = new Chart($("robustness"), { height: 110, label: "Robustness of the formula over time" });
     this.strip = new Chart($("online"), { height: 34, label: "Verdict of each instant" });
     this.bounds = new Chart($("online"), { height: 110, label: "Bounds of the robustness at the start", axis: true });
-    // The last evaluation; the replay, all of it and what is seen of it; and what was known at the cursor.
-    this.answer = this.found = this.near = this.moment = null;
+    // The last evaluation; the replay and its visible part; and the state of the monitor at the cursor.
+    this.answer = this.found = this.near = this.cursorState = null;
     for (const chart of [this.values, this.strip, this.bounds]) this.listen(chart);
     $("at").addEventListener("input", () => { this.stop(); this.move(this.timeOf($("at").value / STEPS)); });
     $("play").addEventListener("click", () => (this.playing ? this.stop() : this.start()));
@@ -38,7 +38,7 @@ export class OverTime {
   }
 
   move(at) {
-    this.moment = null;
+    this.cursorState = null;
     const end = this.answer?.clock.end;
     this.page.moved(at === null || at >= end ? null : at);
   }
@@ -67,13 +67,13 @@ export class OverTime {
 
   // ---- answers
 
-  evaluated(answer) { this.answer = answer; this.moment = null; this.draw(); }
+  evaluated(answer) { this.answer = answer; this.cursorState = null; this.draw(); }
 
-  replayed(found) { this.found = found; this.near = null; this.drawOnline(); this.tell(); }
+  replayed(found) { this.found = found; this.near = null; this.drawOnline(); this.updateStatus(); }
 
-  rewatched(found) { this.near = found.error ? null : found.near; this.drawOnline(); }
+  redrawn(found) { this.near = found.error ? null : found.near; this.drawOnline(); }
 
-  known(found, at) { this.moment = found.error ? null : { ...found, at }; this.drawOnline(); this.tell(); }
+  known(found, at) { this.cursorState = found.error ? null : { ...found, at }; this.drawOnline(); this.updateStatus(); }
 
   // ---- drawing
 
@@ -84,8 +84,8 @@ export class OverTime {
   draw() {
     if (!this.answer) return;
     const { robustness, upper, fails } = this.page.drawn(), { explanation } = this.answer, { values } = this;
-    const part = seen(robustness.x, this.times);
-    values.frame(this.times, room([...robustness.y.slice(...part), ...(upper ? upper.y.slice(...part) : []), 0].map(Number)));
+    const part = visibleRange(robustness.x, this.times);
+    values.frame(this.times, valueRange([...robustness.y.slice(...part), ...(upper ? upper.y.slice(...part) : []), 0].map(Number)));
     for (const [from, to] of fails) values.band(from, to, "fails");
     values.level(0, "zero");
     if (upper) values.area(robustness.x, robustness.y, upper.y, "known");
@@ -126,8 +126,8 @@ export class OverTime {
     const { bounds } = this;
     const until = x.findLastIndex((each) => each <= now) + 1;
     const low = lower.slice(0, until), high = upper.slice(0, until);
-    const waiting = (this.moment?.pending || []).filter(([time]) => bounds.has(time)), part = seen(x, this.times);
-    bounds.frame(this.times, room([...lower.slice(...part), ...upper.slice(...part), ...waiting.flatMap(([, a, b]) => [a, b]), 0].map(Number)));
+    const waiting = (this.cursorState?.pending || []).filter(([time]) => bounds.has(time)), part = visibleRange(x, this.times);
+    bounds.frame(this.times, valueRange([...lower.slice(...part), ...upper.slice(...part), ...waiting.flatMap(([, a, b]) => [a, b]), 0].map(Number)));
     bounds.level(0, "zero");
     if (until > 0) bounds.area(x.slice(0, until), low, high, "known");
     for (const [time, a, b] of waiting) {
@@ -141,18 +141,18 @@ export class OverTime {
     const at = this.page.at(), { start, end } = this.answer.clock;
     for (const chart of [this.values, this.strip, this.bounds]) chart.point(at);
     $("at").value = at === null ? STEPS : Math.round(((at - start) / (end - start || 1)) * STEPS);
-    this.tell();
+    this.updateStatus();
   }
 
   // What is known now, in words.
-  tell() {
+  updateStatus() {
     const { found } = this;
     if (!found) return;
     if (found.error) { $("now").textContent = found.error.message; $("watched").textContent = ""; return; }
     const at = this.page.at(), { end } = this.answer.clock, now = at ?? end;
     const { x, lower, upper, decided } = found.bounds, last = x.findLastIndex((each) => each <= now);
     // Of long recordings, the replay has some of the samples, and this moment is exact.
-    const exact = this.moment?.at === at ? this.moment : null;
+    const exact = this.cursorState?.at === at ? this.cursorState : null;
     const known = exact ? exact.bounds : last < 0 ? null : [lower[last], upper[last]];
     const open = exact ? exact.open : found.runs.filter(([from, , , settled]) => from <= now && now < (settled ?? end)).length;
     const between = known === null ? "nothing is known" : known[0] === known[1] ? `robustness ${number(known[0])}` : `robustness between ${number(known[0])} and ${number(known[1])}`;

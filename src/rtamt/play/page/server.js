@@ -35,13 +35,13 @@ export const bytesOf = async (recording) => {
   return answer.ok ? new Uint8Array(await answer.arrayBuffer()) : null;
 };
 
-// A kind of request that follows what the user does: the last wish is sent when the one before is answered.
-export class Follower {
-  constructor(kind, wish, show, delay) {
-    Object.assign(this, { kind, wish, show, delay, timer: null, busy: false, again: false, sent: 0 });
+// Requests of one kind that follow the user: the latest one is sent when the previous one is answered.
+export class LatestRequest {
+  constructor(kind, makeRequest, show, delay) {
+    Object.assign(this, { kind, makeRequest, show, delay, timer: null, busy: false, again: false, sent: 0 });
   }
 
-  soon(delay = this.delay) {
+  schedule(delay = this.delay) {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.send(), delay);
   }
@@ -49,15 +49,15 @@ export class Follower {
   async send() {
     this.timer = null;
     if (this.busy) { this.again = true; return; }
-    const wish = this.wish();
-    if (wish === null) return;
+    const request = this.makeRequest();
+    if (request === null) return;
     this.busy = true;
     const sent = ++this.sent, begun = performance.now();
-    const answer = await ask(this.kind, wish);
+    const answer = await ask(this.kind, request);
     this.busy = false;
     const again = this.again;
     this.again = false;
     if (again) this.send();
-    if (!answer.late && sent === this.sent - (again ? 1 : 0)) this.show(answer, begun, wish);
+    if (!answer.late && sent === this.sent - (again ? 1 : 0)) this.show(answer, begun, request);
   }
 }

@@ -1,6 +1,6 @@
 // A signal that is drawn: its points are dragged, added and removed, by pointer and by keys.
 
-import { Chart, number, room, svg } from "./chart.js";
+import { Chart, number, valueRange, svg } from "./chart.js";
 
 const HANDLES = 80; // more points have no handles
 const NEAR = 14; // pixels
@@ -68,7 +68,7 @@ export class Signal {
     const focused = chart.svg.contains(document.activeElement);
     this.holding.textContent = hold ? "held" : "lines";
     this.holding.setAttribute("aria-label", `${this.holding.textContent}: how values of ${this.name} continue between points`);
-    if (!this.drag) this.range = room([...points.map((point) => point[1]), ...this.levels, ...(points.length === 1 ? [0] : [])]);
+    if (!this.drag) this.range = valueRange([...points.map((point) => point[1]), ...this.levels, ...(points.length === 1 ? [0] : [])]);
     chart.frame(this.page.times, this.range);
     for (const [from, to] of this.because) chart.band(from, to, "because");
     for (const level of this.levels) chart.level(level);
@@ -118,7 +118,7 @@ export class Signal {
     return tidy(Math.min(Math.max(Math.round(time / grain) * grain, 0), this.page.duration), 12);
   }
 
-  // A value in steps that can be seen.
+  // A value rounded to visible steps.
   rounded(value) {
     const step = 10 ** Math.floor(Math.log10((this.range[1] - this.range[0]) / 100));
     return tidy(Math.round(value / step) * step, 10);

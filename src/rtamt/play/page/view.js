@@ -4,7 +4,7 @@ import { number } from "./chart.js";
 
 const $ = (id) => document.getElementById(id);
 const CLOSEST = 1e-6; // of the whole time
-const WHEEL = 400; // pixels of the wheel that halve the time seen
+const WHEEL = 400; // pixels of the wheel that halve the visible time span
 
 // A time without digits that do not matter in a view of this length.
 const rounded = (time, length) => {
@@ -24,7 +24,7 @@ export class View {
 
   get times() { return this.part ?? this.page.whole(); }
 
-  // Whether something that is known of a part of the time is known of all that is seen.
+  // Whether data for a part of the time covers the visible part.
   has(near) { return Boolean(this.part && near && near.view[0] <= this.part[0] && this.part[1] <= near.view[1]); }
 
   // Around a time, by default the cursor, or the middle if the cursor is not in view.
@@ -52,12 +52,12 @@ export class View {
     const length = Math.min(Math.max(to - from, least), end - start);
     const begin = Math.min(Math.max((from + to - length) / 2, start), end - length);
     this.part = length < end - start ? [begin, begin + length] : null;
-    this.tell();
+    this.showRange();
     this.page.viewed();
   }
 
-  // Take a part without asking for what is seen of it.
-  take(part) { this.part = part; this.tell(); }
+  // Set the visible part without a request.
+  take(part) { this.part = part; this.showRange(); }
 
   // Keep the part that the whole time still has.
   fit() {
@@ -65,7 +65,7 @@ export class View {
     if (this.part && (this.part[0] < start || this.part[1] > end)) this.show(...this.part);
   }
 
-  tell() {
+  showRange() {
     const { part } = this;
     $("seen").textContent = part ? part.map((time) => `${number(rounded(time, part[1] - part[0]), 12)} s`).join(" to ") : "";
     for (const id of ["zoom-out", "earlier", "later", "everything"]) $(id).disabled = !part;
