@@ -161,7 +161,9 @@ class _Changes(Reports):
             satisfied = True if lower > 0 else False if upper < 0 else None
             times = int(change.begin), int(change.end)
             records.append(Bounds(self.output, stamp, lower, upper, satisfied, None, *times))
-            if satisfied is not None:  # the instants after the last verdict are open for as long as the horizon
+            if (
+                satisfied is not None
+            ):  # the instants after the last verdict are open for as long as the horizon
                 self.satisfied = satisfied
         return records
 

@@ -176,7 +176,9 @@ def test_a_node_publishes_each_verdict_once_it_is_decided(time):
 
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_the_verdict_of_a_node_with_bounds_of_every_instant_is_the_last_that_was_decided(time):
-    watched = monitor("rob.value = eventually[0,2](req.value >= 3)", verdict="interval", at="every", time=time)
+    watched = monitor(
+        "rob.value = eventually[0,2](req.value >= 3)", verdict="interval", at="every", time=time
+    )
     shown = []
     for stamp, value in enumerate((4, -1, -2, -5, 7), 1):
         watched.message("/req", message(value, at=stamp), stamp * SECOND)

@@ -7,7 +7,7 @@ backends              the back ends: the compiled core and the definition
 early                 what both back ends report before the horizon: requirements, each with its own trace
 evaluate              offline evaluation by the compiled core
 monitor               the monitor
-quantifiers           the monitor of quantifiers, over members that come and go
+quantifiers           the monitor of quantifiers over dynamic groups
 member_executors      what executes quantifiers: one executor for each member
 steps                 the samples of a stream, cut at the instants up to which all are known
 groups                several requirements, each with the trace of its own variables

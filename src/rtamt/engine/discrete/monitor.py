@@ -5,39 +5,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.backends import BACKENDS
+from rtamt.engine.discrete.checked_samples import CheckedSamples
 from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.engine.slow_path import SlowPath, inner_of
-from rtamt.errors import TraceError, UsageError
-from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
 from rtamt.signals import arrays
-from rtamt.signals.arrays import Timestamps
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.episodes import plain_times
-from rtamt.signals.samples import read_time, read_values, time_of
-from rtamt.signals.sampling_period import (
-    check_increasing,
-    check_regular,
-    irregular,
-)
 from rtamt.signals.signal import Signal
-from rtamt.usage_guard import exclusive, in_use
+from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from fractions import Fraction
 
-    from numpy.typing import NDArray
-
     from rtamt.engine.discrete.fleet import DiscreteFleet
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import Timestamps
 
 
-class Monitor(MonitorBase, OnlineMonitor):
+class Monitor(MonitorBase, CheckedSamples):
     """Monitors one formula on a stream of samples in discrete time.
 
     Built by ``Specification.monitor``. Feed it with one of :meth:`update` (a sample by name),
@@ -150,80 +141,6 @@ class Monitor(MonitorBase, OnlineMonitor):
             [1.0, 1.0]
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> float | None:
-        """Take a sample that the core rejected, or report what is wrong with it."""
-        time = time_of(given)
-        if self._plain:
-            return self._take(time, values)
-        return self._take_alone(time, values)
-
-    @exclusive
-    def _take_alone(self, time: Any, values: dict[str, Any]) -> float | None:
-        """Take a sample whose time or value is remembered here."""
-        robustness = (
-            self._take(time, values) if self._times.plain else self._take_at_caller_time(time, values)
-        )
-        self._note_sample(robustness)
-        return robustness
-
-    def _take_at_caller_time(self, time: Any, values: dict[str, Any]) -> float | None:
-        """Take a sample whose time is not given in seconds."""
-        timestamp = self._times.read([time], self.samples)
-        robustness = self._take(float(timestamp.seconds[0]), values)
-        self._remember(timestamp.original)
-        return robustness
-
-    def _take(self, time: Any, values: dict[str, Any]) -> float | None:
-        flat = self._read_by_formula(values)
-        if self._finished:
-            raise self._is_finished()
-        timestamp = read_time(time, self.samples, self._last_time)
-        numbers = read_values(flat, self.input_names, self.samples, timestamp, self._types)
-        try:
-            robustness: float | None = self._update(timestamp, numbers)
-        except self._refused:
-            raise self._refusal(timestamp) from None
-        except self._undefined as error:
-            raise self._no_value(error) from None
-        return robustness
-
-    def _step_carefully(self, *values: Any) -> float | None:
-        """Take a sample by position that the core did not take, or find out what is wrong with it."""
-        if self._plain:
-            return self._take_row(values)
-        return self._take_row_alone(values)
-
-    @exclusive
-    def _take_row_alone(self, values: tuple[float, ...]) -> float | None:
-        robustness = self._take_row(values) if self._times.plain else self._take_row_at_caller_time(values)
-        self._note_sample(robustness)
-        return robustness
-
-    def _take_row_at_caller_time(self, values: tuple[float, ...]) -> float | None:
-        """Take a sample after samples whose times are not in seconds."""
-        later = self._times.later(1)
-        robustness = self._take_row(values)
-        self._remember(later)
-        return robustness
-
-    def _take_row(self, values: tuple[float, ...]) -> float | None:
-        if len(values) != len(self.input_names):
-            raise TraceError(
-                f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
-                f"({', '.join(self.input_names) or 'the formula reads no variable'}), got {len(values)}"
-            )
-        if self._finished:
-            raise self._is_finished()
-        named = dict(zip(self.input_names, values, strict=True))
-        numbers = read_values(named, self.input_names, self.samples, self._next_time(), self._types)
-        try:
-            robustness: float | None = self._step(*numbers.values())
-        except self._refused:
-            raise self._refusal(self._next_time()) from None
-        except self._undefined as error:
-            raise self._no_value(error) from None
-        return robustness
-
     @exclusive
     def update_many(self, data: Any) -> Signal:
         """Take a chunk of samples: a mapping (or frame) from variable to values, with ``"time"``.
@@ -301,15 +218,6 @@ class Monitor(MonitorBase, OnlineMonitor):
         self._note(news)
         return news[0]
 
-    def _note_sample(self, robustness: float | None) -> None:
-        """Look at what the last sample made known of each formula."""
-        if self._episodes is None:
-            return
-        for output, lag in enumerate(self._lags):
-            value = self._backend.latest(output) if output else robustness
-            if value is not None:
-                self._episodes[output].take([(plain_times(self._recent(lag + 1)[:1])[0], value)])
-
     def _note(self, news: list[Signal]) -> None:
         """Look at what a chunk made known of each formula."""
         for tracker, signal in zip(self._episodes or (), news, strict=self._episodes is not None):
@@ -375,73 +283,6 @@ class Monitor(MonitorBase, OnlineMonitor):
         return DiscreteFleet(
             self, capacity, restart=restart, state=state, identities=identities, watched=watched
         )
-
-    @property
-    def _last_time(self) -> float | None:
-        last: float | None = self._backend.last_time
-        return last
-
-    def _next_time(self) -> float:
-        last = self._last_time
-        return 0.0 if last is None else last + float(self._period)
-
-    # ---- timestamps that are not in seconds ------------------------------------------------------
-
-    def _remember(self, original: NDArray[Any]) -> None:
-        first = self._times.original is None
-        self._times = self._times.extended(original)
-        if first:
-            self._connect(inner_of(self._backend))
-
-    def _recent(self, count: int) -> NDArray[Any]:
-        """Return the timestamps of the last samples in the caller's format."""
-        original = self._times.original
-        if original is not None:
-            return original[len(original) - count :]
-        return (
-            np.array(self._backend.recent(count))
-            if count or self._times.unit is None
-            else np.empty(0, np.int64)
-        )
-
-    # ---- what goes wrong -------------------------------------------------------------------------
-
-    def _chunk(
-        self, timestamps: Timestamps | None, columns: Mapping[str, arrays.FloatArray], n: int
-    ) -> tuple[Timestamps, list[arrays.FloatArray]]:
-        last = self._last_time
-        if timestamps is None:
-            times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
-            timestamps = Timestamps(times, times if self._times.plain else self._times.later(n))
-        elif n:
-            self._times.require_alike(timestamps, self.samples)
-        else:
-            timestamps = Timestamps(timestamps.seconds, self._recent(0))
-        times, ordered = timestamps.seconds, [columns[name] for name in self.input_names]
-        if not self._backend.accepts(times, ordered):
-            check_increasing(times, last, self.samples)
-            check_regular(times, self._period, self._tolerance, last, self.samples)
-            for name, column in columns.items():
-                arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
-        return timestamps, ordered
-
-    def _is_finished(self) -> UsageError:
-        return UsageError("the monitor has finished its trace; call reset() before the next sample")
-
-    def _refusal(self, time: float) -> Exception:
-        """Return the error for a sample that the back end rejected."""
-        if self._finished:
-            return self._is_finished()
-        index, last = self.samples, self._last_time
-        read_time(time, index, last)
-        period = float(self._period)
-        if last is None or abs(time - last - period) <= self._tolerance * period:
-            return in_use()  # the cause has disappeared meanwhile
-        return irregular(index, time, last, self._period, self._tolerance)
-
-    def _no_value(self, error: Any) -> Exception:
-        """Return the error for an undefined value, with its sub-formula and instant."""
-        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
 
 
 def push_samples(
