@@ -82,6 +82,10 @@ DECLARATIONS = [
     ("enum E { A, B = 0 } E e e == A", "'B' and 'A' of E have the same code, 0"),
     ("enum E { A, A } E e e == A", "'A' is twice in E"),
     ("enum E { } E e e == A", "the enumeration 'E' has no members"),
+    (
+        "enum E { A = 9007199254740992, B } E e e == A",
+        "the code of 'B' would be 9007199254740993, more than 9007199254740992; give it one",
+    ),
     ("enum E { A = 1.5 } E e e == A", "the code of a member is a whole number, such as AUTO = 4; got '1.5'"),
     ("enum E { A B } E e e == A", "expected ',' or '}' after the member 'A', got 'B'"),
     ("enum E { A", "this '{' is never closed"),

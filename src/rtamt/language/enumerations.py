@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 #: Codes that a double holds exactly.
 _LARGEST_CODE = 2**53
+_MOST_DIGITS = len(str(_LARGEST_CODE))
 
 
 def begins_enumeration(parser: NameParser) -> bool:
@@ -42,6 +43,7 @@ def parse_enumeration(parser: NameParser, types: Collection[str]) -> Enumeration
     if name.text in types:
         raise parser.error(f"there is a type '{name.text}' already", name.span)
     members: dict[str, int] = {}
+    named: dict[int, str] = {}
     while parser.token.text != "}":
         token = parser.next()
         if token.kind not in ("name", "quoted"):
@@ -49,8 +51,13 @@ def parse_enumeration(parser: NameParser, types: Collection[str]) -> Enumeration
         if token.name in members:
             raise parser.error(f"'{token.name}' is twice in {name.text}", token.span)
         code = _code(parser) if parser.accept("=") else next(reversed(members.values()), -1) + 1
-        taken = next((other for other, own in members.items() if own == code), None)
-        if taken is not None:
+        if code > _LARGEST_CODE:
+            raise parser.error(
+                f"the code of '{token.name}' would be {code}, more than {_LARGEST_CODE}; give it one",
+                token.span,
+            )
+        taken = named.setdefault(code, token.name)
+        if taken != token.name:
             raise parser.error(
                 f"'{token.name}' and '{taken}' of {name.text} have the same code, {code}", token.span
             )
@@ -74,7 +81,9 @@ def _code(parser: NameParser) -> int:
     """``[ "-" ] , integer``."""
     minus = parser.accept("-")
     token = parser.next()
-    if token.kind != "number" or not token.text.isdigit() or int(token.text) > _LARGEST_CODE:
+    digits = token.text.lstrip("0")
+    too_large = len(digits) > _MOST_DIGITS or (digits.isdigit() and int(digits) > _LARGEST_CODE)
+    if token.kind != "number" or not token.text.isdigit() or too_large:
         raise parser.error(
             f"the code of a member is a whole number, such as AUTO = 4; got {token}", token.span
         )

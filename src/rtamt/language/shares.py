@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Interval, Span
-from rtamt.language.units.durations import UNITS, decimal, exact
+from rtamt.language.units.durations import UNITS, decimal, exact, why_not_exact
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_tuples import NamedTuple
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from fractions import Fraction
 
+    from rtamt.language.parsing.lexer import Token
     from rtamt.language.parsing.parser import FormulaParser
 
 
@@ -87,6 +88,13 @@ def rank_arguments(
     return rank_of(interval, step, continuous=continuous)
 
 
+def _number(parser: FormulaParser, token: Token) -> Fraction:
+    try:
+        return exact(token.text)
+    except ValueError:
+        raise parser.error(f"the share {why_not_exact(token.text)}", token.span, BoundError) from None
+
+
 def parse_share(parser: FormulaParser, name: str) -> Share:
     """``share = number , [ "/" , number ] , [ "%" | unit ]``: read the first operand of ``name``."""
     token = parser.next()
@@ -96,12 +104,13 @@ def parse_share(parser: FormulaParser, name: str) -> Share:
             f"write {name}[0:5](80%, ...)",
             token.span,
         )
-    amount = exact(token.text)
+    amount = _number(parser, token)
     if parser.accept("/"):
         below = parser.next()
-        if below.kind != "number" or exact(below.text) == 0:
+        divisor = _number(parser, below) if below.kind == "number" else 0
+        if divisor == 0:
             raise parser.error(f"expected a positive number after '/', got {below}", below.span)
-        amount /= exact(below.text)
+        amount /= divisor
     unit, kind = "", ShareKind.SAMPLES
     if parser.accept("%"):
         kind = ShareKind.PERCENT

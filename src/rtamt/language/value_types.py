@@ -5,6 +5,7 @@ A Boolean is 1 or 0 in data, a member of an enumeration is its code; recordings 
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import did_you_mean
@@ -34,7 +35,7 @@ class Boolean:
 BOOLEAN = Boolean()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Enumeration:
     """A type whose values have names. ``members``: each name with its code, in the order of the declaration.
 
@@ -53,11 +54,15 @@ class Enumeration:
 
     def code(self, member: str) -> int | None:
         """Return the code of a member; None for any other name."""
-        return next((code for name, code in self.members if name == member), None)
+        return self._codes.get(member)
 
     def member(self, code: float) -> str | None:
         """Return the name of the member with a code; None if there is none."""
         return next((name for name, own in self.members if own == code), None)
+
+    @cached_property
+    def _codes(self) -> dict[str, int]:
+        return dict(self.members)
 
     def listing(self, written: Callable[[str], str] = str) -> str:
         """Return the names of the members for a message. ``written``: how a text writes the member of a name."""

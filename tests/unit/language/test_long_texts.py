@@ -43,6 +43,12 @@ READ = {
     + "".join(f"C{i} v{i}\n" for i in range(3000))
     + "v1.y",
     "annotations": numbered("float v{0} ", LENGTH // 2) + numbered("@topic(v{0}, a/b) ", LENGTH // 2) + "v1",
+    "a variable called if, and no choice": repeated("if - ") + "1",
+    "members": "enum E { "
+    + numbered("M{0}, ")
+    + "M } input E e  "
+    + numbered("e == M{0} or ", LENGTH // 4)
+    + "e == M",
     "names of paths": "float a/b/c/d " + repeated("a/b/c/d + ") + "a/b/c/d >= 0",
 }
 REJECTED = {
@@ -56,6 +62,8 @@ REJECTED = {
     "brackets": repeated("G["),
     "minimum in minimum": repeated("min("),
     "a long number": repeated("1"),
+    "a long share": f"atleast[0:5]({repeated('1')}%, x)",
+    "a long code": f"enum E {{ A = {repeated('1')} }} x",
     "a long bound": f"G[0:{repeated('1')}] x",
     "a name that is not declared": f"float y {repeated('a')} >= 0",
     "names side by side": repeated("a b "),

@@ -139,6 +139,10 @@ def test_an_update_that_fails_after_the_window_has_moved_is_taken_back():
             "expected a share of the window, such as 80%, 3 (samples) or 3s, got 'x'; "
             "write atleast[0:5](80%, ...)",
         ),
+        ("atleast[0:3](1e400%, x)", {}, "the share is beyond the range of a double"),
+        ("atleast[0:3](3/1e400 s, x)", {}, "the share is beyond the range of a double"),
+        (f"atleast[0:3](0.{'1' * 4000}%, x)", {}, "the share has more than 4,000 characters"),
+        ("atleast[0:3](3/0s, x)", {}, "expected a positive number after '/', got '0'"),
         ("atleast[0:3](3 x)", {}, "expected ',' and a formula after the share 3, got 'x'"),
         ("atleast(3, x)", {}, "'atleast' needs an interval with an upper bound, such as atleast[0:5]"),
         (

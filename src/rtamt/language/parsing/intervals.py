@@ -13,7 +13,7 @@ from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.template_names import bound, constants_of
-from rtamt.language.units.durations import UNITS, exact, is_less
+from rtamt.language.units.durations import UNITS, exact, is_less, why_not_exact
 from rtamt.language.value_types import BOOLEAN
 
 if TYPE_CHECKING:
@@ -243,11 +243,12 @@ def _bound(parser: FormulaParser) -> Bound:
 
 
 def _literal(parser: FormulaParser, at: int) -> Fraction:
+    literal = parser.texts[at]
     try:
-        return exact(parser.texts[at])
+        return exact(literal)
     except ValueError:
         span = _span(parser, at, at)
-        raise parser.error("the bound is beyond the range of a double", span, BoundError) from None
+        raise parser.error(f"the bound {why_not_exact(literal)}", span, BoundError) from None
 
 
 def _constant(parser: FormulaParser, token: Token) -> Fraction | None:

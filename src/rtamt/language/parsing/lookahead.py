@@ -57,13 +57,18 @@ class LookaheadParser(TypedParser):
         if self.language.infix(after.text) is None:
             return after.kind in ("name", "number", "quoted") or after.text == "(" or self.opens(at + 1)
         # `if - x then` has no other reading, for two operands are adjacent.
-        depth = 0
+        if at in self._plain_words:
+            return False
+        depth, passed = 0, [at]
         for place, (before, text) in enumerate(pairwise(islice(self.texts, at + 1, None)), at + 1):
             depth += (before in ("(", "[")) - (before in (")", "]"))
             if depth < 0 or before in (";", "="):
-                return False
+                break
             if depth == 0 and text == THEN and self._ends_operand(self.tokens[place]):
                 return True
+            if depth == 0 and text == self.texts[at]:
+                passed.append(place + 1)
+        self._plain_words.update(passed)  # no `then` belongs to those in between, either
         return False
 
     def _ends_operand(self, token: Token) -> bool:

@@ -72,6 +72,8 @@ class NameParser:
         self.tokens = tokens
         self.texts, self.starts, self.ends = tokens.texts, tokens.starts, tokens.ends
         self.index = 0
+        #: The indices of words such as ``if`` that begin no choice.
+        self._plain_words: set[int] = set()
 
     @property
     def token(self) -> Token:

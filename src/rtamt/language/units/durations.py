@@ -57,26 +57,38 @@ _DURATION = lazy_pattern(r"\s*([^\s/A-Za-z]+(?:[eE][+-]?\d+)?)\s*(?:/\s*(\d+)\s*
 #: A number in formulas and durations: decimal, ASCII digits, with single underscores between them, as in Python.
 _DIGITS = r"[0-9]+(?:_[0-9]+)*"
 NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
+#: Of a number: Python converts no more than 4 300 digits by default.
+_MOST_CHARACTERS = 4000
+
 _DECIMAL = lazy_pattern(f"[+-]?{NUMBER}")
 
 
 @lru_cache(maxsize=1024)
+def why_not_exact(literal: str) -> str:
+    """Return why :func:`exact` rejects a number: the end of a sentence about it."""
+    if len(literal) > _MOST_CHARACTERS:
+        return f"has more than {_MOST_CHARACTERS:,} characters"
+    return "is beyond the range of a double"
+
+
 def exact(literal: str) -> Fraction:
     """Return the exact value of a decimal literal.
 
-    Raises :class:`ValueError` if it is not a number, or is beyond the range of a double.
+    Raises :class:`ValueError` if it is not a number, or one that :func:`why_not_exact` rejects.
 
     >>> exact("0.1"), exact("1e-3")
     (Fraction(1, 10), Fraction(1, 1000))
     """
     if _DECIMAL.fullmatch(literal) is None:
         raise ValueError(f"{literal} is no decimal number")
+    if len(literal) > _MOST_CHARACTERS:
+        raise ValueError(f"{literal} {why_not_exact(literal)}")
     # Check the range as a double first: 1e-999999999, or 0e-999999999, would need a gigabyte as a fraction.
     nearest = float(literal)
     if nearest == 0 and re.search("[1-9]", re.split("[eE]", literal)[0]) is None:
         return Fraction(0)
     if nearest == 0 or not isfinite(nearest):
-        raise ValueError(f"{literal} is beyond the range of a double")
+        raise ValueError(f"{literal} {why_not_exact(literal)}")
     return Fraction(literal.replace("_", ""))
 
 

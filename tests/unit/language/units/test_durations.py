@@ -101,6 +101,8 @@ def test_exact_refuses_what_no_double_holds():
     assert exact("0e-999999999") == 0
     with pytest.raises(ValueError, match=r"^1e-400 is beyond the range of a double$"):
         exact("1e-400")
+    with pytest.raises(ValueError, match=r"1{4000} has more than 4,000 characters$"):
+        exact("0." + "1" * 4000)
 
 
 def test_units_cannot_be_changed():
