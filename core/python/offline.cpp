@@ -3,6 +3,7 @@
 #include "../dense/executor.hpp"
 #include "../dense/scan.hpp"
 #include "../discrete/executor.hpp"
+#include "../discrete/fewest_cells.hpp"
 #include "../discrete/scan.hpp"
 #include "../program/fusion.hpp"
 #include "../program/liveness.hpp"
@@ -19,6 +20,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -255,6 +257,32 @@ EventList dense_scan(std::string_view kind, std::span<const dense::Events> opera
     return dense::scan_until<Real>(operands[0], operands[1]);
 }
 
+namespace {
+
+// ---- explanations -------------------------------------------------------------------------------
+
+using Ranges = nb::ndarray<const std::int64_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+using Pairs = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+[[nodiscard]] std::vector<discrete::CellRange> ranges_of(const Ranges& rows) {
+    std::vector<discrete::CellRange> ranges;
+    ranges.reserve(rows.shape(0));
+    for (std::size_t i = 0; i < rows.shape(0); ++i)
+        ranges.push_back({rows(i, 0), rows(i, 1)});
+    return ranges;
+}
+
+[[nodiscard]] Pairs fewest_cells(const Ranges& asked, const Ranges& found, std::int64_t before,
+                                 std::int64_t after, std::int64_t need) {
+    const discrete::FewestCells fewest(ranges_of(asked), ranges_of(found), before, after, need);
+    Pairs pairs;
+    for (const discrete::CellRange& range : fewest.taken())
+        pairs.emplace_back(range.begin, range.end);
+    return pairs;
+}
+
+} // namespace
+
 void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
     m.def(
         "evaluate",
@@ -279,6 +307,10 @@ void add_offline(nanobind::module_& m, const Exceptions& exceptions) {
         nb::arg("kind"), nb::arg("a"), nb::arg("b") = nb::none(), nb::arg("n") = nb::none(),
         "Unbounded future over a whole column, run_max, run_min, or until; with n, over traces of "
         "n samples each in it.");
+    m.def("fewest_cells", &fewest_cells, nb::arg("asked"), nb::arg("found"), nb::arg("before"),
+          nb::arg("after"), nb::arg("need"),
+          "As few cells of `found` as possible, so that `need` of them are in each window [k + "
+          "before, k + after] of the cells `asked`; ranges of cells are rows of begins and ends.");
     m.def(
         "memory",
         [](const nb::bytes& program, const nb::list& calls) {

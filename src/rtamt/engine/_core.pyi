@@ -683,6 +683,14 @@ def scan(
     With n, over traces of n samples each in it.
     """
 
+def fewest_cells(
+    asked: NDArray[np.int64], found: NDArray[np.int64], before: int, after: int, need: int
+) -> list[tuple[int, int]]:
+    """As few cells of ``found`` as possible, so that ``need`` of them are in each window of the cells ``asked``.
+
+    The window of k is [k + before, k + after]; ranges of cells are rows of begins and ends.
+    """
+
 def memory(program: bytes, calls: _Calls = ...) -> int:
     """Bytes of state of a new monitor of this program."""
 

@@ -41,6 +41,11 @@ def core() -> ModuleType:
     return _core
 
 
+def built_core() -> ModuleType | None:
+    """Return the compiled core if it is loaded already; None where it is not built, or is not used."""
+    return sys.modules.get("rtamt.engine._core")
+
+
 class _TakenByPython:
     """What monitors derive from where the core is not built; see ``MonitorBase`` in ``_core``."""
 
@@ -63,11 +68,11 @@ def _read_by_python(*_given: Any) -> None:
 
 def has_period(times: FloatArray, period: Fraction) -> bool:
     """Return :func:`sampling_period.has_period` of timestamps in order, computed in the core if it is built."""
-    loaded = sys.modules.get("rtamt.engine._core")
-    if loaded is None:
+    built = built_core()
+    if built is None:
         return sampling_period.has_period(times, period)
     gap = float(period)
-    found: bool = loaded.has_period(times, gap, sampling_period.coarse_place(gap))
+    found: bool = built.has_period(times, gap, sampling_period.coarse_place(gap))
     return found
 
 

@@ -7,6 +7,7 @@ from collections import deque
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
+from rtamt.engine.native import built_core
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.signals.instants import Cells
@@ -17,13 +18,22 @@ if TYPE_CHECKING:
     from rtamt.signals.instants import Ints
 
 
+#: Cells that windows may span for the core, which needs a byte for each.
+_MOST_CELLS = 2**28
+
+
 def sharing(asked: Cells, found: Cells, before: int, after: int, need: int) -> Cells:
     """Return as few cells of ``found`` as possible: each k of ``asked`` has ``need`` in [k + before, k + after].
 
     From left to right, each time those furthest to the right that are not taken yet: later windows use them, too.
-    No cell can be left out, because no smaller set exists. Cost: proportional to the number of intervals.
+    No cell can be left out, because no smaller set exists. Cost: proportional to the number of cells in the core, to
+    that of intervals where it is not built or the windows are too long for it.
     """
-    return _Sweep(found, before, after, need).over(asked)
+    core = built_core()
+    if core is None or not len(asked) or int(asked.ends[-1]) + after - before >= _MOST_CELLS:
+        return _Sweep(found, before, after, need).over(asked)
+    rows = (np.stack((cells.starts, cells.ends), axis=1) for cells in (asked, found))
+    return Cells.of(core.fewest_cells(*rows, before, after, need))
 
 
 @dataclass(frozen=True, slots=True)

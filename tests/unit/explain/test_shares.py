@@ -4,10 +4,11 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.explain import shares
 from rtamt.explain.explanation import Listed
 from rtamt.explain.minimise import Forcing
 from rtamt.explain.shares import sharing
@@ -46,6 +47,22 @@ def test_every_window_has_what_it_needs_and_no_cell_can_be_left_out(
     assert all(enough(chosen | outside, k) for k in asked)
     for left_out in chosen:
         assert not all(enough((chosen | outside) - {left_out}, k) for k in asked)
+
+
+@given(
+    st.sets(st.integers(-9, 45)),
+    st.integers(-12, 9),
+    st.integers(0, 7),
+    st.integers(1, 8),
+    st.sets(st.integers(-3, 31)),
+)
+@example(set(range(45)), 0, 3, 2, set(range(6)))
+def test_the_core_takes_the_cells_that_the_sweep_takes(found, before, width, need, places):
+    after = before + width
+    asked = {k for k in places if len(found & set(range(k + before, k + after + 1))) >= need}
+    having = cells(found) & cells(asked).widened(before, after)
+    taken = sharing(cells(asked), having, before, after, need)
+    assert list(taken) == list(shares._Sweep(having, before, after, need).over(cells(asked)))
 
 
 def test_a_share_of_many_windows_is_not_tried_interval_by_interval(monkeypatch):
