@@ -147,10 +147,11 @@ def check_in_chunks(anchored: Anchored, text: str | None = None) -> None:
     for leaf in anchored.leaves:
         node = unbounded_future(leaf.formula)
         if node is not None:
+            at_top = leaf.reduce is None and node is leaf.formula
+            where = "needs the whole future" if at_top else "stands below another operator"
             raise BoundError(
-                f"'{node.op.name}' without an upper bound stands below another operator here, so that the "
-                f"recording cannot be checked in chunks; give it a bound, such as {node.op.name}[0:10], "
-                f"or read the recording whole",
+                f"'{node.op.name}' without an upper bound {where} here, so that the recording cannot be "
+                f"checked in chunks; give it a bound, such as {node.op.name}[0:10], or read the recording whole",
                 text,
                 node.span,
             )

@@ -160,6 +160,14 @@ def test_law_dense_chunks_give_what_the_whole_gives(data):
             "    always(eventually(x))\n"
             "           ^^^^^^^^^^^^^",
         ),
+        (
+            "x until y",
+            "'until' without an upper bound needs the whole future here, so that the recording cannot be checked in "
+            "chunks; give it a bound, such as until[0:10], or read the recording whole\n"
+            "  line 1, column 1:\n"
+            "    x until y\n"
+            "    ^^^^^^^^^",
+        ),
         ("true", "the formula reads no variable, so that there is nothing to check in chunks"),
         ("x", "the trace is empty: give at least one sample"),
     ],
