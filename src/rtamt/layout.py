@@ -95,7 +95,7 @@ def _is_same(
 
 
 def _meaning(document: Document) -> object:
-    """Return what a document means: all of it but positions."""
+    """Return the meaning of a document: all of it except positions."""
     templates = [
         (each.signature, [(p.name, p.default) for p in each.parameters], each.tokens.texts)
         for each in document.templates.values()

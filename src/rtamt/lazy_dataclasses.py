@@ -240,7 +240,7 @@ def _frozen(_self: Any, name: str, *_value: Any) -> None:
 
 
 class _View(dict[Any, Any]):
-    """What a read-only view shows: unlike the view, it can be pickled and copied."""
+    """The target of a read-only view: unlike the view, it can be pickled and copied."""
 
 
 def _state(self: Any) -> dict[str, Any]:

@@ -22,7 +22,7 @@ else:
     from collections import _tuplegetter
 
     class _Bases:
-        """What classes name as their base: it is replaced by one that makes the class."""
+        """The nominal base of classes, replaced by one that makes the class."""
 
         def __mro_entries__(self, _bases: tuple[Any, ...]) -> tuple[type]:
             return (_Made,)

@@ -146,7 +146,7 @@ def _labels(name: str, kind: str, given: Mapping[str, str]) -> Labels:
 
 
 class _Collector:
-    """Reads the metrics whenever Prometheus does."""
+    """A collector that reads the metrics whenever Prometheus does."""
 
     def __init__(self, metrics: Metrics) -> None:
         self._metrics = metrics
@@ -165,7 +165,7 @@ class _Collector:
 
 
 def prometheus_text(metrics: Metrics) -> str:
-    """Return what Prometheus reads."""
+    """Return the metrics for Prometheus."""
     prometheus = library("prometheus_client", _PROMETHEUS, "metrics")
     registry = prometheus.CollectorRegistry()
     registry.register(_Collector(metrics))

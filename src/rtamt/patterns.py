@@ -48,7 +48,7 @@ class Pattern:
 
     @property
     def signature(self) -> str:
-        """How it is used: ``response(p, s)``."""
+        """The usage: ``response(p, s)``."""
         return f"{self.name}({', '.join(self.parameters)})"
 
     def described(self, arguments: Mapping[str, str]) -> str:
@@ -119,7 +119,7 @@ def _scopes_in(text: str) -> list[str]:
 
 
 def _apply_scope(name: str, parameters: tuple[str, ...], sentence: str, scopes: list[str]) -> str:
-    """Return what a pattern requires within its scope, which follows from its last parameters and its name."""
+    """Return the requirement of a pattern within its scope, which follows from its last parameters and its name."""
     ends = {each for each in ("q", "r") if each in parameters}
     fitting = [scope for scope in scopes if set(_PARAMETER.findall(scope)) == ends]
     if not ends or not fitting:

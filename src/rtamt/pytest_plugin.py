@@ -32,7 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 class Requirements:
-    """What the fixture ``stl`` gives to a test."""
+    """The value of the fixture ``stl``."""
 
     def __init__(self, node: pytest.Item) -> None:
         self._node = node

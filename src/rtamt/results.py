@@ -87,7 +87,7 @@ class Result:
 
     @property
     def _size(self) -> int:
-        """How many samples were evaluated, without making a signal of them."""
+        """The number of evaluated samples, without making a signal of them."""
         if "_found" in self.__dict__:
             reading, found = self.__dict__["_found"]
             return int(reading.samples(found))

@@ -78,7 +78,7 @@ class RecordedSpecification(SpecificationText):
 
     @property
     def _unlimited(self) -> dict[str, tuple[float, float]]:
-        """What ``ranges=`` takes where declared ranges must not count."""
+        """The value of ``ranges=`` that ignores declared ranges."""
         return dict.fromkeys(self.ranges, (-inf, inf))
 
     @cached_property
@@ -147,7 +147,7 @@ class RecordedSpecification(SpecificationText):
 
     @cached_property
     def binding(self) -> Binding:
-        """Where recordings have the variables that the formula reads, and in which units they are declared."""
+        """The recorded names of the variables of the formula, and their declared units."""
         others = {name: columns[1:] for name, columns in self._recorded_names.items() if len(columns) > 1}
         return Binding(
             self.input_names, tuple(self.recorded.items()), tuple(self.units.items()), tuple(others.items())
@@ -162,6 +162,6 @@ class RecordedSpecification(SpecificationText):
 
 
 def _format_missing(missing: list[str]) -> str:
-    """Return what is missing as part of a sentence."""
+    """Return the missing signals as part of a sentence."""
     more = len(missing) - _NAMED
     return f"no {', '.join(missing[:_NAMED])}{f' and {more} more' if more > 0 else ''}"

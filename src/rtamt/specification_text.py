@@ -1,4 +1,4 @@
-"""What a specification contains: its text, names and formulas, and how these are rewritten."""
+"""The contents of a specification: its text, names and formulas, and their rewriting."""
 
 from __future__ import annotations
 
@@ -329,7 +329,7 @@ class SpecificationText:
     def _outputs(
         self, semantics: str | PredicateSemantics | None = None, formula: Formula | None = None
     ) -> Outputs:
-        """Return what is computed to decide the requirement: robustness under a semantics, and truth.
+        """Return the formulas that decide the requirement: robustness under a semantics, and truth.
 
         ``formula``: one that replaces that of the specification, such as its pastified form.
         """

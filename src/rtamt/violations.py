@@ -1,4 +1,4 @@
-"""Where a result violates its requirement: the first violation, the episodes, and the signals that they follow from."""
+"""Violations of a result: the first one, the episodes, and the signals that they follow from."""
 
 from __future__ import annotations
 

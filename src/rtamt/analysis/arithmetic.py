@@ -1,4 +1,4 @@
-"""What the opcodes of the operator table compute, as terms: arithmetic that is linear piece by piece.
+"""Solver terms for the opcodes of the operator table: piecewise linear arithmetic.
 
 The table defines what an operator computes by functions of arrays, from which no terms can be derived. Each opcode is
 therefore listed here a second time, as a term or as nonlinear; a test compares this list with the table.

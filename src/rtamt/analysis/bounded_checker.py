@@ -302,7 +302,7 @@ class BoundedChecker:
         return _samples(self.samples)
 
     def _none(self, formulas: Sequence[Formula]) -> str:
-        """Return what it means that there is no counterexample: on traces of which length."""
+        """Return the meaning of a missing counterexample: for which lengths of traces it holds."""
         depths = [horizon(ground(formula, self.period), self.period) for formula in formulas]
         if all(depth is not None and depth / self.period < self.samples for depth in depths):
             return "no counterexample of any length"

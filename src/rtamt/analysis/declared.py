@@ -1,4 +1,4 @@
-"""What specifications declare about their data: whether the analysis covers it, and whether two of them agree."""
+"""Declarations of data in specifications: whether the analysis covers them, and whether two specifications agree."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def _ends(limits: tuple[float, float] | None) -> str:
 
 
 def _compare_uncovered(before: Part, after: Part, error: NotCoveredError) -> Conclusion:
-    """Return what is known of a requirement that the analysis does not cover: whether it was changed."""
+    """Return the difference of a requirement that the analysis does not cover: whether it was changed."""
     names = (after.name,)
     if before.spec.formula == after.spec.formula:
         return Conclusion("same", names, True, _SAME)

@@ -233,7 +233,7 @@ class Encoder:
                 raise NotLinear(f"the operator '{node.op.name}' is a custom one")
 
     def _pointwise(self, encoding: Callable[..., Value], below: Sequence[Sequence[Value]]) -> list[Value]:
-        """Return what an operator computes of the values at each instant; of the same values it is computed once."""
+        """Return the value of an operator at each instant; equal operands share one computation."""
         found: list[Value] = []
         before: tuple[object, ...] = ()
         for here, *values in zip(self.inside, *below, strict=True):

@@ -30,7 +30,7 @@ class Sequences:
         self.inside = inside
 
     def join(self, reduce: str) -> Join:
-        """Return what joins the values of a window: ``"min"`` or ``"max"``."""
+        """Return the join of the values of a window: ``"min"`` or ``"max"``."""
         return self.values.least if reduce == "min" else self.values.greatest
 
     def within(self, xs: Sequence[Value], reduce: str) -> list[Value]:
@@ -135,7 +135,7 @@ class Sequences:
 
 
 def _windows(xs: Sequence[Value], join: Join, width: int | None) -> list[Value]:
-    """Return what joins the last ``width`` values at each instant, None for all, in O(1) joins each.
+    """Return the join of the last ``width`` values at each instant, None for all, in O(1) joins each.
 
     Of two neighbouring blocks of as many values, a window is the end of the first and the begin of the second.
     """

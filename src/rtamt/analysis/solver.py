@@ -207,7 +207,7 @@ class Solver:
         return self.asking(conditions)(limit=limit)
 
     def asking(self, conditions: Sequence[Truth]) -> Asking:
-        """Return how to ask about conditions, and about more of them that are added."""
+        """Return an incremental query about conditions, to which more can be added."""
         return Asking(self, conditions)
 
     def conflict(self, conditions: Sequence[Truth]) -> list[int] | None:

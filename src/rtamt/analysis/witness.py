@@ -53,7 +53,7 @@ class Witness:
 
     @cached_property
     def results(self) -> tuple[Result, ...]:
-        """What the engine finds on the trace, for each goal."""
+        """The results of the engine on the trace, for each goal."""
         return tuple(goal.specification().evaluate(self.data, period=self.period) for goal in self.goals)
 
     @cached_property

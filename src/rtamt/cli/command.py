@@ -1,4 +1,4 @@
-"""What several commands share: options, the specification, and how values are printed."""
+"""Shared parts of commands: options, the specification, and the printing of values."""
 
 from __future__ import annotations
 

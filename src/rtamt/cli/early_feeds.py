@@ -1,4 +1,4 @@
-"""What ``rtamt monitor --verdict`` prints before the horizon: settled verdicts, bounds, and causation."""
+"""Output of ``rtamt monitor --verdict`` before the horizon: settled verdicts, bounds, and causation."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ class StartFeed:
         return f'{_ends(interval)}, "status": {json.dumps(status)}'
 
     def _status(self) -> str:
-        """Return what is known of the verdict, and since when."""
+        """Return the state of the verdict, and since when."""
         status, since = self.start.status, self.start.decided_at
         if since is None or status == SAFE:
             return status

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class HeldFeed:
-    """Gives another feed the samples that a sampler takes of the stream."""
+    """Passes resampled samples of the stream to another feed."""
 
     def __init__(
         self,

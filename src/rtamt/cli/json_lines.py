@@ -139,7 +139,7 @@ def has_value(data: dict[str, Any], name: str) -> bool:
 
 
 def _member(data: dict[str, Any], name: str) -> Any:
-    """Return what is called ``name``: a key, or fields of nested objects (``req.value``)."""
+    """Return the value called ``name``: a key, or fields of nested objects (``req.value``)."""
     if name in data:
         return data[name]
     value: Any = data

@@ -130,7 +130,7 @@ class _Counter:
 
 
 class _Summary:
-    """How many recordings satisfy each requirement, and where its robustness is worst."""
+    """The table of each requirement: how many recordings satisfy it, and where its robustness is worst."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._counts: dict[str, Counter[str]] = {name: Counter() for name in names}
@@ -200,7 +200,7 @@ def _as_json(row: Row) -> str:
 
 @contextmanager
 def _row_writer(path: str | None) -> Iterator[Callable[[VerdictTable], None]]:
-    """Yield what writes the rows of a recording to a table: Parquet or CSV, complete or not at all."""
+    """Yield the writer of the rows of a recording to a table: Parquet or CSV, complete or not at all."""
     if path is None:
         yield lambda _table: None
         return

@@ -163,7 +163,7 @@ def exit_code(outcomes: Sequence[Outcome]) -> int:
 
 
 def count_verdicts(verdicts: Sequence[str]) -> str:
-    """Return how many there are of each verdict, as text."""
+    """Return the number of each verdict as text."""
     return ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in CODES if verdict in verdicts)
 
 

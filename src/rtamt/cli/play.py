@@ -158,7 +158,7 @@ def _socket(port: int) -> socket.socket:
 
 
 def _page_state(args: argparse.Namespace) -> tuple[Given, str | None, str]:
-    """Return what the page starts with, the folder of imported files, and the fragment of a link."""
+    """Return the initial state of the page, the folder of imported files, and the fragment of a link."""
     from rtamt.play.server import Given
 
     spec, text, name, folder, fragment = args.spec, "", "", None, ""

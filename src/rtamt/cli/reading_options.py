@@ -1,4 +1,4 @@
-"""How commands read recordings: their common options, and the recording of a requirement."""
+"""Options of commands that read recordings, and the recording of a requirement."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """How recordings are read: the options of ``rtamt.read``, and a common time base."""
+    """Options for reading recordings: those of ``rtamt.read``, and a common time base."""
 
     time: str | None = None
     unit: str | None = None
@@ -251,7 +251,7 @@ def is_resampled(spec: Specification, trace: str, reading: Reading) -> bool:
 
 
 def oldest_held(spec: Specification, reading: Reading) -> Fraction | None:
-    """Return how old a value may be that is held in the samples of a requirement; None: however old."""
+    """Return the maximum age of a held value in the samples of a requirement; None: no limit."""
     if reading.how != "hold":
         return None
     if reading.resample is not None:

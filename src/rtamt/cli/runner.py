@@ -256,7 +256,7 @@ class _ChunkedRun:
         self._chunks: Chunks | None = None
 
     def result(self) -> StreamResult | None:
-        """Return what the check finds; None where the format has no chunks."""
+        """Return the result of the check; None if the format has no chunks."""
         from rtamt.verdicts.streaming import check_stream, check_streamable
 
         spec, reading = self._requirement.spec, self._reading

@@ -142,7 +142,7 @@ class Samples:
         return None
 
     def _convert(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
-        """Return what reads rows, with values in their declared units."""
+        """Return the reader of rows, which converts values to their declared units."""
         found = {}
         for name, declared in {**rows.declared, **dict(self._binding.units)}.items():
             recorded = rows.units.get(name, "")
@@ -171,7 +171,7 @@ def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
 
 
 class _Timestamps:
-    """Where the timestamps are among the columns of a stream, as in a file of the same columns.
+    """The position of the timestamps among the columns of a stream, as in a file with the same columns.
 
     Columns are looked at until the timestamps are found: what a column holds may show in a later line.
     """

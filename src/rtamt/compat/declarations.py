@@ -226,7 +226,7 @@ class Declarations(ABC):
 
     @property
     def var_object_dict(self) -> dict[str, Any]:
-        """From each variable to its current value."""
+        """The current value of each variable."""
         return self._objects
 
     @property

@@ -281,7 +281,7 @@ class StlDenseTimeOnlineSpecification(OnlineSpecification, DenseTimeSpecificatio
             self._monitor.reset()
 
     def _report(self, part: Formula) -> list[list[float]]:
-        """Return what the latest update made known of a part, or the samples it gave of a variable (as RTAMT does)."""
+        """Return the new values of a part after the latest update, or the samples of a variable (as RTAMT does)."""
         if isinstance(part, Var):
             times, values = self._given.get(part.name, ((), ()))
             number = int if self._whole else float

@@ -72,13 +72,13 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
 
     @property
     def sampling_violation_counter(self) -> int:
-        """How many gaps between samples missed the period by more than the tolerance."""
+        """The number of gaps between samples that missed the period by more than the tolerance."""
         online = 0 if self._stream is None else int(self._stream.monitor.violations)
         return self._violations + online
 
     @property
     def var_object_dict(self) -> dict[str, Any]:
-        """From each variable to its current value; a value assigned to an entry is used by the next update."""
+        """The current value of each variable; a value assigned to an entry is used by the next update."""
         if not self._shared:
             self._shared = True
             if self._stream is not None and self._stream.monitor.samples:

@@ -39,7 +39,7 @@ class Cause(NamedTuple):
 
 
 class Start(NamedTuple):
-    """What an item at the start reads: of ``value``, ``all`` and ``some`` a part, of ``until`` both operands."""
+    """The operands of an item at the start: of ``value``, ``all`` and ``some`` a part, of ``until`` both operands."""
 
     a: int = NO_OPERAND
     b: int = NO_OPERAND

@@ -103,7 +103,7 @@ class Graph:
 
     @property
     def time(self) -> type[SampledGraphs]:
-        """What the graph decides by its time domain."""
+        """The decisions of the graph that depend on its time domain."""
         return graphs_of(self.domain)
 
     def ref(self, formula: Formula) -> int:
@@ -124,7 +124,7 @@ class Graph:
         )
 
     def horizon(self, ref: int) -> int:
-        """Return how many steps after an instant the value of a reference is final at the latest."""
+        """Return the number of steps after an instant until the value of a reference is final."""
         return self.nodes[ref // 2].horizon
 
     def copied(self) -> Graph:
@@ -146,7 +146,7 @@ class Graph:
         return replace(self, nodes=nodes)
 
     def fingerprint(self) -> bytes:
-        """Return what distinguishes this graph from others."""
+        """Return the identity of this graph, which differs from those of others."""
         return zlib.crc32(repr((self.nodes, self.outputs, self.items)).encode()).to_bytes(4, "little")
 
 

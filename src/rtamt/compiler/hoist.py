@@ -39,7 +39,7 @@ _OPPOSITE = {
 
 
 class _Move(NamedTuple):
-    """How an instruction is to be computed: the operations, in order, of a window of another operand."""
+    """The replacement of an instruction: the operations, in order, of a window of another operand."""
 
     window: Instruction
     operations: tuple[int, ...]

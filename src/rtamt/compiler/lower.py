@@ -356,7 +356,7 @@ class Lowering(ABC):
         return None if node.interval is None or node.interval.end is None else self.whole(node.interval.end)
 
     def ahead(self, node: Apply, end: int | None) -> int:
-        """Return how many steps ahead an operator with bounded future reads."""
+        """Return the number of steps that an operator with bounded future reads ahead."""
         if node.op.tense is not Tense.FUTURE:
             return 0
         ahead = node.op.reach if node.op.bounds is Bounds.NONE else end

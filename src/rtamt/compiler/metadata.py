@@ -83,7 +83,7 @@ def _text(text: str) -> bytes:
 
 
 class _Reader:
-    """Reads fields from the front; lengths are not trusted."""
+    """A reader of fields from the front; lengths are not trusted."""
 
     def __init__(self, note: bytes) -> None:
         self._note = note

@@ -50,7 +50,7 @@ class Stage:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What an offline evaluation runs: the stages in order, then the program."""
+    """The plan of an offline evaluation: the stages in order, then the program."""
 
     stages: tuple[Stage, ...]
     program: Program

@@ -1,4 +1,4 @@
-"""What graphs decide by the time domain: nodes, and the steps that windows cover.
+"""The time-domain-specific part of graphs: nodes, and the steps that windows cover.
 
 It corresponds to ``time_lowering.py``, which decides the same for programs.
 """
@@ -75,5 +75,5 @@ class ContinuousGraphs(SampledGraphs):
 
 
 def graphs_of(domain: type[TimeDomain]) -> type[SampledGraphs]:
-    """Return what graphs of a time domain decide by it."""
+    """Return the time-domain-specific part of graphs."""
     return ContinuousGraphs if domain.continuous else SampledGraphs

@@ -1,4 +1,4 @@
-"""What lowering decides by the time domain.
+"""The time-domain-specific part of lowering.
 
 The number of steps of a closed window, what follows the last sample, and how until over [a, b] is composed
 for a > 0.

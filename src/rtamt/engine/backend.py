@@ -95,7 +95,7 @@ class Session(ABC):
         """Return a monitor that has taken no sample; ``_core.pyi`` describes its methods."""
 
     def part(self, monitor: Any, formula: Formula) -> Any:
-        """Return what the last update of a monitor made known of a part of the formulas."""
+        """Return the new values of a part of the formulas after the last update of a monitor."""
         raise NotImplementedError
 
     def culprit(self, error: Exception) -> Formula:
@@ -104,7 +104,7 @@ class Session(ABC):
 
     @property
     def fingerprint(self) -> bytes:
-        """What distinguishes the states of monitors of different sessions."""
+        """The identity of the states of monitors, which differs between sessions."""
         return b""
 
     @property
@@ -138,7 +138,7 @@ D = TypeVar("D", bound=Backend)
 
 
 class Place(NamedTuple):
-    """Where an instruction is computed: the ``root`` of its chain and its ``register``, None if there is none."""
+    """The location of an instruction: the ``root`` of its chain and its ``register``, None if there is none."""
 
     root: int | None
     register: int | None
@@ -177,7 +177,7 @@ class Compiled(Backend):
 
     @abstractmethod
     def stored_evaluator(self, plan: StoredPlan) -> Callable[[Any], Sequence[Any]]:
-        """Return what :meth:`evaluator` does, from a plan without formulas."""
+        """Return the same as :meth:`evaluator`, from a plan without formulas."""
 
     @abstractmethod
     def check(self, code: bytes, inputs: Sequence[str]) -> None:

@@ -1,4 +1,4 @@
-"""How many threads may evaluate one long trace.
+"""The number of threads that may evaluate one long trace.
 
 ``RTAMT_THREADS``, or else ``OMP_NUM_THREADS``, which pools such as joblib's and Dask's set in their workers. Otherwise
 one for each core that this process may use; one in a worker of :mod:`multiprocessing`, whose siblings use the others.

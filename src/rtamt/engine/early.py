@@ -1,4 +1,4 @@
-"""What the monitors of early verdict modes ask of a back end, and what all back ends share to answer it.
+"""Queries of the monitors of early verdict modes, and the shared parts of the back ends that answer them.
 
 Each back end offers an :class:`EarlySession` for an :class:`EarlyQuery`; ``early`` in the folder of a time domain
 prepares them.
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EarlyQuery:
-    """What a monitor reports before the horizon.
+    """The query of a monitor that reports before the horizon.
 
     ``formulas``: the result first, then those that are watched. ``requirements``: the conjuncts of the result, each of
     which has its own trace in dense time. ``inputs``: what the formulas read. ``ranges``: of each input, what is known
@@ -115,7 +115,7 @@ class EarlySession(Session):
         return self._monitor(*self._settings)
 
     def lag(self, output: int) -> int:
-        """Return how many steps after an instant the value of an output is final at the latest."""
+        """Return the number of steps after an instant until the value of an output is final."""
         horizons = (
             self._groups[group].graph.horizon(self._groups[group].outputs[place])
             for group, place in self._places[output]

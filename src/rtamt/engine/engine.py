@@ -20,7 +20,7 @@ BACKENDS = ("cpp", "python")
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """What evaluates and monitors formulas in one time domain: ``ENGINE`` in its folder.
+    """Evaluates and monitors formulas in one time domain: ``ENGINE`` in its folder.
 
     ``backends``: by name, see :data:`BACKENDS`. ``monitor``: takes a formula and the time
     domain; for its settings see :class:`Monitor`. ``read``: takes data, the variables and the time domain; returns the

@@ -47,7 +47,7 @@ def built_core() -> ModuleType | None:
 
 
 class _TakenByPython:
-    """What monitors derive from where the core is not built; see ``MonitorBase`` in ``_core``."""
+    """The base of monitors if the core is not built; see ``MonitorBase`` in ``_core``."""
 
     _backend: Any
     _update_carefully: Callable[..., Any]

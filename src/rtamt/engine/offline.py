@@ -83,7 +83,7 @@ class Evaluators:
         return recording.signals(evaluator(recording))
 
     def direct(self, query: Query, recording: DomainTrace) -> Direct | None:
-        """Return what evaluates a query over data like this recording, all samples known; None where nothing does."""
+        """Return the evaluator of a query over data like this recording, all samples known; None if there is none."""
         make = getattr(self._evaluator(query.formulas, recording), "direct", None)
         return None if make is None else make(query.domain, recording)
 

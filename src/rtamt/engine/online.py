@@ -183,7 +183,7 @@ class OnlineMonitor:
         identities: Mapping[str, str],  # noqa: ARG002 - as above
         watched: bool = False,  # noqa: ARG002 - as above
     ) -> Any:
-        """Return what monitors this formula, or those watched, for many keys at once; None where each needs a monitor.
+        """Return a monitor of these formulas for many keys at once; None if each key needs its own monitor.
 
         See :class:`rtamt.engine.discrete.fleet.DiscreteFleet`.
         """

@@ -31,7 +31,7 @@ _REMEMBER = 64
 
 
 class Plan:
-    """What is fixed of a quantifier: its formula over one member, compiled once, and how members are combined."""
+    """The plan of a quantifier: its formula over one member, compiled once, and how members are combined."""
 
     def __init__(
         self, of: Quantified, step: Fraction, template: Callable[[Quantified], OnlineMonitor], fields: Fields
@@ -228,7 +228,7 @@ class QuantifierMonitor:
         self._remember()
 
     def _own(self) -> Any:
-        """Return what a time domain adds to the state."""
+        """Return the time-domain-specific part of the state."""
 
     def _set_own(self, own: Any) -> None:
         """Go back to it."""

@@ -29,7 +29,7 @@ START, END, CONSTANT = "start", "end", "constant"
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Where the walk ended: at leaf ``name`` (read ``sign`` times its value), or at what else decides."""
+    """The end of the walk: at leaf ``name`` (read ``sign`` times its value), or at another decisive node."""
 
     cell: int
     sign: int

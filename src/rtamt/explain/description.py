@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class Description:
-    """What an explanation reports about its predicates; ``cell``: the explained instant."""
+    """The description of the predicates of an explanation; ``cell``: the explained instant."""
 
     def __init__(
         self,

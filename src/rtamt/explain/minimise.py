@@ -1,4 +1,4 @@
-"""From enough to just enough: intervals are taken away as long as the verdict is forced without them.
+"""Minimisation of a sufficient cause: intervals are removed as long as the verdict is forced without them.
 
 A set of intervals forces the verdict if the formula has it when each predicate has its truth on its
 intervals and, everywhere else, the truth that contradicts the verdict, at each of its places.

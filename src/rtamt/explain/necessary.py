@@ -1,4 +1,4 @@
-"""Which intervals there is plainly no verdict without: so that few are left to be tried.
+"""The intervals that are obviously necessary for a verdict, so that fewer remain to be tried.
 
 Down the formula once more, as ``Demands`` goes, but over what the predicates are known to be on some
 intervals, and asking only for what nothing else can stand in for: the operand that alone has its truth,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Needs(Demands):
-    """What a verdict needs of every place. ``leaves``: cells of intervals that cannot be left out."""
+    """The demands of a verdict on every place. ``leaves``: cells of intervals that cannot be left out."""
 
     def given(self, support: Mapping[Place, Cells]) -> Needs:
         """Set where each place is known to have the required truth."""

@@ -1,4 +1,4 @@
-"""From a verdict down to the predicates: at which instants each sub-formula must have which truth.
+"""Propagation of a verdict to the predicates: the truth that each sub-formula must have at each instant.
 
 Where both operands (or all instants of a window) are needed, all are requested; where one would do, one
 is chosen (see ``choices``). What is requested at the predicates is enough for the verdict by construction.

@@ -1,4 +1,4 @@
-"""Which samples the value of a predicate depends on.
+"""The samples that determine the value of a predicate.
 
 From a predicate down to its variables: the cells at which each part must not become smaller (*lower*) or larger
 (*upper*) than it is, for the predicate to stay at least, or at most, what it is. Where one of several parts does (the
@@ -35,7 +35,7 @@ Need = tuple[Cells, Cells]
 
 
 class Readings:
-    """What predicates read over a recording."""
+    """The samples that predicates read over a recording."""
 
     def __init__(self, axis: TimeAxis, *, dense: bool) -> None:
         self._axis = axis

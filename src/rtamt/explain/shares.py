@@ -1,4 +1,4 @@
-"""Which instants of an operand to rest the verdict of a share of its window on, for many windows at once."""
+"""The choice of instants of an operand that support a share of its window, for many windows at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where one of several would do, which instants of an operand to rest a verdict on.
+"""The choice of instants of an operand that support a verdict if one of several would be sufficient.
 
 Each function is given the cells ``asked`` at which an operator has the truth that is to be explained, and
 where its operands have the truth that brings it about; it returns cells of the operands, within

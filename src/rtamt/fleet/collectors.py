@@ -219,7 +219,7 @@ COLLECTORS: Mapping[type, type[Collector]] = MappingProxyType(
 
 
 def collector_of(monitor: OnlineMonitor) -> type[Collector]:
-    """Return what collects the reports of a monitor."""
+    """Return the collector of the reports of a monitor."""
     return next(COLLECTORS[each] for each in type(monitor).__mro__ if each in COLLECTORS)
 
 

@@ -42,7 +42,7 @@ class Source:
         return bytes(taken)
 
     def count(self) -> int:
-        """Return how many items follow, each of one byte at least."""
+        """Return the number of items that follow, each of at least one byte."""
         (found,) = _U64.unpack(self.take(8))
         if found > len(self._rest):
             raise damaged("it ends too early")

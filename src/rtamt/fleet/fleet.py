@@ -224,12 +224,12 @@ class Fleet(Generic[Update]):
 
     @property
     def late(self) -> int:
-        """How many samples were late since the start; they are part of the state."""
+        """The number of late samples since the start; it is part of the state."""
         return self._samples.late
 
     @property
     def waiting(self) -> int:
-        """How many samples wait for earlier ones."""
+        """The number of samples that wait for earlier ones."""
         return self._samples.waiting
 
     @property

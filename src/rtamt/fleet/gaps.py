@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Gaps:
-    """What a gap between two samples of a key does that is not the period.
+    """The policy for a gap between two samples of a key that is not the period.
 
     ``code``: in a state. ``restart``: whether it starts a new trace. ``filled``: for how many samples at most the last
     value is held; 0 if gaps are not filled.

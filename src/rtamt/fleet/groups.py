@@ -47,7 +47,7 @@ class Asking(NamedTuple):
 
 @dataclass(frozen=True)
 class Way:
-    """How a recording is read for some requirements.
+    """The reading settings of recordings for some requirements.
 
     ``types``: of the variables that are no plain numbers. ``rule``: by which signals are sampled. ``ending``: the
     variables that end the recording; all if empty.
@@ -240,7 +240,7 @@ def _outputs(asking: Asking) -> Asked:
 
 
 def way_of(spec: Specification) -> Way:
-    """Return how recordings are read for one specification."""
+    """Return the reading settings of recordings for one specification."""
     rule = spec.domain.sampling(spec.sampling)
     return Way(spec.domain, None, spec.binding, spec.types, rule if rule is not None and rule.hold else None)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Output(NamedTuple):
-    """What became known of an output: by the samples of a batch, in its order, and by others (``keys`` ...).
+    """The new values of an output: for the samples of a batch, in its order, and for others (``keys`` ...).
 
     ``keys``, ``at``, ``found``: key, time and value of each that samples made known which are not of the batch.
     """
@@ -39,7 +39,7 @@ class Output(NamedTuple):
 
 
 class Taken(NamedTuple):
-    """What a batch has done: which of its samples were late, and each output."""
+    """The results of a batch: which of its samples were late, and each output."""
 
     late: NDArray[np.bool_]
     outputs: list[Output]
@@ -123,17 +123,17 @@ class InOrder:
 
     @property
     def late(self) -> int:
-        """How many samples were late."""
+        """The number of late samples."""
         return 0
 
     @property
     def waiting(self) -> int:
-        """How many samples wait for earlier ones."""
+        """The number of samples that wait for earlier ones."""
         return 0
 
     @property
     def capacity(self) -> int:
-        """How many keys there may be."""
+        """The largest number of keys."""
         return int(self.records.capacity)
 
     @property
@@ -214,7 +214,7 @@ class Reordered(InOrder):
         return self._updated(self._taken(np.empty(0, np.bool_), arrays(found), ready))
 
     def _taken(self, late: NDArray[np.bool_], keys: NDArray[Any], ready: Any) -> Taken:
-        """Have what is ready monitored; ``keys``: of each of these samples."""
+        """Monitor the released samples; ``keys``: of each of these samples."""
         try:
             known = self.records.update(np.ascontiguousarray(keys), ready.times, ready.columns, ready.place)
         except BaseException:

@@ -1,4 +1,4 @@
-"""What a fleet has for its keys: records of the compiled core, or monitors."""
+"""The state that a fleet keeps for its keys: records of the compiled core, or monitors."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _OF_SUITES = frozenset({"tolerance", *EVALUATION_SETTINGS})
 
 
 class Opened(NamedTuple):
-    """What takes samples; ``partial``: whether a batch may lack variables, since monitors decide about that."""
+    """The receiver of samples; ``partial``: whether a batch may lack variables, since monitors decide about that."""
 
     samples: InOrder | MonitorPerKey | SuitePerKey
     binding: Binding

@@ -1,4 +1,4 @@
-"""What a batch has made known to a fleet of monitors, as arrays: one class for each form of report."""
+"""The results of a batch of a fleet of monitors, as arrays: one class for each form of report."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ Of = TypeVar("Of")
 
 @dataclass(frozen=True, slots=True)
 class SuiteUpdate(Generic[Of]):
-    """What a batch has made known of each requirement of a suite: ``update["SPEED"]`` is the update of one."""
+    """The results of a batch for each requirement of a suite: ``update["SPEED"]`` is the update of one."""
 
     updates: Mapping[str, Of]
 

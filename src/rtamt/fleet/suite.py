@@ -261,7 +261,7 @@ class Suite:
 
     @property
     def ways(self) -> tuple[Way, ...]:
-        """How recordings are read for the requirements."""
+        """The reading settings of recordings for the requirements."""
         apart = [way_of(spec) for spec, _ in self._apart.values()]
         return (*(group.way for group in self._groups), *apart)
 

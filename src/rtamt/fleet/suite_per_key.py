@@ -82,7 +82,7 @@ class SuitePerKey:
 
     @property
     def capacity(self) -> int:
-        """How many keys there may be."""
+        """The largest number of keys."""
         return self._first.capacity
 
     @property

@@ -1,4 +1,4 @@
-"""What a batch has made known: of its samples, and of those that it released."""
+"""The results of a batch: of its samples, and of those that it released."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Released:
-    """What became known by samples that are not of the batch: that waited for earlier ones, or fill a gap.
+    """The results of samples outside the batch: those that waited for earlier ones, or fill a gap.
 
     ``keys``: of each value, ``times``: the time that it is for, ``requirements``: of a suite, the number of its
     requirement; else 0.
@@ -33,7 +33,7 @@ class Released:
 
 @dataclass(frozen=True, slots=True)
 class FleetUpdate:
-    """What a batch has made known, in the order of the batch.
+    """The results of a batch, in the order of the batch.
 
     ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
     ``known``. ``times``: the time that this robustness is for, the time of the sample minus the horizon; NaN where it

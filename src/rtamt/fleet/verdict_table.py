@@ -19,7 +19,7 @@ SELECTABLE = ("robustness", "satisfied", "first_violation")
 
 
 class Row(NamedTuple):
-    """What is known of a requirement on a recording; None where it is unknown, was not selected or does not exist."""
+    """The results of a requirement on a recording; None if unknown, not selected or missing."""
 
     recording: str
     requirement: str

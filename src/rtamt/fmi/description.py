@@ -25,7 +25,7 @@ _LOG = {
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """What a model description is about. ``token`` names the program, so that they cannot be mixed up.
+    """The contents of a model description. ``token`` names the program, so that they cannot be mixed up.
 
     ``units`` and ``types``: those that are declared of inputs and parameters, by name.
     """

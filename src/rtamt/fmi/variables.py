@@ -1,4 +1,4 @@
-"""What a unit has for variables, in the order of their value references.
+"""The variables of an FMU, in the order of their value references.
 
 The inputs from 0 on, then the outputs, of several requirements first those of all together, then the
 parameters; core/fmi/component.hpp counts in the same way.

@@ -34,7 +34,7 @@ class Signals:
 
     @property
     def summary(self) -> str:
-        """Which of the signals the page contains.
+        """The signals that the page contains.
 
         >>> Signals("a.csv", [{}, {}], 1, ("z",)).summary
         '2 other signals can be added to charts (1 as ranges); without room in this page (16 MB): 1, such as z'

@@ -109,7 +109,7 @@ _EQUAL_NOTE = "R2U2 compares floats with a tolerance that its build fixes; here 
 
 @dataclass
 class _File:
-    """What has been read so far."""
+    """The parts of the file read so far."""
 
     types: dict[str, ValueType] = field(default_factory=dict)
     numbers: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""What a conversion gives: a text, and what of the source it does not have."""
+"""The result of a conversion: a text, and the parts of the source that it omits."""
 
 from __future__ import annotations
 

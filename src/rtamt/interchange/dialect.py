@@ -34,7 +34,7 @@ class InexpressibleError(StlError):
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """How a dialect writes an operator.
+    """The spelling of an operator in a dialect.
 
     ``name``: that of the operator here. ``spellings``: of the dialect, the first one is written. ``power`` and
     ``fixity``: where they differ from those here.

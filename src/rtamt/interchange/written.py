@@ -31,7 +31,7 @@ class ReadRequirement:
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """What a text declares: roles of variables ("input", "output"), constants and parameters with their values."""
+    """The declarations of a text: roles of variables ("input", "output"), values of constants and parameters."""
 
     roles: Mapping[str, str] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)

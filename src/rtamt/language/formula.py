@@ -337,7 +337,7 @@ def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
 
 
 def _distinct_of_several(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
-    """Return what :func:`_distinct` does for formulas of which each has been, or will be, walked alone."""
+    """Return the nodes of :func:`_distinct` for formulas whose walks are kept."""
     found: dict[int, Formula] = {}
     walked = 0
     for formula in formulas:
@@ -350,7 +350,7 @@ def _distinct_of_several(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
 
 
 def _distinct_of_graph(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
-    """Return what :func:`_distinct` does for formulas that share nodes."""
+    """Return the nodes of :func:`_distinct` for formulas that share nodes."""
     seen: set[int] = set()
     found: list[Formula] = []
     stack: list[Formula | None] = list(formulas[::-1])
@@ -430,7 +430,7 @@ def size(formula: Formula) -> int:
 
 
 class Contents(NamedTuple):
-    """What is in a formula, in postorder: its operators, its variables and constants, and its nodes with intervals."""
+    """The contents of a formula in postorder: operators, variables and constants, nodes with intervals."""
 
     operators: frozenset[Operator]
     leaves: tuple[Formula, ...]
@@ -438,7 +438,7 @@ class Contents(NamedTuple):
 
 
 def contents(formula: Formula) -> Contents:
-    """Return what a formula contains: most checks and analyses need a part of its nodes only.
+    """Return the contents of a formula: most checks and analyses need only a part of its nodes.
 
     >>> from rtamt.language.operators import STL
     >>> x = Var("x")

@@ -163,7 +163,7 @@ QUANTIFIERS: Mapping[str, Operator] = MappingProxyType({
 
 
 class Join(NamedTuple):
-    """How a quantifier combines its members: formulas, and the numbers that they evaluate to.
+    """The combination of members by a quantifier: formulas, and the numbers that they evaluate to.
 
     ``guard``: the operator between the presence of a member and the body. ``formulas``: the operator between members.
     ``numbers``: the same of two numbers, ``columns`` (a function of numpy) of two arrays. ``none``: the value without
@@ -331,7 +331,7 @@ def _different(parser: FormulaParser) -> tuple[tuple[str, str], ...]:
 
 
 def field_of(parser: NameParser, name: str, span: Span) -> Formula | None:
-    """Return what a name means that begins with the variable of a quantifier; None for any other name."""
+    """Return the meaning of a name that begins with the variable of a quantifier; None for any other name."""
     variable, _, path = name.partition(".")
     group = parser.scope.members.get(variable)
     if group is None:

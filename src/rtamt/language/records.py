@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Fixity(Enum):
-    """How an operator is written."""
+    """The notation of an operator."""
 
     PREFIX = "prefix"  # always[0:5] φ
     LEFT = "left"  # a - b - c  is  (a - b) - c
@@ -63,7 +63,7 @@ class Bounds(Enum):
 
 
 class Known(ABC):
-    """Where operands are known: from the delay of pastification on, or where the member of a group is present."""
+    """The condition under which operands are known: after the delay of pastification, or while a member is present."""
 
     @property
     @abstractmethod
@@ -81,7 +81,7 @@ class Known(ABC):
 
 
 class Source(Enum):
-    """From where an operator takes its value, which is that of one of its operands at some instant."""
+    """The source of an operator's value, which is that of one of its operands at some instant."""
 
     BRANCH = "branch"  # the second operand where the first holds, else the third
     HELD = "held"  # the first operand when the second last held; where it never did, the third or the first value

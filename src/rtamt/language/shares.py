@@ -1,4 +1,4 @@
-"""How much of a window must satisfy an operand: ``80%``, a number of samples, or a duration.
+"""Shares, the part of a window that must satisfy an operand: ``80%``, a number of samples, or a duration.
 
 Such an operator (``atleast``) is the k-th largest value of a window of a nominal length, whatever of it lies outside
 the trace: :func:`rank_of` counts both in steps.
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class ShareKind(Enum):
-    """What the amount of a share counts."""
+    """The unit of the amount of a share."""
 
     PERCENT = "percent"
     SAMPLES = "samples"

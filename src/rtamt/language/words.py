@@ -64,7 +64,7 @@ def kind_of(operator: Operator) -> str:
 
 
 def meaning_of(operator: Operator) -> str:
-    """Return what an operator means, on one line."""
+    """Return the meaning of an operator on one line."""
     return re.sub(r"\s+", " ", operator.doc)
 
 

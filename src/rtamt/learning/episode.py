@@ -20,7 +20,7 @@ ROBUSTNESS, INTERVAL, SHAPING = REWARDS = ("robustness", "interval", "shaping")
 
 
 class Settings(NamedTuple):
-    """What a wrapper was made with, checked."""
+    """The checked settings of a wrapper."""
 
     spec: Specification
     reward: str
@@ -73,7 +73,7 @@ def settings_of(
 
 
 def each_step(formula: Formula) -> Formula:
-    """Return what a requirement demands of each step: of ``always(a) and always(b)``, ``a and b``.
+    """Return the demand of a requirement on each step: for ``always(a) and always(b)``, ``a and b``.
 
     >>> import rtamt
     >>> str(each_step(rtamt.parse("always(x >= 3) and always(y >= 1)").formula))

@@ -1,4 +1,4 @@
-"""Where operators and their operands are written, and the edits that remove one of them.
+"""The positions of operators and operands in the text, and the edits that remove one of them.
 
 Spans of formulas do not contain the parentheses around them, and what a name or a template stands for is written
 elsewhere. So a part is found by the tokens of its operator; without them, nothing is edited.

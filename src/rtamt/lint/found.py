@@ -1,4 +1,4 @@
-"""What rules read and what they find: a text, a rule, a finding."""
+"""The input and output of rules: a text, a rule, a finding."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Edit(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """How to fix a finding: the edits, the part of the formula that they change, and what it becomes.
+    """The fix of a finding: the edits, the part of the formula that they change, and its replacement.
 
     The two formulas have the same robustness on every recording; :mod:`rtamt.lint.fix` compares what the new text
     means with this.
@@ -46,7 +46,7 @@ class Fix:
 
 
 class Found(NamedTuple):
-    """What a rule found: where, what, and how to fix it, if it can be fixed."""
+    """A finding of a rule: its place, its message, and its fix, if there is one."""
 
     span: Span | None
     message: str
@@ -122,14 +122,14 @@ class Text:
 
     @cached_property
     def unit_findings(self) -> tuple[UnitFinding, ...]:
-        """What units do not fit."""
+        """The findings about units."""
         from rtamt.language.units.check import unit_findings
 
         return tuple(unit_findings(self.document))
 
     @cached_property
     def decided(self) -> Decided:
-        """What declared ranges decide."""
+        """The findings that follow from declared ranges."""
         from rtamt.lint.ranges import Decided
 
         return Decided(self)
@@ -148,7 +148,7 @@ class Text:
 
     @cached_property
     def names(self) -> Counter[str]:
-        """How often each word of the text is in it, outside comments."""
+        """The number of occurrences of each word of the text, outside comments."""
         return Counter(
             [unquoted(text) if text.startswith('"') and len(text) > 1 else text for text in self.tokens.texts]
         )

@@ -1,4 +1,4 @@
-"""What the rules find in a text, less what its comments silence."""
+"""The findings of all rules in a text, except those that its comments silence."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class Colored(NamedTuple):
 
 
 def classify_words(analysis: Analysis) -> list[Colored]:
-    """Return what each word of a text is, in the order of the text.
+    """Return the role of each word of a text, in the order of the text.
 
     >>> from rtamt.lsp.document import Analysis
     >>> [each.type for each in classify_words(Analysis("always[0:5](x >= 3) // high"))]

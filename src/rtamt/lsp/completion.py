@@ -28,7 +28,7 @@ _WORD = lazy_pattern(r'[\w.$/]*$|"(?:[^"\r\n]|"")*$')
 
 
 class Item(NamedTuple):
-    """What can be inserted: its label, its kind, what it replaces and by what, a short and a long description.
+    """A completion: its label, its kind, its edit, a short and a long description.
 
     ``more``: further edits, such as an import.
     """

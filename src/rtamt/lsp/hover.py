@@ -1,4 +1,4 @@
-"""What an editor shows about the word under the pointer, as Markdown."""
+"""The hover text for the word under the pointer, as Markdown."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _LONGEST = 2000
 
 
 class Shown(NamedTuple):
-    """What is shown for a stretch of text."""
+    """The hover text of a span."""
 
     span: Span
     markdown: str
 
 
 def hover(analysis: Analysis, offset: int) -> Shown | None:
-    r"""Return what is known about the name or the operator at an offset.
+    r"""Return the hover text of the name or the operator at an offset.
 
     >>> from rtamt.lsp.document import Analysis
     >>> print(hover(Analysis("input float v [m/s]\nfast = v > 3\nalways(not fast)"), 45).markdown)

@@ -30,7 +30,7 @@ class Elsewhere(NamedTuple):
 
     @property
     def span(self) -> Span:
-        """Where the name is written."""
+        """The position of the name."""
         return self.symbol.span
 
     @property

@@ -1,4 +1,4 @@
-"""What a text means, to compare two texts that differ in one name."""
+"""The meaning of a text, to compare two texts that differ in one name."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Renamed(NamedTuple):
 
 
 def meaning(document: Document, renamed: Renamed) -> tuple[object, ...]:
-    """Return what a document means: equal for equal meanings."""
+    """Return the meaning of a document, which is equal for equivalent documents."""
     called = renamed.name
     return (
         [_declaration(each, renamed) for each in document.declarations],

@@ -76,6 +76,6 @@ class Lines:
         return at
 
     def width(self, span: Span) -> int:
-        """Return how many units a span has."""
+        """Return the length of a span in code units."""
         text = self._text[span.start : span.end]
         return len(text) if self._plain else sum(map(self._units, text))

@@ -30,7 +30,7 @@ RULES: dict[str, Rule] = {rule.code: rule for rule in ALL}
 
 
 class Problem(NamedTuple):
-    """What is wrong with a text: where, how bad it is ("error", "warning" or "note"), its code, and the sentence."""
+    """A problem of a text: its place, severity ("error", "warning" or "note"), code, and message."""
 
     span: Span
     severity: str
@@ -39,7 +39,7 @@ class Problem(NamedTuple):
 
 
 class Repair(NamedTuple):
-    """How to fix a problem: the sentence for the user, the edits, the code of the finding."""
+    """The fix of a problem: its title for the user, the edits, the code of the finding."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -77,7 +77,7 @@ def _inside(analysis: Analysis, span: Span | None) -> Span:
 
 
 def repairs(analysis: Analysis, span: Span) -> list[Repair]:
-    """Return what mends the problems that touch a span.
+    """Return the fixes of the problems that touch a span.
 
     >>> from rtamt.lsp.document import Analysis
     >>> print(repairs(Analysis("always(not not (x > 3))"), Span(8, 8))[0].title)
@@ -110,7 +110,7 @@ def fix_all(analysis: Analysis) -> str | None:
 
 
 def _reader(analysis: Analysis) -> Callable[[str], Document]:
-    """Return what parses a new version of the document, whose text has an ending if it is a library."""
+    """Return the parser of a new version of the document, whose text has an ending if it is a library."""
     ending = ENDING if analysis.library else ""
     return lambda text: analysis.read(text.removesuffix(ending))
 

@@ -42,7 +42,7 @@ async def ask(request: dict[str, Any], seconds: float = SECONDS) -> dict[str, An
 
 
 def state_of(path: str) -> tuple[Any, ...]:
-    """Return what changes when a file changes."""
+    """Return the version of a file, which changes when the file changes."""
     try:
         status = os.stat(path)
     except OSError:

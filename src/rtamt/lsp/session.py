@@ -1,4 +1,4 @@
-"""What the language server keeps between requests: settings, an analysis of each open text, verdicts."""
+"""The state of the language server between requests: settings, an analysis of each open text, verdicts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SEVERITIES = {
 
 @dataclass
 class Settings:
-    """What the client chooses: as initialization options, or as the section ``rtamt`` of its configuration."""
+    """The settings of the client: initialization options, or the section ``rtamt`` of its configuration."""
 
     recording: str = ""
     period: str = ""
@@ -54,7 +54,7 @@ class Settings:
 
 @dataclass
 class State:
-    """What the server keeps: an analysis of each open text, and what recordings were found to be."""
+    """The state of the server: an analysis of each open text, and the results of recordings."""
 
     settings: Settings = field(default_factory=Settings)
     analyses: dict[str, tuple[Any, Analysis]] = field(default_factory=dict)
@@ -122,7 +122,7 @@ class Server(LanguageServer):
         return [str(each) for each in found.get("columns", ())]
 
     def checking(self, uri: str) -> tuple[Any, ...] | None:
-        """Return what a verdict depends on; None where it is not known, as there is no recording."""
+        """Return the inputs of a verdict; None if they are unknown, as there is no recording."""
         path = self.recording(uri)
         if path is None:
             return None

@@ -23,7 +23,7 @@ _WORDS = frozenset(("then", "else", "inf", "in", "where", "of", *QUANTIFIERS))
 
 
 class UseReader(TokenReader):
-    """What is known of names once all declarations have been read."""
+    """The declarations of names, complete after all declarations have been read."""
 
     def __init__(self, text: str, document: Document | None = None) -> None:
         super().__init__(text)

@@ -73,7 +73,7 @@ class Classifier:
         return parse(self.text)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what was found as plain data."""
+        """Return the result as plain data."""
         return {
             "rules": [
                 {
@@ -263,7 +263,7 @@ def _predict(
     reading: Mapping[str, Any],
     budget: Budget,
 ) -> dict[str, bool]:
-    """Return what the engine finds, by the specification of a list."""
+    """Return the predictions of the engine, by the specification of a list."""
     if not found.rules:
         return dict.fromkeys(recordings, found.default)
     spec = parse(_text(found.rules, found.default, labels))

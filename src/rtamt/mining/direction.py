@@ -34,7 +34,7 @@ _MONOTONE = (Window, Rank, Sum, Shift, Ahead, Since, Until)
 
 @dataclass(frozen=True)
 class Role:
-    """What a parameter does in a formula.
+    """The role of a parameter in a formula.
 
     ``direction``: 1 if larger values are easier to satisfy, -1 if smaller ones are, None if that is unknown.
     ``bound``: whether it bounds an interval; then ``seconds`` is how long one unit of it is. ``begins``: of each
@@ -138,7 +138,7 @@ class _Side:
 
     @property
     def excluded(self) -> int:
-        """How many of the two bounds are not part of the interval."""
+        """The number of open bounds of the interval."""
         return self.interval.begin_open + self.interval.end_open
 
 

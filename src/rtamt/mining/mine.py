@@ -93,7 +93,7 @@ class Mined:
         return self.specification.with_parameters(**self.points[point].values)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what was found as plain data."""
+        """Return the result as plain data."""
         named = {1: "larger", -1: "smaller", None: "unknown"}
         return {
             "tight": self.tight,

@@ -64,7 +64,7 @@ class _Enough(Exception):  # noqa: N818 - no error: it ends an optimizer
 
 
 class _Tries:
-    """What an optimizer minimises: the margin of values that satisfy the template, and above it that of the others."""
+    """The objective of an optimizer: the margin of values that satisfy the template, above it that of the others."""
 
     def __init__(self, region: Region, grids: list[Grid]) -> None:
         self.made: list[tuple[dict[str, float], float]] = []

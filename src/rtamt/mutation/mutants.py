@@ -36,7 +36,7 @@ class Mutant:
 
     @property
     def name(self) -> str:
-        """What reports call it: ``M12``."""
+        """The name of the mutant in reports: ``M12``."""
         return f"M{self.number}"
 
 
@@ -112,5 +112,5 @@ def _place(spec: Specification, part: Formula) -> tuple[int | None, int | None]:
 
 
 def kinds_of(mutants: list[Mutant]) -> dict[str, int]:
-    """Return how many mutants there are of each kind."""
+    """Return the number of mutants of each kind."""
     return dict(Counter(mutant.kind for mutant in mutants))

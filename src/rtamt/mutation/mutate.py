@@ -1,4 +1,4 @@
-"""Which mutants of a requirement do recordings distinguish from it?"""
+"""Mutation analysis: which mutants of a requirement recordings distinguish from it."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ class Mutation:
 
     @cached_property
     def alone(self) -> dict[str, int]:
-        """For each recording, how many mutants it distinguishes and no other recording does."""
+        """For each recording, the number of mutants that it alone distinguishes."""
         once = self.killed.sum(axis=1) == 1
         return dict(zip(self.recordings, map(int, self.killed[once].sum(axis=0)), strict=True))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what was found as plain data."""
+        """Return the result as plain data."""
         return {
             "score": self.score,
             "mutants": [
@@ -159,7 +159,7 @@ def _step(
     verdicts: Mapping[str, Mapping[str, bool | None]],
     reading: Mapping[str, Any],
 ) -> Fraction | None:
-    """Return what bounds are multiples of: the sampling period, or a multiple of those that the recordings decide."""
+    """Return the unit of bounds: the sampling period, or a multiple of those that the recordings determine."""
     if not spec.domain.sampled or spec.period is not None:
         return spec.period
     periods = {

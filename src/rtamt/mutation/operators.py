@@ -156,7 +156,7 @@ def _constants(value: Const, under: Apply) -> Iterator[Const]:
 
 
 def _distance(value: float, under: Apply) -> float:
-    """Return how far a constant is changed; a count in whole numbers."""
+    """Return the change of a constant; a count in whole numbers."""
     if any(isinstance(arg, Apply) and arg.op is STL["count"] for arg in under.args):
         return 1.0
     return abs(float(Fraction(value) * STEP)) or float(STEP)

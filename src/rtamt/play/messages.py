@@ -39,7 +39,7 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is to be evaluated.
+    """A request: what to evaluate, and with which settings.
 
     ``signals``: the drawn ones, over ``duration`` seconds. ``recording``: a number; then nothing is drawn.
     ``resample``: how a recording is put on one time base, "" for not at all. ``focus``: the requirement that is

@@ -31,7 +31,7 @@ class File:
 
 
 class Recordings:
-    """What has been read, the most recent last."""
+    """The recordings read so far, the most recent last."""
 
     def __init__(self) -> None:
         self._read: OrderedDict[tuple[Any, ...], Trace] = OrderedDict()

@@ -50,7 +50,7 @@ _HEADERS = {
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """What the command line gives: the text of a specification, settings, and a recording."""
+    """The arguments of the command line: the text of a specification, settings, and a recording."""
 
     text: str = ""
     name: str = ""
@@ -214,7 +214,7 @@ class Guard:
 
 
 async def _start(place: Place) -> dict[str, Any]:
-    """Return what the page needs first."""
+    """Return the initial data of the page."""
     import rtamt
 
     given, recording, complaint = place.given, None, ""

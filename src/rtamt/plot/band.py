@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Band:
-    """What was known after each sample, at ``positions``: ``lower`` and ``upper``.
+    """The bounds after each sample, at ``positions``: ``lower`` and ``upper``.
 
     ``steps``: the same positions in steps of the trace, which are exact. ``decided``: the position of the sample
     that decided the verdict; None if only the end did. ``robustness``: what it was in the end.

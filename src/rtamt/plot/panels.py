@@ -1,4 +1,4 @@
-"""Which signals are drawn together: those that a predicate compares, unless their units are known to differ."""
+"""The assignment of signals to panels: a predicate's signals share one, unless their units differ."""
 
 from __future__ import annotations
 

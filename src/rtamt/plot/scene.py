@@ -1,4 +1,4 @@
-"""What there is to see of a result, as data: signals, sub-formulas with their values, the explanation."""
+"""The contents of a plot as data: signals, sub-formulas with their values, the explanation."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Everything that a plot or a report of one result shows; positions are those of ``x_axis``.
+    """The contents of a plot or a report of one result; positions are those of ``x_axis``.
 
     ``nodes``: the formula first, then its sub-formulas, those next to the top first; equal ones are one.
     ``critical``: the node and the position of the critical point, if a predicate decides.

@@ -16,7 +16,7 @@ _DEPTH = 2
 
 
 def ahead(items: Iterator[T]) -> Iterator[T]:
-    """Yield what ``items`` yields, and raise what it raises; a thread is some items ahead.
+    """Yield the items of ``items``, and raise its errors; a thread is some items ahead.
 
     It pays where items are made without the GIL. The thread ends with the iterator, however that ends.
 

@@ -1,4 +1,4 @@
-"""From a source to a trace: which columns, under which names, with which timestamps."""
+"""Assembly of a trace from a source: which columns, under which names, with which timestamps."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Choice:
 
 @lazy_dataclasses.dataclass(frozen=True, slots=True)
 class Selection:
-    """Of one table: the field of timestamps, and the fields to read with the names of their signals."""
+    """The selection of one table: the field of timestamps, and the fields to read with the names of their signals."""
 
     table: Table
     time_field: Field | None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Gaps:
-    """What is left out of one signal, chunk by chunk.
+    """The samples left out of one signal, chunk by chunk.
 
     ``hold_for``: seconds for which the value of the last sample takes the place of those that are left out; None:
     it takes none.

@@ -193,7 +193,7 @@ class _Rows:
         self._rows.append(row)
 
     def _recodings_of(self, message: Any) -> dict[int, Recoding]:
-        """Return how members of enumerations are read, by the place of their column."""
+        """Return the readers of enumeration members, by the place of their column."""
         fields = [field for field in self._wanted if field != self._topic.table.time_field]
         return {
             place: Recoding(_at(message, _holder(self._topic.steps[field.column])), field.type)

@@ -98,7 +98,7 @@ class Source:
 
     @property
     def aliases(self) -> dict[str, str]:
-        """From the other names of columns to their names."""
+        """The names of columns by their other names."""
         return {field.alias: field.name for table in self.tables for field in table.fields if field.alias}
 
     @property

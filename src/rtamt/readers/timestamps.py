@@ -68,7 +68,7 @@ def _unclear(candidates: Sequence[Field], source: str) -> TraceError:
 
 
 class TimestampColumn:
-    """How the timestamps of a column become times, a few at a time: the first one decides for all.
+    """The conversion of a column of timestamps to times, a few at a time: the first one decides for all.
 
     ``said``: the unit given by the caller. ``notes``: the inferences.
     """

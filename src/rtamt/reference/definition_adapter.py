@@ -50,7 +50,7 @@ def values_of(node: Apply, operands: Sequence[Array], n: int, bounds: tuple[Any,
 
 
 def numbers_of(node: Apply, given: Any) -> Array:
-    """Return what an operator's own code gave, as doubles; numpy would drop imaginary parts and read text."""
+    """Return the result of an operator's own code as doubles; numpy would drop imaginary parts and read text."""
     values = np.asarray(given)
     if values.dtype.kind not in "fiubO":
         raise EvaluationError(
@@ -77,7 +77,7 @@ def check_dense_meaning(op: Operator) -> None:
 
 
 def behind(node: Apply, end: int | None) -> int | None:
-    """Return how many steps behind the present one an operator reads; None: all of them."""
+    """Return the number of steps that an operator reads behind the present one; None: all of them."""
     op = node.op
     if op.tense is not Tense.PAST:
         return 0
@@ -88,7 +88,7 @@ def behind(node: Apply, end: int | None) -> int | None:
 
 
 def arguments_of(node: Apply, begin: int, end: int | None, period: Fraction) -> tuple[Any, ...]:
-    """Return what the definition of an operator takes after its operands in discrete time.
+    """Return the arguments of an operator's definition after its operands in discrete time.
 
     These are the bounds in samples, the period of an operator that counts in seconds, and the rank of a share.
     """

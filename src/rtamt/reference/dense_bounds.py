@@ -81,7 +81,7 @@ class DenseKnowledge:
         return min(map(self.until, self.samples))
 
     def of(self, names: Collection[str]) -> DenseKnowledge:
-        """Return what is known of some of the variables."""
+        """Return the knowledge about some of the variables."""
         samples = {name: self.samples[name] for name in names}
         return DenseKnowledge(samples, self.ranges, self.finished, self.closed, self.later)
 

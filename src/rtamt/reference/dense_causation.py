@@ -59,7 +59,7 @@ _Sides = tuple[_Side, _Side]
 def causation(
     formula: Formula, before: DenseKnowledge | None, now: DenseKnowledge, tick: Fraction
 ) -> StepCauses:
-    """Return what the last event causes from the start of the trace on; ``tick`` is seconds.
+    """Return the causation of the last event from the start of the trace on; ``tick`` is seconds.
 
     ``before``: what was known before the event; None for the event with which the trace starts.
 
@@ -183,7 +183,7 @@ def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
 def _cause_of(
     node: Apply, side: int, operands: list[_Side], limit: Steps, window: tuple[int, int | None]
 ) -> Steps:
-    """Return how good the event makes an operator on one side, from how good it makes its operands there."""
+    """Return the causation of an operator on one side, from that of its operands."""
     kernel, sats = node.op.kernel, tuple(each.sat for each in operands)
     if isinstance(kernel, Until | Since):
         # On the other side, what is best for the formula is worst: each part of any alternative is enough.

@@ -50,7 +50,7 @@ class StepFunction(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What became known of one output.
+    """The new values of one output.
 
     ``times`` and ``values``, both of shape (m,), are its changes after the last instant that was known
     before, up to and including ``until``; the very first is at t₀. ``until``, in ticks, is the last
@@ -126,7 +126,7 @@ class DenseReferenceMonitor:
         return self._kept
 
     def state(self) -> tuple[Any, ...]:
-        """Return what the samples so far have left behind; none of it is ever changed in place."""
+        """Return the state after the samples so far; none of it is ever changed in place."""
         return self._kept, self._until, self._finished
 
     def restore(self, state: tuple[Any, ...]) -> None:

@@ -52,7 +52,7 @@ class Knowledge:
     closed: int | None = None
 
     def until(self, n: int) -> Knowledge:
-        """Return what was known after the first ``n`` samples."""
+        """Return the knowledge after the first ``n`` samples."""
         columns = {name: Enclosure(x.lower[:n], x.upper[:n]) for name, x in self.columns.items()}
         return Knowledge(columns, n, self.ranges)
 
@@ -116,7 +116,7 @@ def bounds(
 
 
 def _narrower(x: Enclosure, y: Enclosure) -> Enclosure:
-    """Return what two bounds of the same numbers imply."""
+    """Return the bounds that two bounds of the same numbers imply."""
     n = _longest((x, y))
     (x_lower, x_upper), (y_lower, y_upper) = _padded(x, n), _padded(y, n)
     return Enclosure(np.maximum(x_lower, y_lower), np.minimum(x_upper, y_upper))

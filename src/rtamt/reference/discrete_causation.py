@@ -35,7 +35,7 @@ NOTHING = Causation(inf, -inf)
 
 
 def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | None = None) -> list[Causation]:
-    """Return how the last sample of ``known`` affects the formula at samples 0 to m - 1.
+    """Return the causation of the last sample of ``known`` at samples 0 to m - 1.
 
     ``m``: by default so many that all later samples are affected as the last one.
 

@@ -68,7 +68,7 @@ def evaluate_all(
 
 
 def history(formula: Formula, period: Fraction) -> int | None:
-    """Return how many samples behind t the value at t can depend on; None if it is unbounded.
+    """Return the number of samples behind t that the value at t can depend on; None if it is unbounded.
 
     A past operator without an interval (``prev``) reads one sample; one with an interval reads as far
     as its upper bound; future operators add nothing.
@@ -126,7 +126,7 @@ class ReferenceMonitor:
 
     @property
     def samples(self) -> int:
-        """How many samples have been pushed."""
+        """The number of samples so far."""
         return self._samples
 
     @property

@@ -41,11 +41,11 @@ class BoundUnit:
 
     @property
     def contents(self) -> str:
-        """What a window consists of."""
+        """The elements of a window."""
         return self.steps if self.continuous else "samples"
 
     def size(self, window: Interval, step: Fraction) -> int:
-        """Return how many ticks or samples a closed window has; it has a sample at both ends."""
+        """Return the number of ticks or samples of a closed window; it has a sample at both ends."""
         assert window.end is not None
         return int((window.end - window.begin) / step) + (not self.continuous)
 

@@ -1,4 +1,4 @@
-"""What a formula means once the length of a step is known: closed bounds, counted in whole steps.
+"""Grounding of formulas for a known step: closed bounds, counted in whole steps.
 
 A step is the sampling period in discrete time and a tick (``resolution``) in dense time. A formula is grounded
 before its horizon is computed, and before it is expanded and compiled: see ``TimeDomain.check``. The result has the

@@ -64,7 +64,7 @@ def _count_horizons(formula: Formula, period: Fraction) -> tuple[int, dict[int, 
 
 
 def _own(node: Apply, parts: int, step: int) -> float:
-    """Return how far ahead of its operands an operator reads; ``step``: one sample."""
+    """Return the distance that an operator reads ahead of its operands; ``step``: one sample."""
     if node.op.bounds is _NONE:
         return inf if node.op.reach is None else node.op.reach * step
     if node.interval is None:

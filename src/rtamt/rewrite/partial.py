@@ -18,7 +18,7 @@ _PROBES = (-inf, -1e308, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 1e308, inf)
 
 
 def value_at(op: Operator, known: Sequence[float | None]) -> float | None:
-    """Return what an operation on numbers gives for some; None where one of them is not known, or nothing results."""
+    """Return the result of an operation on numbers; None if one of them is unknown, or the result is undefined."""
     if (
         builtin(op.name) is not op
         or op.definition is None

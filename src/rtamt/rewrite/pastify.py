@@ -248,7 +248,7 @@ def _unit(formula: Formula) -> str:
 
 
 def _guard(node: Apply, how: str | None) -> str | None:
-    """Return how an operand is guarded; that of a share counts as true or false outside the trace."""
+    """Return the guard of an operand; that of a share counts as true or false outside the trace."""
     if not node.op.share:
         return how
     assert node.interval is not None

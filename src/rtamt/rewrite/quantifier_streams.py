@@ -101,7 +101,7 @@ class _StreamScope(Scope):
     found: list[Quantified] = field(default_factory=list)
 
     def over_members(self, node: Apply, binder: Binder) -> Formula:
-        """Return what reads the column of a quantifier."""
+        """Return the formula that reads the column of a quantifier."""
         assert self.splitting is not None
         (body,) = node.args
         inner = _StreamScope(
@@ -119,7 +119,7 @@ class _StreamScope(Scope):
         return COLUMN(value, holds)
 
     def _column(self, node: Apply, binder: Binder, given: Formula, inner: _StreamScope) -> Formula:
-        """Return what reads the column of what members give."""
+        """Return the formula that reads the column of the members' values."""
         assert self.splitting is not None
         period = self.splitting.period
         known = next(

@@ -267,7 +267,7 @@ def present_of(member: str) -> Formula:
 
 
 def of_one(node: Apply, present: Formula | None, body: Formula) -> Formula:
-    """Return what one member gives to a quantifier; ``present``: where it is present, None if throughout."""
+    """Return the contribution of one member to a quantifier; ``present``: where it is present, None if throughout."""
     guard = STL[JOINS[node.op.name].guard]
     guarded = body if present is None else Apply(guard, (present, body), None, body.span)
     assert node.op.expansion is not None

@@ -190,7 +190,7 @@ def window_of(node: Apply, period: Fraction) -> tuple[int, int]:
 
 
 def reaches(order: tuple[Formula, ...], period: Fraction) -> dict[Formula, tuple[int, int]]:
-    """Return how many cells behind and ahead each sub-formula can read, ``NEVER`` at most."""
+    """Return the number of cells that each sub-formula can read behind and ahead, ``NEVER`` at most."""
     found: dict[Formula, tuple[int, int]] = {}
     for node in order:
         behind = ahead = 0
@@ -220,7 +220,7 @@ def settling(formulas: Iterable[Formula], period: Fraction) -> int:
 
 
 def own_reach(node: Apply, period: Fraction) -> tuple[int, int]:
-    """Return how many cells behind and ahead an operator reads its operands."""
+    """Return the number of cells that an operator reads its operands behind and ahead."""
     if node.op.tense is Tense.NONE:
         return 0, 0
     if node.op.bounds is Bounds.NONE:

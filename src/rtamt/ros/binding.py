@@ -167,7 +167,7 @@ def bind(spec: Specification, verdict: str | None = None, at: str | None = None)
 
 
 def _early(output: Output, verdict: str | None, at: str) -> str:
-    """Return what is published of an output before the horizon; "" if nothing is."""
+    """Return the form in which an output is published before the horizon; "" if it is not."""
     unbounded = unbounded_future(output.specification.formula) is not None
     if verdict is None:
         return START if unbounded else ""

@@ -60,14 +60,14 @@ class Reports(ABC):
 
     @property
     def text(self) -> str:
-        """What is known of the verdict."""
+        """The state of the verdict."""
         if not self.samples:
             return "no verdict yet"
         return OPEN if self.satisfied is None else SATISFIED if self.satisfied else VIOLATED
 
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
-        """What diagnostics show of the output."""
+        """The text of the output for diagnostics."""
         return ()
 
 

@@ -1,4 +1,4 @@
-"""What is monitored together: the numbers that it reads, sampled in discrete time, and what is reported of it."""
+"""Outputs that are monitored together: their numbers, sampled in discrete time, and their records."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node runs in a time domain: the part ``ros_groups`` of discrete and of dense time."""
+"""The output groups of a node in a time domain: the part ``ros_groups`` of discrete and of dense time."""
 
 from __future__ import annotations
 

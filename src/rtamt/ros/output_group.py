@@ -55,12 +55,12 @@ class Standing:
 
     @property
     def text(self) -> str:
-        """What is known of the verdict."""
+        """The state of the verdict."""
         return "satisfied" if self.satisfied else "no verdict yet" if self.satisfied is None else "violated"
 
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
-        """What diagnostics show of the output."""
+        """The text of the output for diagnostics."""
         return (
             ("robustness", "none" if self.latest is None else f"{self.latest:.6g}"),
             ("horizon", f"{self.horizon:.6g} s"),

@@ -73,7 +73,7 @@ def _sentence(error: Exception) -> str:
 
 
 def _find_unbounded(schema: Any, named: dict[str, Any] | None = None, open_: tuple[str, ...] = ()) -> str:
-    """Return what in a schema lets a short message decode to values of any size; empty if there is nothing."""
+    """Return the part of a schema that lets a short message decode to values of any size; empty if there is none."""
     named = {} if named is None else named
     if isinstance(schema, list):
         return next(filter(None, (_find_unbounded(each, named, open_) for each in schema)), "")

@@ -26,7 +26,7 @@ _NAME = lazy_pattern(r"[A-Za-z0-9._-]{1,249}")
 
 
 class Checkpoint(NamedTuple):
-    """Where a shard is: ``offset``: of the first message that ``state`` does not contain."""
+    """The position of a shard: ``offset``: of the first message that ``state`` does not contain."""
 
     topic: str
     partition: int

@@ -21,7 +21,7 @@ ENGINES = ("local", "ray", "spark")
 
 
 class Progress(NamedTuple):
-    """How far a job is: recordings ``done`` by now and ``known`` from the manifest, of ``total``."""
+    """The progress of a job: recordings ``done`` by now and ``known`` from the manifest, of ``total``."""
 
     done: int
     known: int

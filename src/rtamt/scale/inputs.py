@@ -1,4 +1,4 @@
-"""What a message has of each variable of a specification, or of the requirements of a suite."""
+"""The fields of a message for the variables of a specification, or of the requirements of a suite."""
 
 from __future__ import annotations
 

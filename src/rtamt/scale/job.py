@@ -1,4 +1,4 @@
-"""What is done with one recording, on every engine."""
+"""The job on one recording, shared by all engines."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SEMANTICS_VERSION = 1
 
 
 class ReaderOptions(TypedDict, total=False):
-    """How recordings are read, see :func:`rtamt.read`; ``skip_nan`` has variables of the requirements."""
+    """The reading settings of recordings, see :func:`rtamt.read`; ``skip_nan`` has variables of the requirements."""
 
     time: str | None
     time_unit: str | None

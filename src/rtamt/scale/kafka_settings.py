@@ -25,7 +25,7 @@ _OWN = {
 
 @dataclass(frozen=True)
 class Settings:
-    """Where a worker reads and writes.
+    """The brokers, topics and options of a worker.
 
     ``checkpoints``: a folder or an address, None for none; ``interval``: seconds between checkpoints. ``beginning``:
     whether a partition without a checkpoint is read from its start. ``until_end``: whether to end when all messages are

@@ -39,7 +39,7 @@ _MISSING = object()
 
 
 def decoder(format_: str, schemas: Mapping[int | None, str], message: str | None = None) -> Decode:
-    """Return what decodes values. ``schemas``: files by schema ID, or under None the one of messages without an ID.
+    """Return the decoder of values. ``schemas``: files by schema ID, or under None the one of messages without an ID.
 
     ``message``: the full name of the message type, for protobuf. Raises :class:`UsageError`.
     """
@@ -110,7 +110,7 @@ def framed(value: bytes) -> tuple[int, bytes]:
 
 
 class MessageReader:
-    """Reads the samples of a specification, or of all requirements of a suite, from messages.
+    """A reader of the samples of a specification, or of all requirements of a suite, from messages.
 
     In dense time a message may lack variables.
     ``key``: the field with the key of a sample; None for the key of the message. ``time``: the field with its time;
@@ -216,7 +216,7 @@ def _nanoseconds(stamp: Any) -> int | None:
 
 
 def _member(data: Mapping[str, Any], name: str) -> Any:
-    """Return what is called ``name``: a field, or one of nested fields (``position.x``)."""
+    """Return the value called ``name``: a field, or one of nested fields (``position.x``)."""
     if name in data:
         return data[name]
     value: Any = data

@@ -93,7 +93,7 @@ class Discarded(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """What a batch has led to: results and rejected samples, each in the order of the batch, and discarded ones."""
+    """The outcome of a batch: results and rejected samples, each in the order of the batch, and discarded ones."""
 
     results: list[Result] = field(default_factory=list)
     rejected: list[Rejected] = field(default_factory=list)
@@ -248,7 +248,7 @@ class Shard:
         return None
 
     def _results(self, update: Any, keys: Any = ()) -> list[Result]:
-        """Return what a batch has made known; with lateness in the order of times."""
+        """Return the results of a batch; with lateness in the order of times."""
         if isinstance(update, SuiteUpdate):
             return [
                 result._replace(requirement=name)

@@ -175,7 +175,7 @@ class Problem:
             return None
 
     def _bounds(self, times: list[float], columns: Mapping[str, list[float]], total: int) -> Interval:
-        """Return what is known of the robustness of a simulation that ends after ``total`` samples."""
+        """Return the bounds of the robustness of a simulation that ends after ``total`` samples."""
         period = self.spec.domain.period
         assert period is not None
         rest = range(1, total - len(times) + 1)

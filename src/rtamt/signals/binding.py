@@ -1,4 +1,4 @@
-"""Where the variables of a specification are in recordings: recorded names, and declared units.
+"""The binding of variables to recordings: recorded names, and declared units.
 
 ``input float z_sp [m] = "trajectory_setpoint.position[2]"``: the variable z_sp is in metres, and recordings have it
 under another name, perhaps in another unit.

@@ -82,5 +82,5 @@ class CallerTimes:
         return np.array([float(timestamp) for timestamp in timestamps])
 
     def period_in_unit(self, dtype: np.dtype[Any]) -> Fraction:
-        """Return how much a period is in times of a format."""
+        """Return the period in the format of the caller's times."""
         return self.period / UNITS["ns" if dtype.kind in "mM" else self.unit or "s"]

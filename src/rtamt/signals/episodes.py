@@ -117,7 +117,7 @@ class EpisodeTracker:
         return [*self._ended, *([] if self._open is None else [self._open])]
 
     def summary(self) -> Episodes:
-        """Return how many there are, the worst one and the first ones."""
+        """Return the number of episodes, the worst one and the first ones."""
         known = Episodes.of(self.episodes())
         worst = Episodes.of([each for each in (self._worst, known.worst) if each is not None]).worst
         return Episodes(self._count + (self._open is not None), worst, known.first)
@@ -185,7 +185,7 @@ class WindowTracker:
         return self._tracker.episodes()
 
     def summary(self) -> Episodes:
-        """Return how many there are, the worst one and the first ones."""
+        """Return the number of episodes, the worst one and the first ones."""
         return self._tracker.summary()
 
 

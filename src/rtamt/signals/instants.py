@@ -95,7 +95,7 @@ class Cells:
         return Cells.union(np.maximum(self.starts, begin), np.minimum(self.ends, end))
 
     def before(self, points: Ints) -> Ints:
-        """Return how many of the cells are before each point."""
+        """Return the number of cells before each point."""
         total = np.concatenate((np.zeros(1, np.int64), np.cumsum(self.ends - self.starts)))
         begun = np.searchsorted(self.starts, points, side="right")
         ends = np.concatenate((np.array([-4 * NEVER]), self.ends))
@@ -122,7 +122,7 @@ class Cells:
 
     @property
     def count(self) -> int:
-        """How many cells there are."""
+        """The number of cells."""
         return int((self.ends - self.starts).sum())
 
     @property

@@ -72,7 +72,7 @@ def _rows(topic: str, channels: Mapping[str, Channel]) -> Iterator[tuple[str, st
 
 
 def extent(channel: Channel) -> str:
-    """Return how many samples a signal has, and from when to when."""
+    """Return the number of samples of a signal, and its extent in time."""
     count = len(channel.values)
     text = f"{count:,} sample{'s' * (count != 1)}"
     if channel.times is None or not count:

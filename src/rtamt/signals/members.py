@@ -229,7 +229,7 @@ def filled(values: Any, absent: Mask | None, type_: Any) -> Any:
 
 
 def filler(type_: Any) -> float:
-    """Return what the field of an absent member is: any value of its type, of numbers 1."""
+    """Return the value of a field of an absent member: any value of its type, for numbers 1."""
     return float(type_.members[0][1]) if isinstance(type_, Enumeration) else 1.0
 
 

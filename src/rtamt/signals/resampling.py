@@ -94,7 +94,7 @@ class Sampler:
     def take(
         self, chunk: Mapping[str, tuple[Times, FloatArray]]
     ) -> tuple[Times, dict[str, FloatArray]] | None:
-        """Return what a chunk makes known: instants and the values of all signals there; None if it is nothing.
+        """Return the new instants of a chunk with the values of all signals; None if there are none.
 
         The first time these are two instants at least, from which the period can be inferred.
         """
@@ -107,7 +107,7 @@ class Sampler:
     def take_at(
         self, now: Any, chunk: Mapping[str, tuple[Times, FloatArray]]
     ) -> tuple[Times, dict[str, FloatArray]] | None:
-        """Return what is known before ``now``, when no earlier sample can arrive.
+        """Return the instants before ``now`` and their values, when no earlier sample can arrive.
 
         Raises :class:`TraceError` if a value is too old; instants up to ``now`` are then left out.
         """

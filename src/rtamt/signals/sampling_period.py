@@ -113,7 +113,7 @@ def has_period(times: FloatArray, period: Fraction) -> bool:
 
 
 def coarse_place(gap: float) -> float:
-    """Return what one means in the last digit of a number with one significant digit less.
+    """Return the value of one unit in the last digit of a number, with one significant digit less.
 
     >>> coarse_place(0.25), coarse_place(20.0)
     (0.1, 100.0)

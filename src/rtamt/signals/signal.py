@@ -39,7 +39,7 @@ class Signal:
 
     @property
     def values(self) -> FloatArray:
-        """What: one value for each time."""
+        """The values, one for each time."""
         return self._values
 
     def points(self) -> list[tuple[Any, float]]:

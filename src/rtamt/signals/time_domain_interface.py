@@ -172,7 +172,7 @@ class DomainTrace(ABC):
 
     @property
     def extent(self) -> tuple[int, int]:
-        """Where the recording begins and ends; signals from one program have the same extent."""
+        """The begin and end of the recording; signals from one program have the same extent."""
         return self.start, self.end
 
     @property
@@ -234,7 +234,7 @@ class DomainTrace(ABC):
 
     @abstractmethod
     def signals(self, values: Sequence[Any]) -> list[Signal]:
-        """Return what an evaluation computed, with the timestamps of the recording."""
+        """Return the result of an evaluation, with the timestamps of the recording."""
 
     @abstractmethod
     def time(self, position: int) -> Any:

@@ -108,7 +108,7 @@ class Trace(WithTimeBases):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was inferred, left out or converted, one sentence each, including :attr:`remarks`."""
+        """Notes on inferred, omitted or converted data, one sentence each, including :attr:`remarks`."""
         return (*self._notes, *self.remarks)
 
     @property
@@ -157,7 +157,7 @@ class Trace(WithTimeBases):
 
     @property
     def aliases(self) -> dict[str, str]:
-        """From other names of signals to their names: ``topic[0].field`` of a PX4 log is ``topic.field``."""
+        """The names of signals by their other names: ``topic[0].field`` of a PX4 log is ``topic.field``."""
         return {channel.alias: name for name, channel in self._channels.items() if channel.alias}
 
     @overload

@@ -1,4 +1,4 @@
-"""From the unit of a recording to the declared one, with exact factors and offsets of pint.
+"""Conversion from the unit of a recording to the declared one, with exact factors and offsets of pint.
 
 Two units can be converted if they are the same product of base units. Angles are base units here: 1 rpm is 6 deg/s, but
 not a number of hertz, although radians have no dimension.

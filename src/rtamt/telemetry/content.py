@@ -1,4 +1,4 @@
-"""What is exported of a result: signals and findings over time, in nanoseconds."""
+"""The exported content of a result: signals and findings over time, in nanoseconds."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Content:
-    """What is exported of a result; ``dated``: whether times count from 1970."""
+    """The exported content of a result; ``dated``: whether times count from 1970."""
 
     variables: tuple[Variable, ...]
     findings: tuple[Finding, ...]
@@ -122,7 +122,7 @@ def results_by_name(result: Result | Mapping[str, Result]) -> dict[str, Result]:
 
 
 def content_of(result: Result | Mapping[str, Result], *, bounds: bool = False) -> Content:
-    """Return what is exported of a result, or of results by the names of their requirements.
+    """Return the exported content of a result, or of results by the names of their requirements.
 
     ``bounds``: also the bounds of the robustness at the start, as known after each sample.
     """

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class StreamResult:
-    """What a check in chunks gives.
+    """The result of a check in chunks.
 
     ``robustness``: ρ at the first instant, ``start``. ``satisfied``: whether the formula holds there (Boolean
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None

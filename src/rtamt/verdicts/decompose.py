@@ -109,7 +109,7 @@ def anchor(formula: Formula) -> Anchored:
 
 
 class _Facts(NamedTuple):
-    """Of a sub-formula: whether it reads a variable or other instants, looks ahead, and that through a connective.
+    """Properties of a sub-formula: it reads a variable or other instants, looks ahead, and that through a connective.
 
     What reads neither is a constant, which needs no recording.
     """

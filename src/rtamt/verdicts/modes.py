@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What a monitor reports. Which monitor does, is the part of the time domain that has the name of the mode."""
+    """The verdict modes of monitors. The part of the time domain with the name of the mode is its monitor."""
 
     name: str
     doc: str

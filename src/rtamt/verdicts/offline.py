@@ -31,7 +31,7 @@ ROOM = 2**24
 
 
 class Findings(NamedTuple):
-    """What one requirement has over its trace.
+    """The results of one requirement over its trace.
 
     ``violations``: when it is first violated (see :func:`first_violation`), in the times of the trace; empty
     where it was not requested, or where an operation of the truth has no value.
@@ -119,7 +119,7 @@ def _findings_of(
     whole: DomainTrace,
     evaluate: Evaluate,
 ) -> Iterator[Findings]:
-    """Yield what requirements have over their common trace; robustness is reported to the end of the ``whole``."""
+    """Yield the results of requirements over their common trace, with robustness to the end of the ``whole``."""
     trace = trace.held_until(whole.end)
     robustness = tuple(each.robustness for each in outputs)
     try:

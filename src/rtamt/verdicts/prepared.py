@@ -58,7 +58,7 @@ class Window(NamedTuple):
 
 
 class Joined(NamedTuple):
-    """Where the truth of a requirement is: ``value``: its output of the joining program.
+    """The outputs for the truth of a requirement: ``value``: its output of the joining program.
 
     ``windows``: those of its leaves. ``parts``: of each part that must hold, its window if that is a minimum, and else
     its output.
@@ -75,7 +75,7 @@ class Joined(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What is known of one requirement: None where it was not selected, or where there is an ``error``.
+    """The results of one requirement: None where it was not selected, or where there is an ``error``.
 
     ``violation``: the position at which it is first violated, None where it holds.
     """
@@ -112,7 +112,7 @@ class Prepared:
         return max(len(self.outputs), len(self.joined))
 
     def evaluate(self, trace: DomainTrace) -> list[Found]:
-        """Return what is found of each requirement over a normalised recording of the inputs."""
+        """Return the results of each requirement over a normalised recording of the inputs."""
         width = max([plan.outputs for plan in (self.robustness, self.leaves) if plan is not None], default=1)
         size = max(
             1, ROOM // max(1, trace.size * -(-width // len(self)))
@@ -151,7 +151,7 @@ class Prepared:
         return [truth._replace(robustness=value) for value, truth in zip(robustness, truths, strict=True)]
 
     def _evaluate_alone(self, trace: DomainTrace) -> Found:
-        """Return what is found of the only requirement, of which one part is undefined."""
+        """Return the results of the only requirement, of which one part is undefined."""
         robustness = None
         try:
             if self.outputs:
@@ -250,7 +250,7 @@ class Prepared:
 
     @cached_property
     def _run(self) -> list[Any]:
-        """What evaluates each of the three plans."""
+        """The evaluators of the three plans."""
         first = None if self.robustness is None else self._evaluator(self.robustness)
         second = first if self.leaves is self.robustness else None
         if second is None and self.leaves is not None:

@@ -206,7 +206,7 @@ def _label(formula: Formula) -> str:
 
 
 def _meanings(program: Program, formulas: Iterable[Formula]) -> dict[int, str]:
-    """Return what each instruction computes, as it is written in ``formulas`` and as far as a message shows it."""
+    """Return the formula that each instruction computes, as written in ``formulas`` and abbreviated for messages."""
     written = as_written(formulas)
     return {
         i: _label(written.get(formula, formula))

@@ -1,4 +1,4 @@
-"""What reports before the horizon in dense time, in each back end: requirements, each with its own trace."""
+"""Early sessions of dense time in both back ends: requirements, each with its own trace."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _parts_of(query: EarlyQuery, domain: Dense) -> _Parts:
 
 
 def _count_hidden(query: EarlyQuery, group: int, required: int) -> int:
-    """Return how many formulas of a group are not reported at every instant."""
+    """Return the number of formulas of a group that are not reported at every instant."""
     return query.hidden if group < required else 0
 
 

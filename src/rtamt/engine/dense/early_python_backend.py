@@ -57,7 +57,7 @@ class _Came:
 
 @dataclass(frozen=True, slots=True)
 class _Report:
-    """What was reported of an output: its bounds up to the newest sample, or what is decided of it."""
+    """The last report of an output: its bounds up to the newest sample, or its decisions."""
 
     runs: tuple[Run, ...] = ()
     decided: tuple[Decided, ...] = ()
@@ -198,7 +198,7 @@ class PythonDenseEarlyMonitor:
         return self._found[formula]
 
     def _reported(self, before: _Report, found: StepBounds, newest: int, now: int) -> _Report:
-        """Return what is reported of an output from now on."""
+        """Return the reported part of an output from now on."""
         return _verdicts(before, found, newest, now) if self._decides else _changes(before, found, newest)
 
     def set_time_scale(self, signal: type, rate: float) -> None:
@@ -270,7 +270,7 @@ class PythonDenseEarlyMonitor:
         return list(self._reports[output].changed)
 
     def runs(self, output: int) -> list[Run]:
-        """All runs of an output up to the newest sample that are held, as they are now."""
+        """All current runs of an output up to the newest sample that are held."""
         return list(self._reports[output].runs)
 
     def bounds(self, output: int, tick: int) -> Pair | None:
@@ -304,7 +304,7 @@ class PythonDenseEarlyMonitor:
         return _at_starts(self._parts(0, self._came))
 
     def _caused(self, formula: int) -> StepCauses | None:
-        """Return what the last event caused; None while the trace has not started."""
+        """Return the causation of the last event; None before the start of the trace."""
         if formula not in self._causes:
             self._causes[formula] = self._caused_of(self._formulas[formula])
         return self._causes[formula]
@@ -354,7 +354,7 @@ class PythonDenseEarlyMonitor:
         return list(clipped(merged(run for run in runs if run[2:] != (inf, -inf)), found.times[0], last))
 
     def known(self, number: int, tick: int) -> Pair:
-        """What is known of an input at the tick of a sample."""
+        """The bounds of an input at the tick of a sample."""
         return self._came.known[number].get(tick, self._ranges[self._names[number]])
 
     def state(self) -> bytes:

@@ -58,7 +58,7 @@ class Evaluator:
         return run(plan.program, columns, recording.scale, plan, self._asked)
 
     def direct(self, domain: Dense, recording: DenseTrace) -> Direct | None:
-        """Return what evaluates the only formula over data alone, whose times are seconds; None if nothing does."""
+        """Return the direct evaluator of the only formula over data with times in seconds; None if there is none."""
         plan, names = self._plan, tuple(recording.columns)
         scale = TimeScale(domain.resolution, "seconds")
         places = {name: place for place, name in enumerate(names)}
@@ -78,7 +78,7 @@ class Evaluator:
 
 
 class Reading(NamedTuple):
-    """How ``DenseDirectEvaluator`` of the core has read recordings: their variables, and their times in seconds.
+    """The reading settings of the core's ``DenseDirectEvaluator``: variables, and times in seconds.
 
     What it returns is ``found``: memory of the samples, their numbers, and memory of the result.
     """

@@ -274,7 +274,7 @@ class DenseGroups:
         return sum(int(backend.state_bytes) for backend in self._backends)
 
     def last_output(self, output: int) -> Samples:
-        """Return what the last update made known of an output."""
+        """Return the new values of an output after the last update."""
         return self._results[output]
 
     def points(self) -> list[list[tuple[int, float]]]:
@@ -302,7 +302,7 @@ class DenseGroups:
 
 
 def _outputs(part: Part, backend: Any, first: Samples) -> list[Samples]:
-    """Return what became known of every output of a part; ``first``: of the first one."""
+    """Return the new values of every output of a part; ``first``: of the first one."""
     return [first, *(backend.last_output(i) for i in range(1, len(part.formulas)))]
 
 

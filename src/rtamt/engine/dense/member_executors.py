@@ -1,4 +1,4 @@
-"""What executes quantifiers in dense time: one executor for each member that is present.
+"""Executors of quantifiers in dense time, one for each present member.
 
 A quantifier is compiled once, as a formula over one member. A new member is a copy of its monitor in the initial
 state; that of an absent member runs until its samples can no longer matter.

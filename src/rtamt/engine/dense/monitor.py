@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class UpdateSignal(TickPoints, TickSignal):
-    """What an update made known, as the compiled monitor reports it."""
+    """The result of an update, as the compiled monitor reports it."""
 
     __slots__ = ()
 
@@ -163,7 +163,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         return known
 
     def __getitem__(self, name: str | Formula) -> Signal:
-        """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
+        """Return the new values of a watched formula after the last update (see ``Specification.monitor``).
 
         ``name``: as given to ``watch=``. The Signal has the form of the result of :meth:`update`; each
         formula has its own horizon. Raises :class:`UsageError` for a formula that is not watched.
@@ -293,7 +293,7 @@ def known_ticks(monitor: DenseMonitor, name: str | Formula) -> Samples:
 
 
 def points_of(monitor: DenseMonitor) -> list[list[tuple[int, float]]]:
-    """Return what the last update made known as pairs of tick and value, for loops in which a microsecond counts.
+    """Return the new values after the last update as pairs of tick and value, for fast loops.
 
     A list for the result, empty where ``update`` has returned it, then one for each watched formula.
     """
@@ -302,7 +302,7 @@ def points_of(monitor: DenseMonitor) -> list[list[tuple[int, float]]]:
 
 
 def part_of(monitor: DenseMonitor, formula: Formula) -> Signal:
-    """Return what the last update made known of any part of the formulas; they have no future operators.
+    """Return the new values of any part of the formulas after the last update; they have no future operators.
 
     Only for monitors with ``parts=True``, whose updates cost a few nanoseconds more for each part.
     """

@@ -87,7 +87,7 @@ class PythonDenseMonitor:
 
     @exclusive
     def last_output(self, output: int) -> Samples:
-        """Return what the last update made known of an output."""
+        """Return the new values of an output after the last update."""
         return self._results[output]
 
     @exclusive

@@ -149,7 +149,7 @@ class DenseMemberMonitor(QuantifierMonitor):
         return self._signal(known)
 
     def __getitem__(self, name: str | Formula) -> Signal:
-        """Return what the last update made known of a formula that is watched; see ``DenseMonitor``."""
+        """Return the new values of a watched formula after the last update; see ``DenseMonitor``."""
         ticks, values = known_ticks(self._outer, name)
         if self._end is not None and len(ticks) and ticks[-1] > self._end:
             count = int(ticks.searchsorted(self._end, "right"))

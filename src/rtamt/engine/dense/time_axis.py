@@ -60,7 +60,7 @@ class DenseTimeAxis(TimeAxis):
         return run
 
     def _evaluator(self, formulas: Sequence[Formula]) -> Callable[[Mapping[str, Samples]], Sequence[Samples]]:
-        """Return what evaluates formulas as far as anything can change, after the recording's end too."""
+        """Return the evaluator of formulas as far as anything can change, also after the recording's end."""
         after = min(max(reach(formula, self.period) for formula in formulas), NEVER)
         evaluator: Callable[[DenseTrace], Sequence[Samples]] | None = None
 

@@ -1,4 +1,4 @@
-"""What reports before the horizon in discrete time, in each back end: samples a period apart."""
+"""Early sessions of discrete time in both back ends: samples one period apart."""
 
 from __future__ import annotations
 

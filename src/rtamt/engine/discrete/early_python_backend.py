@@ -320,7 +320,7 @@ class PythonEarlyMonitor:
         return None if abs(time - last - steps * period) > self._tolerance * period else self.newest + steps
 
     def known(self, variable: int, sample: int) -> Pair:
-        """What is known of an input at a sample."""
+        """The bounds of an input at a sample."""
         name = self._names[variable]
         return self._known.get(sample, {}).get(name, self._ranges[name])
 

@@ -93,7 +93,7 @@ class Evaluator:
         return batch is not None and batch.run(list(columns.values()), rows, n, results)
 
     def direct(self, domain: Discrete, trace: DiscreteTrace) -> Direct | None:
-        """Return what evaluates the only formula over data alone, in recordings like this one; None if nothing does."""
+        """Return the direct evaluator of the only formula over recordings like this one; None if there is none."""
         n, names = len(trace), tuple(trace.columns)
         plan, runs = self.plan(n)
         stages = self._stages(plan, runs, names)

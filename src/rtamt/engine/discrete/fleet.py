@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Known(NamedTuple):
-    """What a batch has made known, in its order; ``times``: that each value is for, NaN where none is known."""
+    """The results of a batch, in its order; ``times``: of each value, NaN where none is known."""
 
     values: FloatArray
     known: NDArray[np.bool_]
@@ -183,7 +183,7 @@ class DiscreteFleet:
         return TraceError(f"{where}: {error}", variable=variable, index=place, time=time)
 
     def reordering(self, lateness: float | None, filled: int, state: bytes | None) -> ReorderBuffer:
-        """Return what puts samples in the order of their times; ``filled``: how many are held in a gap."""
+        """Return the buffer that orders samples by time; ``filled``: how many samples fill a gap."""
         monitor = self._monitor
         buffer = ReorderBuffer(
             self._names,
@@ -199,7 +199,7 @@ class DiscreteFleet:
 
     @property
     def capacity(self) -> int:
-        """How many keys there may be."""
+        """The largest number of keys."""
         return int(self._core.capacity)
 
     @property

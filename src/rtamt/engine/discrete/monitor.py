@@ -224,7 +224,7 @@ class Monitor(MonitorBase, CheckedSamples):
             tracker.take(zip(plain_times(signal.times), signal.values.tolist(), strict=True))
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
-        """Return what the last update made known of a formula that is watched (see ``Specification.monitor``).
+        """Return the new values of a watched formula after the last update (see ``Specification.monitor``).
 
         ``name``: as given to ``watch=``. After :meth:`update` and :meth:`step` it is the value at the time of
         the sample minus the formula's own horizon, None before that; after :meth:`update_many` and

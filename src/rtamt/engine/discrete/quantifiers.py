@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class _NewValues:
-    """What several samples make known of each formula: of the result (None), and of those that are watched."""
+    """The new values of each formula after several samples: of the result (None), and of the watched ones."""
 
     def __init__(self, names: Sequence[Any]) -> None:
         self._points: dict[Any, list[tuple[Any, float]]] = {name: [] for name in (None, *names)}
@@ -246,5 +246,5 @@ class MemberMonitor(SampledMembers):
         return float(self._outer._next_time())
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
-        """Return what the last update made known of a formula that is watched; see ``Monitor``."""
+        """Return the new values of a watched formula after the last update; see ``Monitor``."""
         return self._news[name] if name in self._news else self._outer[name]

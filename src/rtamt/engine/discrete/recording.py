@@ -94,7 +94,7 @@ def _library_of(kind: type) -> str | None:
 
 
 class Reading(NamedTuple):
-    """How ``DirectEvaluator`` of the core has read recordings: their variables, their period, whether it was given.
+    """The reading settings of the core's ``DirectEvaluator``: variables, period, and whether it was given.
 
     What it returns is ``found``: memory in rows, the number of samples, and whether there are timestamps. Arrays are
     made of it when they are requested.

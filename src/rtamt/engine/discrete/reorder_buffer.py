@@ -159,12 +159,12 @@ class ReorderBuffer:
 
     @property
     def waiting(self) -> int:
-        """How many samples wait."""
+        """The number of waiting samples."""
         return int(self._core.waiting)
 
     @property
     def late(self) -> int:
-        """How many samples were late."""
+        """The number of late samples."""
         return int(self._core.late)
 
     @property
@@ -181,7 +181,7 @@ class ReorderBuffer:
         return list(self._core.keys())
 
     def left(self, keys: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return of which keys a sample has waited long enough."""
+        """Return the keys with samples that have waited long enough."""
         found: NDArray[np.bool_] = self._core.left(rows_of(keys)).view(np.bool_)
         return found
 
@@ -199,5 +199,5 @@ class ReorderBuffer:
         return list(self._core.stale(before))
 
     def snapshot(self) -> bytes:
-        """Return what waits."""
+        """Return the waiting samples as bytes."""
         return bytes(self._core.snapshot())

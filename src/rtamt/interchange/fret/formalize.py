@@ -80,7 +80,7 @@ def inside(scope: str, mode: Formula, *, only: bool) -> Formula:
 
 @dataclass(frozen=True, slots=True)
 class Obligation:
-    """What the timings need: the formulas of the interval, the trigger, the response and the stop, and the duration.
+    """The inputs of timings: the formulas of the interval, the trigger, the response and the stop, and the duration.
 
     ``step`` is the sampling period, ``duration`` that of the timing, both in seconds.
     """
@@ -93,11 +93,11 @@ class Obligation:
     duration: Fraction | None = None
 
     def starts(self, obligation: Formula) -> Formula:
-        """Return that an obligation holds at each trigger."""
+        """Return the formula for: an obligation holds at each trigger."""
         return obligation if self.trigger is None else _always(_implies(self.trigger, obligation))
 
     def throughout(self, a: Formula) -> Formula:
-        """Return that a formula holds from each trigger to the end of its interval."""
+        """Return the formula for: a formula holds from each trigger to the end of its interval."""
         if self.trigger is None:
             return _always(a)
         if self.inside is None:
@@ -113,7 +113,7 @@ class Obligation:
         return _always(_implies(window("since", begin, end, self.inside, self.trigger), a))
 
     def or_left(self, a: Formula) -> Formula:
-        """Return that a formula holds or the interval has ended."""
+        """Return the formula for: a formula holds, or the interval has ended."""
         return a if self.inside is None else either(a, negation(self.inside))
 
     @property

@@ -62,7 +62,7 @@ def signature(call: Expression) -> tuple[str, str] | None:
 
 
 class Types:
-    """Which variables are Booleans, found from how a set of expressions uses them.
+    """The Boolean variables, inferred from their use in a set of expressions.
 
     A variable that is compared with a number or computed with is a number, whatever else is done with it. An equality
     of two variables says nothing but that both are of one type.

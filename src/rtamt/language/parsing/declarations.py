@@ -87,7 +87,7 @@ class DeclarationParser(ImportParser):
         )
 
     def _scope(self, variables: Collection[str] | None, pending: Mapping[str, str] | None = None) -> Scope:
-        """Return what names mean by now."""
+        """Return the meanings of names so far."""
         return Scope(
             self._constants,
             self._definitions,

@@ -1,4 +1,4 @@
-"""What a word is that may be an operator or a name: it depends on the tokens after it."""
+"""Lookahead for words that are an operator or a name, depending on the tokens after them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class LookaheadParser(TypedParser):
-    """Looks ahead where a formula is parsed; no method here consumes a token."""
+    """Lookahead of the formula parser; no method consumes a token."""
 
     #: The word of a choice that ends the operand here, which is no operand itself.
     _awaited: str | None = None

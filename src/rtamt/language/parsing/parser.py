@@ -175,7 +175,7 @@ class FormulaParser(LookaheadParser):
         raise self.error(*diagnostics.no_operand(self.tokens, at))
 
     def _kind(self, text: str) -> int:
-        """Return what a token is where an operand begins."""
+        """Return the role of a token at the beginning of an operand."""
         if is_numeral(text):
             return _NUMBER
         if text == "(":

@@ -266,7 +266,7 @@ class _RecoveringParser(DocumentParser):
 
     @cached_property
     def _closing(self) -> dict[int, int]:
-        """From each bracket that is closed to the one that closes it."""
+        """The closing bracket of each closed bracket."""
         found: dict[int, int] = {}
         opened: list[tuple[str, int]] = []
         counts = dict.fromkeys(_CLOSING.values(), 0)

@@ -25,7 +25,7 @@ _LEAST, _GREATEST = Fraction(0), Fraction(10) ** 9
 
 
 def meaning(parser: NameParser, name: str, span: Span) -> Formula | None:
-    """Return what a parameter stands for, or a field of the signal that it stands for; None for any other name."""
+    """Return the argument of a parameter, or a field of its signal; None for any other name."""
     arguments = parser.scope.arguments
     argument = arguments.get(name)
     head, _, rest = name.partition(".")

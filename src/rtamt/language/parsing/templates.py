@@ -205,7 +205,7 @@ def _is(names: Sequence[str]) -> str:
 
 
 def _parse_arguments(parser: FormulaParser, template: Template, first: Token) -> dict[str, Argument]:
-    """Return what a use gives, by parameter."""
+    """Return the arguments of a use, by parameter."""
     names = [parameter.name for parameter in template.parameters]
     opening = parser.next()
     given: dict[str, Argument] = {}

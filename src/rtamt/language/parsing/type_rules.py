@@ -73,7 +73,7 @@ def as_literal(formula: Formula) -> Formula:
 
 
 def as_formula(formula: Formula) -> Formula:
-    """Return what a Boolean means as a formula: +inf where it is true, else -inf; anything else as it is."""
+    """Return a Boolean as a formula: +inf where it is true, else -inf; anything else unchanged."""
     if type_of(formula) is not BOOLEAN:
         return formula
     if isinstance(formula, Const) and not isinstance(formula, Parameter):

@@ -51,7 +51,7 @@ def to_english(
 
 
 class _English:
-    """How the nodes of a formula are written."""
+    """The printer of the nodes of a formula."""
 
     def __init__(self, names: Mapping[int, str], units: Mapping[str, str]) -> None:
         self._names = names

@@ -47,7 +47,7 @@ _RAD_IN_DEG = 180 / pi
 
 
 class MisfitError(Exception):
-    """What ``rtamt lint`` reports about units: RT301, RT302 and RT303.
+    """A finding of ``rtamt lint`` about units: RT301, RT302 and RT303.
 
     ``kind``: of the finding. ``operand``: whose fault it is, None for all. ``{0}``, ``{1}``, … in the message stand for
     the operands of these numbers.

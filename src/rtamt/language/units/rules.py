@@ -1,4 +1,4 @@
-"""How the unit of a result follows from those of its operands: the column ``units`` of the operator table.
+"""Rules for the unit of a result, from those of its operands: the column ``units`` of the operator table.
 
 A rule takes the measures of the operands and returns that of the result, or raises :class:`MisfitError`.
 """

@@ -82,7 +82,7 @@ class StartMonitor:
 
     @property
     def status(self) -> str:
-        """What is known of the verdict, in words."""
+        """The state of the verdict, in words."""
         if self.satisfied is None:
             return OPEN
         if not self.satisfied:

@@ -46,7 +46,7 @@ def not_exact(name: str, given: Any, index: int, moment: str) -> TraceError:
 
 
 class CausationMonitor(EarlyMonitor):
-    """What the monitors of causation share."""
+    """The base of the monitors of causation."""
 
     _reports_causes = True
 

@@ -226,7 +226,7 @@ class Watch(ABC):
 
     @property
     def bounds(self) -> Interval:
-        """What is known of the robustness once the requirement is decided."""
+        """The bounds of the robustness once the requirement is decided."""
         if self._bounded:
             return self._interval()
         return Interval(0.0, inf) if self.violated is None else Interval(-inf, 0.0)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class DenseEarlyMonitor(EarlyMonitor):
-    """What the monitors of dense time share: samples in ticks, and the caller's times. Not instantiated by users."""
+    """The base of the monitors of dense time: samples in ticks, and the caller's times. Not instantiated by users."""
 
     def __init__(
         self,

@@ -113,7 +113,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
     # ---- results ---------------------------------------------------------------------------------
 
     def causation(self, time: Any = None) -> Causation:
-        """Return what the last call caused at an instant, by default at the start of the trace.
+        """Return the causation of the last call at an instant, by default at the start of the trace.
 
         A formula of unbounded future has causation at the start alone.
         """
@@ -143,6 +143,6 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
         ]
 
     def __getitem__(self, name: str | Formula) -> Causation:
-        """Return what the last call caused for a formula that is watched, at the start of the trace."""
+        """Return the causation of the last call for a watched formula, at the start of the trace."""
         found = self._backend.causation(self._output(name) - self._hidden, None)
         return Causation(*(found or (inf, -inf)))

@@ -105,6 +105,6 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
 
 
 def decided_ticks(monitor: DenseEagerMonitor, output: int) -> list[tuple[int, int, bool, int]]:
-    """Return what the last call decided of an output: runs (begin, end, satisfied, decided at) in ticks."""
+    """Return the decisions of the last call on an output: runs (begin, end, satisfied, decided at) in ticks."""
     found: list[tuple[int, int, bool, int]] = monitor._backend.verdicts(output)
     return found

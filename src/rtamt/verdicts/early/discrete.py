@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class DiscreteEarlyMonitor(EarlyMonitor):
-    """What the monitors of discrete time share. Not instantiated by users."""
+    """The base of the monitors of discrete time. Not instantiated by users."""
 
     _clock: CallerClock
 
@@ -98,7 +98,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
     def _bounds_of(
         self, values: Mapping[str, Any], index: int, time: float
     ) -> dict[str, tuple[float, float] | None]:
-        """Return what a sample makes known, None where it is missing; raise :class:`TraceError` for wrong data."""
+        """Return the bounds of a sample, None where it is missing; raise :class:`TraceError` for wrong data."""
         read: dict[str, tuple[float, float] | None] = {}
         for name in values:
             if name not in self._inputs:

@@ -59,7 +59,7 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
         return known
 
     def causation(self, time: Any = None) -> Causation:
-        """Return what the newest sample causes at an instant, by default at the start of the trace.
+        """Return the causation of the newest sample at an instant, by default at the start of the trace.
 
         A formula of unbounded future has causation at the start alone.
         """
@@ -88,7 +88,7 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
         ]
 
     def __getitem__(self, name: str | Formula) -> Causation:
-        """Return what the newest sample causes for a formula that is watched, at the start of the trace."""
+        """Return the causation of the newest sample for a watched formula, at the start of the trace."""
         return Causation(*self._backend.causation(self._output(name) - self._hidden, 0))
 
     @exclusive

@@ -1,4 +1,4 @@
-"""Which samples decided a verdict: a minimal set of the samples so far that decides it alone."""
+"""The evidence of a verdict: a minimal set of the samples so far that decides it alone."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ class IntervalMonitor(EarlyMonitor):
 
     @abstractmethod
     def _differences(self, before: Any, after: Any) -> tuple[Change, ...]:
-        """Return what a correction has changed, from two monitors of the back end."""
+        """Return the changes of a correction, from two monitors of the back end."""
 
     @exclusive
     def watermark(self, time: Any) -> None:

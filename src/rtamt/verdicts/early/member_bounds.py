@@ -108,7 +108,7 @@ class _Executor:
         return set(own)
 
     def bounds(self, place: int) -> Bounds:
-        """Return what is known of what the member gives at a sample."""
+        """Return the bounds of the member's value at a sample."""
         known = self.open.get(place)
         if known is None:
             low, high = self.executor._backend.bounds(0, place - self.birth)
@@ -322,7 +322,7 @@ class MemberIntervalMonitor(SampledMembers):
         return self._changes(self._outer._output(name) - self._outer._hidden)
 
     def _changes(self, output: int) -> list[Change]:
-        """Return what the last update has changed as runs of equal bounds."""
+        """Return the changes of the last update as runs of equal bounds."""
         found: list[tuple[int, int, Bounds]] = []
         for place, bounds in sorted(self._changed.get(output, {}).items()):
             if found and found[-1][1:] == (place - 1, bounds):

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class EarlyMonitor(OnlineMonitor):
-    """What the monitors of verdicts and of bounds share. Not instantiated by users."""
+    """The base of the monitors of verdicts and of bounds. Not instantiated by users."""
 
     _base = EarlyMonitorBase
     _session: EarlySession
@@ -128,7 +128,7 @@ class EarlyMonitor(OnlineMonitor):
 
     @property
     def samples(self) -> int:
-        """How many samples the monitor has taken since the start or the last reset."""
+        """The number of samples since the start or the last reset."""
         return int(self._backend.samples)
 
     def _explain(self, verdict: Verdict | VerdictRun) -> list[Cause]:
