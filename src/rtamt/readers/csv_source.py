@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from codecs import getincrementaldecoder
 from io import TextIOWrapper
-from itertools import chain, islice, pairwise
+from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError
@@ -26,6 +26,7 @@ from rtamt.readers.csv_cells import LARGEST, Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Field, Source, Table
+from rtamt.readers.timestamps import is_axis
 from rtamt.signals.arrays import is_masked
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def open_csv(path: str) -> Source:
         for i in range(len(header.names))
     ]
     fields = [field_of(column, _kind(cells[i])) for i, column in enumerate(header.names)]
-    if not header.names[0] and _is_axis(cells[0]):
+    if not header.names[0] and all(map(is_number, cells[0])) and is_axis(list(map(float, cells[0]))):
         fields[0] = replace(fields[0], axis=True)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
@@ -134,15 +135,3 @@ def _kind(cells: Sequence[str]) -> str:
         return "time"
     numeric = any(is_boolean(cell) or is_number(cell.replace(",", ".")) for cell in cells)
     return "text" if cells and not numeric else "number"
-
-
-def _is_axis(cells: Sequence[str]) -> bool:
-    """Return whether the cells of a column without a name are increasing numbers, and not the numbers of the rows.
-
-    Such is the index of a frame that pandas has written.
-    """
-    if len(cells) < 2 or not all(map(is_number, cells)):
-        return False
-    numbers = [float(cell) for cell in cells]
-    steps = {after - before for before, after in pairwise(numbers)}
-    return min(steps) > 0 and steps != {1.0}

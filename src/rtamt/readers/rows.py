@@ -7,10 +7,12 @@ from decimal import Decimal
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
+from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Table
+from rtamt.readers.timestamps import is_axis
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:
@@ -23,7 +25,10 @@ _SAMPLE = 100
 
 
 def table_of_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Table:
-    """Return a table that is read once, whole or in chunks. ``columns``: "" for one to be left out."""
+    """Return a table that is read once, whole or in chunks.
+
+    ``columns``: "" for one to be left out, but for the first one if it may hold the timestamps.
+    """
     counts = Counter(columns)
     rows = iter(rows)
     first = list(islice(rows, _SAMPLE))
@@ -31,6 +36,13 @@ def table_of_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Tabl
     # A name that two columns share keeps both in the list, so that asking for it is an error.
     fields = [field_of(c, _kind([row[i] for row in first])) for i, c in enumerate(columns) if c]
     places = {column: i for i, column in enumerate(columns) if counts[column] == 1}
+    if columns and not columns[0]:
+        values = [row[0] for row in first]
+        kind = _kind(values)
+        axis = kind == "number" and None not in values and is_axis(list(map(float, values)))
+        if axis or kind == "time":
+            fields.insert(0, replace(field_of("", kind), axis=axis))
+            places[""] = 0
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         while block := list(islice(rows, CHUNK)):

@@ -7,6 +7,7 @@ column follows from its first timestamp, which every one of them has.
 from __future__ import annotations
 
 from decimal import Decimal
+from itertools import pairwise
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +55,18 @@ def guess_field(fields: Sequence[Field], source: str, wanted: Collection[str]) -
     if len(free) > 1:
         raise _unclear(free, source)
     return free[0] if free else None
+
+
+def is_axis(numbers: Sequence[float]) -> bool:
+    """Return whether the first numbers of a column without a name increase and do not count the rows.
+
+    Such is the index of a frame that pandas has written.
+
+    >>> is_axis([0.0, 0.5]), is_axis([0, 1, 2]), is_axis([2, 1])
+    (True, False, False)
+    """
+    steps = {after - before for before, after in pairwise(numbers)}
+    return bool(steps) and min(steps) > 0 and steps != {1.0}
 
 
 def _is_wanted(field: Field, wanted: Collection[str]) -> bool:

@@ -92,6 +92,21 @@ def test_a_small_workbook_that_unpacks_to_more_than_the_limit_is_refused(tmp_pat
     )
 
 
+def test_a_first_column_of_a_sheet_without_a_name_may_hold_the_timestamps(tmp_path):
+    path = workbook(tmp_path / "floats.xlsx", log=[[None, "x"], [0.0, 5], [0.5, 6]])
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"{path} has a column that may hold the timestamps: one without a name; name it, or choose one with time=, or "
+        f"on the command line --time-column ('' for none)"
+    )
+    dates = [dt.datetime(2024, 5, 1, 10), dt.datetime(2024, 5, 1, 11)]
+    path = workbook(tmp_path / "dates.xlsx", log=[[None, "x"], [dates[0], 5], [dates[1], 6]])
+    assert str(rtamt.read(path).end) == "2024-05-01T11:00:00.000000000"
+    path = workbook(tmp_path / "rows.xlsx", log=[[None, "x"], [0, 5], [1, 6]])
+    assert rtamt.read(path).names == ("x",)
+
+
 # ---- PX4 ULog ------------------------------------------------------------------------------------
 
 
