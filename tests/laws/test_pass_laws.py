@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from rtamt.compiler.passes import PASSES
 from rtamt.compiler.plan import compile_program
-from rtamt.engine.native import core
-from rtamt.engine.user_operators import SampleDriver, calls_of
+from rtamt.engine.native import calls_of, core
 from rtamt.errors import StlError
 from rtamt.language.formula import Formula, variables
 from rtamt.rewrite.desugar import desugar
@@ -49,13 +48,13 @@ def offline(program: Program, columns: dict[str, Any]) -> Any:
     inputs = columns_of(program, columns)
     n = len(next(iter(columns.values())))
     try:
-        return bits(core().evaluate(program.code(), inputs, n, calls_of(program, SampleDriver)))
+        return bits(core().evaluate(program.code(), inputs, n, calls_of(program)))
     except core().Undefined as error:
         return failure(program, error)
 
 
 def monitor_of(program: Program) -> Any:
-    return core().Monitor(program.code(), list(program.inputs), calls=calls_of(program, SampleDriver))
+    return core().Monitor(program.code(), list(program.inputs), calls=calls_of(program))
 
 
 def online(program: Program, columns: dict[str, Any], sizes: list[int]) -> Any:
