@@ -86,8 +86,11 @@ class Maker {
     }
 
     [[nodiscard]] ChainCode make() {
-        for (std::size_t i = 0; i < members_.size(); ++i)
-            compute(i);
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            const bool joined = joins_difference(i);
+            compute(joined ? i + 1 : i, joined);
+            i += static_cast<std::size_t>(joined);
+        }
         return std::move(code_);
     }
 
@@ -139,14 +142,37 @@ class Maker {
         code_.computes.push_back(computes);
     }
 
-    void compute(std::size_t place) {
+    [[nodiscard]] const Instruction& at(std::size_t place) const noexcept {
+        return program_.instructions[members_[place]];
+    }
+
+    // Whether a member is a difference, of what is in memory and is never NaN, that the next one
+    // joins to the one before: the bounds of x >= 1 and y <= 2, for instance.
+    [[nodiscard]] bool joins_difference(std::size_t place) noexcept {
+        if (place == 0 || place + 1 >= members_.size()) return false;
+        const Instruction& difference = at(place);
+        const Instruction& next = at(place + 1);
+        return difference.opcode == Opcode::sub && values_[place].uses == 1 &&
+               !program_.can_fail(difference) && find(difference.a) == nullptr &&
+               find(difference.b) == nullptr &&
+               (next.opcode == Opcode::min || next.opcode == Opcode::max) &&
+               next.a == members_[place - 1] && next.b == members_[place];
+    }
+
+    // `joined`: with the member before, a difference.
+    void compute(std::size_t place, bool joined) {
         const std::uint32_t member = members_[place];
         const Instruction& instruction = program_.instructions[member];
         const auto [front, back, both] = actions(instruction.opcode);
         const bool checked = fusion_.guarded[member] && info(instruction.opcode).partial;
         const std::uint32_t computes = checked ? member : no_operand;
         const bool binary = instruction.b != no_operand;
-        if (held_ == instruction.a) {
+        if (joined) {
+            const Instruction& difference = at(place - 1);
+            emit({instruction.opcode == Opcode::min ? Action::min_difference
+                                                    : Action::max_difference,
+                  false, number(difference.a), number(difference.b)});
+        } else if (held_ == instruction.a) {
             emit({front, false, binary ? number(instruction.b) : 0}, computes);
         } else if (binary && held_ == instruction.b) {
             emit({back, false, number(instruction.a)}, computes);
@@ -167,8 +193,9 @@ class Maker {
         });
         code_.steps.back().checked = value.doubtful && !value.passed_on;
         std::uint32_t taken = 0; // by the next member, from the accumulator
-        if (place + 1 < members_.size()) {
-            const Instruction& next = program_.instructions[members_[place + 1]];
+        if (const std::size_t next_place = place + 1 + joins_difference(place + 1);
+            next_place < members_.size()) {
+            const Instruction& next = at(next_place);
             taken = static_cast<std::uint32_t>(next.a == member || next.b == member);
         }
         if (value.uses > taken) store(value);

@@ -10,7 +10,7 @@
 namespace rtamt::discrete {
 
 // What a step does to the accumulator x and its operand y; `_back`: with both exchanged; `_both`:
-// to two operands.
+// to two operands; `_difference`: to x and the difference of two operands.
 enum class Action : std::uint8_t {
     load,
     store,
@@ -37,6 +37,8 @@ enum class Action : std::uint8_t {
     add_both,
     sub_both,
     mul_both,
+    min_difference,
+    max_difference,
 };
 
 struct Step {

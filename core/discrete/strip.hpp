@@ -224,6 +224,18 @@ RTAMT_INLINE void run_steps(const Memory& memory, std::size_t place, Strip& stri
         case Action::mul_both:
             strip.with(y, values(step->other), [](V& a, const V& b, const V& c) { a = b * c; });
             break;
+        case Action::min_difference:
+            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) {
+                const V d = b - c;
+                a = a < d ? a : d;
+            });
+            break;
+        case Action::max_difference:
+            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) {
+                const V d = b - c;
+                a = a > d ? a : d;
+            });
+            break;
         }
         if (step->checked) strip.each([&](const V& a) { look_for_nan(a, seen); });
     }

@@ -102,3 +102,42 @@ TEST_CASE("a chain names the member that is undefined, wherever NaN would end") 
         CHECK(failure->sample == static_cast<std::int64_t>(count) - 1);
     }
 }
+
+TEST_CASE("differences from constants are joined in one step, with the bits of two") {
+    Builder builder;
+    const auto x = builder.input();
+    const auto y = builder.input();
+    const auto one = builder.constant(1);
+    const auto low = builder.pointwise(Opcode::sub, x, one);
+    const auto high = builder.pointwise(Opcode::sub, one, y);
+    const auto both = builder.pointwise(Opcode::min, low, high);
+    const auto other = builder.pointwise(Opcode::sub, y, builder.constant(-1));
+    builder.output(builder.pointwise(Opcode::max, both, other));
+    Program program = builder.program();
+
+    const std::vector<std::uint32_t> members{low, high, both, other, program.outputs[0]};
+    std::vector<rtamt::discrete::Action> found;
+    for (const auto& step :
+         rtamt::discrete::chain_code(program, rtamt::fused(program), members).steps)
+        found.push_back(step.action);
+    using enum rtamt::discrete::Action;
+    CHECK(found == std::vector{sub_both, min_difference, max_difference});
+
+    Random random(32);
+    for (const std::size_t count : {1U, 31U, 32U, 33U, 400U}) {
+        std::vector<Signal> columns(2);
+        for (Signal& column : columns) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const double near[] = {1.0, 1.0, -1.0, 0.0, -0.0, 2.0, inf, -inf};
+                column.push_back(near[random.between(0, std::size(near) - 1)]);
+            }
+        }
+        std::vector<Signal> outputs;
+        std::vector<Signal> expected;
+        program.without = 0;
+        CHECK(!ways::offline(program, columns, count, outputs));
+        program.without = 3;
+        CHECK(!ways::offline(program, columns, count, expected));
+        CHECK(bits(outputs) == bits(expected));
+    }
+}
