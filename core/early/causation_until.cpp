@@ -148,6 +148,12 @@ Pieces CausedUntil::by_goal(const Pieces& reached) const {
 
 // ---- hold ---------------------------------------------------------------------------------------
 
+// The best goal from a tick on in the window of another tick, of which the recursion from there on
+// is no better; one that never ends may contain goals that are not kept any more.
+double CausedUntil::best_goal(Tick from, Tick t) const noexcept {
+    return high >= forever ? infinity : goal.most(from, plus(t, high));
+}
+
 // At ticks from which hold is required up to low, or inside the run: the first instant of hold
 // that counts depends on the tick.
 void CausedUntil::near(Pieces& pieces, const Run& run) const {
@@ -159,18 +165,17 @@ void CausedUntil::near(Pieces& pieces, const Run& run) const {
     for (Tick t = std::min(run.end, last); t > std::max(first - 1, run.begin);) {
         const Run rest = core.at(t + 1);
         const double cap = Real::meet(run.value, rest.value);
-        const Tick to = plus(t, high);
-        const double best = goal.most(t + 1, to);
+        const double best = best_goal(t + 1, t);
         const double now = Real::meet(cap, best);
         Tick begin = std::max({first, run.begin + 1, rest.begin - 1});
         if (best < cap) { // until there is a better goal
             begin = std::max(begin, goal.last<Above>(begin + 1, t, best));
         }
-        if (now > -infinity) { // until the best one leaves
-            const Tick highest = goal.first<AtLeast>(t + 1, to, now);
+        if (now > -infinity && high < forever) { // until the best one leaves
+            const Tick highest = goal.first<AtLeast>(t + 1, plus(t, high), now);
             begin = std::max(begin, plus(goal.at(highest).begin, -high));
-            pieces.push_back({begin, t, now});
         }
+        if (now > -infinity) pieces.push_back({begin, t, now});
         t = begin - 1;
     }
 }
@@ -186,8 +191,7 @@ void CausedUntil::far(Pieces& pieces, const Pieces& held) const {
     std::deque<Active> active; // the latest, and best, first
     const auto value = [&](const Active& each, Tick t) {
         const double sure = Real::meet(each.run.value, each.rest);
-        return std::min(
-            {sure, hold.least(t, each.run.begin - 1), goal.most(each.from, plus(t, high))});
+        return std::min({sure, hold.least(t, each.run.begin - 1), best_goal(each.from, t)});
     };
     for (std::size_t i = held.size(); i-- > 0;) {
         const Run& run = held[i];
@@ -205,8 +209,11 @@ void CausedUntil::far(Pieces& pieces, const Pieces& held) const {
                 continue;
             }
             const Tick lower = hold.last<Below>(first, t - 1, now);
-            const Tick leaves = goal.first<AtLeast>(best.from, plus(t, high), now);
-            const Tick begin = std::max({until, lower + 1, plus(leaves, -high)});
+            Tick begin = std::max(until, lower + 1);
+            if (high < forever) { // until the best goal leaves
+                const Tick leaves = goal.first<AtLeast>(best.from, plus(t, high), now);
+                begin = std::max(begin, plus(leaves, -high));
+            }
             pieces.push_back({begin, t, now});
             t = begin - 1;
         }

@@ -61,6 +61,7 @@ struct CausedUntil {
   private:
     [[nodiscard]] Pieces untimed(const Pieces& reached, Tick from) const;
     [[nodiscard]] Pieces by_goal(const Pieces& reached) const;
+    [[nodiscard]] double best_goal(Tick from, Tick t) const noexcept;
     void near(Pieces& pieces, const Run& run) const;
     void far(Pieces& pieces, const Pieces& held) const;
     [[nodiscard]] Tick step() const noexcept { return kind == Kind::discrete ? 1 : 0; }

@@ -10,7 +10,7 @@ from copy import copy
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt import Causation, Interval, Verdict, VerdictRun
+from rtamt import Causation, CausationRun, Interval, Verdict, VerdictRun
 from rtamt.rewrite.check import unbounded_future
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals.discrete import DISCRETE
@@ -95,12 +95,27 @@ class _Settled:
         return self._samples(self._monitor.finish())
 
 
-def _causes(formula: Formula) -> DiscreteCausationMonitor:
-    return DiscreteCausationMonitor(formula, DISCRETE.online)
+class _Causes:
+    """The monitor of causation of the engine."""
+
+    backend = "cpp"
+
+    def __init__(self, formula: Formula) -> None:
+        self._monitor = DiscreteCausationMonitor(formula, DISCRETE.online, backend=self.backend)
+
+    def update(self, t: int, **values: Any) -> Causation:
+        self._monitor = _now_and_then(self._monitor, t)
+        return self._monitor.update(t, **values)
+
+    def causation(self, t: int) -> Causation:
+        return self._monitor.causation(t)
+
+    def runs(self) -> list[CausationRun]:
+        return self._monitor.runs()
 
 
-def _causes_by_python(formula: Formula) -> DiscreteCausationMonitor:
-    return DiscreteCausationMonitor(formula, DISCRETE.online, backend="python")
+class _CausesByPython(_Causes):
+    backend = "python"
 
 
 class _DenseKept:
@@ -239,12 +254,12 @@ class _DenseSettledByPython(_DenseSettled):
     backend = "python"
 
 
-ENGINE = Implementation("engine", _Kept, _Settled, _causes, _DenseKept, _DenseSettled, _DenseCauses, "cpp")
+ENGINE = Implementation("engine", _Kept, _Settled, _Causes, _DenseKept, _DenseSettled, _DenseCauses, "cpp")
 PYTHON = Implementation(
     "Python back end",
     _KeptByPython,
     _SettledByPython,
-    _causes_by_python,
+    _CausesByPython,
     _DenseKeptByPython,
     _DenseSettledByPython,
     _DenseCausesByPython,

@@ -43,20 +43,30 @@ def _drawn(rng: Random) -> Case:
     dense = rng.random() < 0.5
     times = rng.choice(TIMES)
     lines = [f"{rng.choice(('input', 'output'))} float {name}" for name in NAMES]
+    undefined = False
     for i in range(rng.choice((1, 1, 2, 3))):
         names = tuple(sorted(rng.sample(NAMES, rng.randint(1, 2))))
         if rng.random() < 0.15:
-            formula = cases.partial(rng)
+            formula, undefined = cases.partial(rng), True
         else:
             unbounded = rng.random() < 0.3
             formula = cases.formula(rng, names, depth=rng.randint(1, 3), dense=dense, unbounded=unbounded)
         text = str(_in_milliseconds(formula))
+        if rng.random() < 0.15:
+            asked = f"valid({rng.choice(names)})"
+            text = rng.choice(("{1} -> {0}", "{0} or not {1}", "once[0:2ms]({1}) and {0}")).format(
+                f"({text}) >= 0" if is_number(formula) else f"({text})", asked
+            )
+            lines.append(f"require R{i}: {text}")
+            continue
         lines.append(f"require R{i}: {f'({text}) >= 0' if is_number(formula) else text}")
     domain = rtamt.Dense("1ms") if dense else rtamt.Discrete("1ms")
     spec = rtamt.parse("\n".join(lines), time=domain)
     if not spec.input_names:
         raise NothingToCheck
-    settings: dict[str, Any] = {"verdict": rng.choice(("eager", "interval", "interval", "causation"))}
+    verdicts = "eager", "interval", "interval", "causation"
+    # What samples cause of an operation that will have no value is no part of the definition.
+    settings: dict[str, Any] = {"verdict": rng.choice(verdicts[:3] if undefined else verdicts)}
     every = unbounded_future(spec.formula) is None or settings["verdict"] == "eager"
     requirements = list(spec.requirements) if every and len(spec.requirements) > 1 else []
     settings["watch"] = rng.sample(requirements, rng.randint(0, len(requirements)))
@@ -87,11 +97,13 @@ def _events(rng: Random, case: Case, names: tuple[str, ...]) -> Iterator[tuple[s
     for tick in order:
         some = isinstance(case.domain, rtamt.Dense) or (late and rng.random() < 0.5)
         yield "update", tick, {name: value() for name in names if not some or rng.random() < 0.7}
-        kind = rng.choice(("copy", "pickle", "watermark", "correction", *[""] * 5))
+        kind = rng.choice(("copy", "pickle", "watermark", "advance", "correction", *[""] * 5))
         if kind == "correction" and late:
             yield "update", tick, {name: cases.value(rng) for name in names}
         elif kind == "watermark" and case.settings["verdict"] != "eager":
             yield "watermark", tick + rng.randint(-2, 1), {}
+        elif kind == "advance" and case.settings["verdict"] == "interval":
+            yield "advance", tick + rng.randint(-1, 7), {}
         elif kind in {"copy", "pickle"}:
             yield kind, tick, {}
     yield "finish", max(order), {}

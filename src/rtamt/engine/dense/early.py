@@ -11,6 +11,7 @@ from rtamt.engine.native import core
 from rtamt.language.formula import own_variables
 from rtamt.language.operators import STL
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.rewrite.presence import channel_of
 from rtamt.signals.coding import codes_of
 from rtamt.signals.outcomes import Causation
 
@@ -127,9 +128,9 @@ def _count_hidden(query: EarlyQuery, group: int, required: int) -> int:
 
 
 def _trace_of(formula: Formula, query: EarlyQuery) -> Names:
-    """Return the variables that form the trace of a requirement, in order."""
+    """Return the variables that form the trace of a requirement, in order: also those whose presence alone it reads."""
     own = own_variables(formula, query.inputs)
-    return tuple(name for name in query.inputs if name in own)
+    return tuple(name for name in query.inputs if name in own or channel_of(name) in own)
 
 
 def _trace_of_watched(formula: Formula, query: EarlyQuery) -> Names:

@@ -177,3 +177,16 @@ def test_a_run_without_end_ended_where_windows_reached_beyond_it(backend):
         monitor.update(t, z=z)
     assert [(run.begin, run.end) for run in monitor.runs()] == [(5.0, None)]
     assert monitor.causation(60) == rtamt.Causation(inf, inf)
+
+
+@BACKENDS
+@pytest.mark.parametrize("samples", [3, 130])
+def test_causation_of_since_does_not_depend_on_goals_that_are_kept(samples, backend):
+    monitor = rtamt.parse("(y >= 0) since (x >= 2)", backend=backend).monitor(verdict="causation")
+    for t in range(samples):
+        caused = monitor.update(t, x=-3 if t else 2, y=1)
+        if t == 1:
+            monitor = copy.copy(monitor)
+    assert caused == monitor.causation(0)
+    newest = samples - 1
+    assert monitor.runs() == [CausationRun(newest, newest, 0.0, 0.0)]

@@ -330,3 +330,16 @@ def test_no_value_is_an_error_before_the_traces_of_other_requirements_have_start
         monitor.update(0, z=np.inf)
     assert monitor.update(1, z=3, y=2) or verdict == "interval"
     monitor.finish()
+
+
+@pytest.mark.parametrize("verdict", ["eager", "interval", "causation"])
+def test_a_requirement_may_read_the_presence_of_a_variable_alone(verdict):
+    text = "input float x\ninput float z\nrequire A: x >= 0\nrequire B: once[0:2](valid(z))"
+    reports = []
+    for backend in ("cpp", "python"):
+        monitor = rtamt.parse(text, time="dense", backend=backend).monitor(verdict=verdict, watch=["B"])
+        monitor.update(0, x=1)
+        monitor.update(1, z=3, x=2)
+        monitor.update(2, z=4 if verdict == "causation" else None)
+        reports.append((monitor["B"], monitor.finish(), monitor["B"]))
+    assert reports[0] == reports[1]
