@@ -7,9 +7,10 @@ import threading
 from collections.abc import Iterable, Sized
 from contextlib import contextmanager
 from functools import lru_cache, partial
+from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import StlError, UsageError, placed, shown
+from rtamt.errors import StlError, UsageError, no_specification, placed, shown
 from rtamt.fleet.groups import Asking, grouped
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
@@ -59,10 +60,12 @@ def evaluate_batch(
     Traceback (most recent call last):
     rtamt.errors.TraceError: trace 1: 'x' is NaN at sample 0, time 0 s: fill the gap or leave the sample out
     """
-    if workers is not None and (not is_number(workers) or workers != int(workers) or workers < 1):
+    if workers is not None and (not is_number(workers) or not 1 <= workers < inf or workers != int(workers)):
         raise UsageError(f"workers is {shown(workers)}; give a number of threads, 1 or more")
     if not isinstance(traces, Iterable):
         raise UsageError(f"traces is {shown(traces)}; give a list of recordings")
+    if not hasattr(spec, "evaluate"):
+        raise no_specification(spec)
     count = int(workers or os.cpu_count() or 1)
     if isinstance(traces, Sized):
         count = min(count, len(traces))
@@ -145,6 +148,13 @@ def evaluate_all(
     >>> [result.robustness for result in rtamt.evaluate_all(specs, {"x": [5, 2], "y": [0, 2]})]
     [-1.0, 1.0]
     """
+    if not isinstance(specs, Iterable):
+        raise UsageError(f"specs is {shown(specs)}; give a list of specifications")
+    specs = tuple(specs)
+    for number, spec in enumerate(specs):
+        if not hasattr(spec, "evaluate"):
+            with _place(number):
+                raise no_specification(spec)
     groups, apart = _group(specs, {"tolerance": tolerance, **reading})
     results: dict[int, Result] = {}
     for number in apart:

@@ -245,6 +245,13 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     return f"; did you mean '{close[0]}'?" if close else ""
 
 
+def no_specification(given: object) -> UsageError:
+    """Return the error for what is no specification, such as the text of one."""
+    return UsageError(
+        f"expected a specification, got {shown(given)}; write rtamt.parse(...) or rtamt.load(...)"
+    )
+
+
 def choices(name: object, known: Iterable[str], noun: str) -> str:
     """Return the nearest known name, then the known names with the nearest first; a long list is cut.
 

@@ -14,6 +14,7 @@ from rtamt.lazy_dataclasses import replace
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import require_samples, watched_of
+from rtamt.signals.arrays import is_mapping
 from rtamt.specification_groups import QuantifiedText
 from rtamt.verdicts.modes import DELAYED, mode_of, monitor_of, semantics_in
 
@@ -194,7 +195,9 @@ class OnlineSpecification(QuantifiedText):
             **settings,
         )
         if "ranges" in mode.settings:
-            settings["ranges"] = {**self.ranges, **(ranges or {})}
+            settings["ranges"] = (
+                ranges if ranges and not is_mapping(ranges) else {**self.ranges, **(ranges or {})}
+            )
         domain = self._domain_for(time, period, tolerance, resolution).online
         require_samples(domain, worst_case=worst_case)
         requirements = [self._watched(name, semantics).formula for name in self.requirements]

@@ -44,6 +44,62 @@ SAID = {
     ),
     "sub-formula": (lambda: rtamt.parse("x").evaluate({"x": [1]})[None], "a formula is text, got NoneType"),
     "path": (lambda: rtamt.load(None), "the path of a specification is None, expected text or a Path"),
+    "text for a specification, batch": (
+        lambda: rtamt.evaluate_batch("x >= 3", [{"x": [1]}]),
+        "expected a specification, got 'x >= 3'; write rtamt.parse(...) or rtamt.load(...)",
+    ),
+    "text for a specification, all": (
+        lambda: rtamt.evaluate_all([rtamt.parse("x"), "x >= 3"], {"x": [1]}),
+        "specification 1: expected a specification, got 'x >= 3'; write rtamt.parse(...) or rtamt.load(...)",
+    ),
+    "text for a specification, chunks": (
+        lambda: rtamt.check_stream("x >= 3", [{"x": [1]}]),
+        "expected a specification, got 'x >= 3'; write rtamt.parse(...) or rtamt.load(...)",
+    ),
+    "specifications": (
+        lambda: rtamt.evaluate_all(5, {"x": [1]}),
+        "specs is 5; give a list of specifications",
+    ),
+    "chunks": (
+        lambda: rtamt.check_stream(rtamt.parse("x"), 5),
+        "chunks is 5; give a list of recordings, or an iterator",
+    ),
+    "infinite workers": (
+        lambda: rtamt.evaluate_batch(rtamt.parse("x"), [], workers=float("inf")),
+        "workers is inf; give a number of threads, 1 or more",
+    ),
+    "selected columns": (
+        lambda: rtamt.Suite([rtamt.parse("x")], select=5),
+        "select is 5; give a list of names, such as ['robustness']",
+    ),
+    "ranges": (
+        lambda: rtamt.parse("x").monitor(verdict="interval", ranges=5),
+        "ranges=5 is no mapping from variables; give for example {'x': (0, 120)}",
+    ),
+    "prediction": (
+        lambda: rtamt.parse("x").monitor(verdict="interval").interval(prediction=5),
+        "prediction=5 is no mapping from variables; give for example {'x': (0, 120)}",
+    ),
+    "unit of time": (
+        lambda: rtamt.parse("x").monitor(time_unit=["ms"]),
+        "['ms'] is not a unit of time; units: h, min, s, ms, us, ns",
+    ),
+    "gaps": (
+        lambda: rtamt.Fleet(rtamt.parse("x"), 1, gaps=[]),
+        "gaps is []; policies: reject, restart, hold",
+    ),
+    "expiry": (
+        lambda: rtamt.Fleet(rtamt.parse("x"), 1).expire(before="noon"),
+        "before is 'noon'; give a number of seconds, or a date",
+    ),
+    "expiry before NaN": (
+        lambda: rtamt.Fleet(rtamt.parse("x"), 1).expire(before=float("nan")),
+        "before is nan; give a number of seconds, or a date",
+    ),
+    "discarded time": (
+        lambda: rtamt.Fleet(rtamt.parse("x"), 1, lateness=2).discard(7, None),
+        "time is None; give a number of seconds, or a date",
+    ),
     "operator": (lambda: STL.extend(3), "3 is no operator; give an Operator"),
 }
 

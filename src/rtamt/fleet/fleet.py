@@ -8,7 +8,7 @@ from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.fleet.fleet_snapshot import unpacked
 from rtamt.fleet.gaps import GAPS
 from rtamt.fleet.keys import capacity_of, keys_of
-from rtamt.fleet.late_data import Reordered
+from rtamt.fleet.late_data import Reordered, moment_of
 from rtamt.fleet.opening import open_fleet
 from rtamt.signals.arrays import is_mapping
 from rtamt.usage_guard import UsageGuard, exclusive
@@ -156,7 +156,7 @@ class Fleet(Generic[Update]):
         gaps: str = "reject",
         **settings: Any,
     ) -> None:
-        if gaps not in GAPS:
+        if gaps not in tuple(GAPS):  # also what has no hash
             raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
         self._open(spec, capacity_of(capacity), lateness, GAPS[gaps], settings)
 
@@ -318,8 +318,10 @@ class Fleet(Generic[Update]):
         return self._samples.release_keys(keys_of(keys), keys_of)  # type: ignore[return-value] # of this mode
 
     @exclusive
-    def discard(self, key: Any, time: float) -> bool:
-        """Forget the sample of a key and a time in seconds that waits for earlier ones; return whether there was one.
+    def discard(self, key: Any, time: Any) -> bool:
+        """Forget the sample of a key and a time that waits for earlier ones; return whether there was one.
+
+        ``time``: in seconds, or a date.
 
         For samples that turn out to have no value when they are released, see :class:`WaitedError`. The watermark of
         the key stays, so that another sample of that time may arrive until it is late. What the sample leaves is a gap.
@@ -335,11 +337,12 @@ class Fleet(Generic[Update]):
         >>> fleet.update_many([7, 7], [2, 3], {"x": [16, 9]}).values
         array([1., 0.])
         """
-        return isinstance(self._samples, Reordered) and self._samples.discard(keys_of([key]), time)
+        given, moment = keys_of([key]), moment_of(time, "time")
+        return isinstance(self._samples, Reordered) and self._samples.discard(given, moment)
 
     @exclusive
-    def expire(self, *, before: float) -> int:
-        """Forget the keys whose last sample is before a time in seconds; return how many.
+    def expire(self, *, before: Any) -> int:
+        """Forget the keys whose last sample is before a time, in seconds or a date; return how many.
 
         >>> import rtamt
         >>> fleet = rtamt.Fleet(rtamt.parse("x >= 3"), capacity=10)
@@ -347,7 +350,7 @@ class Fleet(Generic[Update]):
         >>> fleet.expire(before=30), fleet.keys()
         (1, [2])
         """
-        return self._samples.expire(before, keys_of)
+        return self._samples.expire(moment_of(before, "before"), keys_of)
 
     @exclusive
     def snapshot(self) -> bytes:
@@ -446,7 +449,7 @@ class Fleet(Generic[Update]):
         """
         if not isinstance(state, bytes):
             raise UsageError(f"expected the bytes that snapshot() returns, got {shown(state)}")
-        if gaps is not None and gaps not in GAPS:
+        if gaps is not None and gaps not in tuple(GAPS):
             raise UsageError(f"gaps is {shown(gaps)}{choices(gaps, GAPS, 'policies')}")
         stored = unpacked(state)
         made = cls.__new__(cls)

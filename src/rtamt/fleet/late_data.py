@@ -6,12 +6,12 @@ from functools import lru_cache
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.fleet_snapshot import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
-from rtamt.signals.arrays import timestamps
+from rtamt.signals.arrays import is_truth, number_of, timestamps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -312,10 +312,16 @@ def _nothing_waits() -> UsageError:
 
 def _seconds(time: Any) -> float:
     """Return a watermark in seconds."""
-    if isinstance(time, int | float | np.number) and not isinstance(time, bool):
-        seconds = float(time)
-    else:
-        seconds = float(timestamps([time]).seconds[0])
+    number = None if is_truth(time) else number_of(time)
+    seconds = float(timestamps([time]).seconds[0]) if number is None else number
     if isnan(seconds):
         raise TraceError("the watermark is NaN: give a number of seconds")
     return seconds
+
+
+def moment_of(time: Any, what: str) -> float:
+    """Return a time in seconds; raise :class:`UsageError` for what is neither a number nor a date."""
+    try:
+        return _seconds(time)
+    except TraceError:
+        raise UsageError(f"{what} is {shown(time)}; give a number of seconds, or a date") from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError, shown
+from rtamt.errors import UsageError, no_specification
 from rtamt.fleet.fleet_snapshot import MONITORS, REQUIREMENTS
 from rtamt.fleet.late_data import InOrder, Reordered
 from rtamt.fleet.suite import Suite
@@ -61,9 +61,7 @@ def open_fleet(
         spec.require_no_groups("a fleet")
         monitor, specs, requirements = spec.monitor(**settings), (spec,), ()
     else:
-        raise UsageError(
-            f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
-        )
+        raise no_specification(spec)
     identities = {name: identity for each in specs for name, identity in _identities(each).items()}
     records = monitor.records(
         capacity,

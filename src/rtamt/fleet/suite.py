@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ from rtamt.specification_recorded import Optional
 from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Sequence
 
     from typing_extensions import Unpack
 
@@ -304,6 +304,8 @@ def _query_of(name: str, spec: Specification, settings: dict[str, Any]) -> Query
 def _select(select: Iterable[str]) -> tuple[str, ...]:
     if isinstance(select, str):
         raise UsageError(f"select is the text '{select}'; give a list of names, such as ['{select}']")
+    if not isinstance(select, Iterable):
+        raise UsageError(f"select is {shown(select)}; give a list of names, such as ['robustness']")
     names = list(select)
     for name in names:
         if name not in SELECTABLE:

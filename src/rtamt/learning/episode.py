@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import EvaluationError, UsageError, choices, shown
+from rtamt.errors import EvaluationError, UsageError, choices, no_specification, shown
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
 from rtamt.lazy_tuples import NamedTuple
@@ -51,9 +51,7 @@ def settings_of(
 ) -> Settings:
     """Check the settings of a wrapper; raise :class:`UsageError` for those that do not fit."""
     if not isinstance(spec, Specification):
-        raise UsageError(
-            f"expected a specification, got {shown(spec)}; write rtamt.parse(...) or rtamt.load(...)"
-        )
+        raise no_specification(spec)
     if reward not in REWARDS:
         raise UsageError(f"reward is {shown(reward)}{choices(reward, REWARDS, 'rewards')}")
     if reward == SHAPING and (gamma is None or not 0 <= gamma <= 1):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import TraceError, UsageError, no_specification, shown
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
@@ -19,7 +20,7 @@ from rtamt.verdicts.decompose import anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
     from fractions import Fraction
 
     from rtamt.language.units.durations import Duration
@@ -52,6 +53,10 @@ def check_stream(
     >>> result.robustness, result.satisfied, result.first_violation, result.samples
     (-1.0, False, 5.0, 6)
     """
+    if not hasattr(spec, "domain"):
+        raise no_specification(spec)
+    if not isinstance(chunks, Iterable):
+        raise UsageError(f"chunks is {shown(chunks)}; give a list of recordings, or an iterator")
     kind = spec.domain if time is None else time_domain(time)
     domain = type(kind).of(spec.period if period is None else period, tolerance, spec.resolution)
     rule = domain.sampling(spec.sampling)

@@ -396,3 +396,11 @@ def test_a_fleet_that_is_copied_or_pickled_names_the_snapshot_instead(again: Any
         "a fleet can be neither copied nor pickled: take fleet.snapshot(), and make another fleet of it with "
         "rtamt.Fleet.restore(spec, state)"
     )
+
+
+@pytest.mark.parametrize("settings", [{}, {"lateness": "1s"}, {"verdict": "eager"}])
+def test_keys_expire_before_a_date(settings: Any) -> None:
+    fleet = rtamt.Fleet(rtamt.parse("x >= 3"), 3, **settings)
+    fleet.update_many([7, 8], [1767225600.0, 1767225660.0], {"x": [5.0, 4.0]})
+    assert fleet.expire(before=dt.datetime(2026, 1, 1, 0, 0, 30, tzinfo=dt.timezone.utc)) == 1
+    assert fleet.keys() == [8]

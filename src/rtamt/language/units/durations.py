@@ -103,8 +103,8 @@ def check_unit(unit: str) -> str:
     >>> check_unit("ms")
     'ms'
     """
-    if unit not in UNITS:
-        raise UsageError(f"'{unit}' is not a unit of time{choices(unit, UNITS, 'units')}")
+    if unit not in tuple(UNITS):  # also what has no hash
+        raise UsageError(f"{shown(unit)} is not a unit of time{choices(unit, UNITS, 'units')}")
     return unit
 
 

@@ -110,6 +110,10 @@ class EarlyMonitor(OnlineMonitor):
 
     def _read_ranges(self, ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
         read = {}
+        if not arrays.is_mapping(ranges):
+            raise UsageError(
+                f"ranges={shown(ranges)} is no mapping from variables; give for example {{'x': (0, 120)}}"
+            )
         for name, given in ranges.items():
             if name not in self.input_names and name not in self._declared:
                 raise UsageError(

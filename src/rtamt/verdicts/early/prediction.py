@@ -112,6 +112,10 @@ def later_steps(
 
 
 def _check_names(prediction: Mapping[str, Any], names: Sequence[str]) -> None:
+    if not arrays.is_mapping(prediction):
+        raise UsageError(
+            f"prediction={shown(prediction)} is no mapping from variables; give for example {{'x': (0, 120)}}"
+        )
     for name in prediction:
         if name not in names:
             raise UsageError(
