@@ -21,11 +21,12 @@ from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.presence import tracked
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Iterable, Mapping
     from fractions import Fraction
 
 #: The first and the last instant at which a sub-formula is read, in seconds relative to the present.
-_Span: TypeAlias = "tuple[Fraction | float, Fraction | float]"
+_Instant: TypeAlias = "Fraction | float"
+_Span: TypeAlias = tuple[_Instant, _Instant]
 
 _PRESENT: _Span = (0, 0)
 
@@ -41,11 +42,29 @@ class _Use(NamedTuple):
     span: _Span
     inside: Formula | None = None
 
-    def agrees(self, other: _Use, *, dense: bool) -> bool:
-        """Return whether one value of a sample minimises both uses at once."""
-        apart = self.span[1] < other.span[0] or other.span[1] < self.span[0]
-        # In dense time one sample is read at many instants.
-        return (apart and not dense) or (self.sign == other.sign and self.inside == other.inside)
+
+def _agree(uses: Iterable[_Use], *, dense: bool) -> bool:
+    """Return whether one value of a sample minimises every two uses of a variable at once.
+
+    They are alike, or do not read the same instant; in dense time one sample is read at many instants.
+    """
+    known = {(use.sign, use.inside) for use in uses}
+    if len(known) < 2 or dense:
+        return len(known) < 2
+    first, *later = sorted(uses, key=lambda use: use.span[0])
+    last, kind = first.span[1], (first.sign, first.inside)  # the latest end so far, and what ends there
+    unlike: _Instant | None = None  # the latest end of anything else
+    for use in later:
+        begin, end = use.span
+        same = (use.sign, use.inside) == kind
+        before = unlike if same else last
+        if before is not None and begin <= before:
+            return False
+        if same:
+            last = max(last, end)
+        else:  # which begins behind the latest end, and so ends behind it
+            last, kind, unlike = end, (use.sign, use.inside), last
+    return True
 
 
 def loose(formula: Formula, period: Fraction | None) -> str | None:
@@ -63,22 +82,23 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
     core = desugar(tracked(formula))
     if any(map(_sums_all, postorder(core))):  # beyond the newest sample such a sum has no best bounds
         return next(iter(variables(core)), None)
-    constants = _constants(core)
+    constants, varying = _constants(core), _varying(core)
     # Parents first: the instants at which a node is read, by its identity and sign.
     spans: dict[tuple[int, int], _Span] = {(id(core), 1): _PRESENT}
     uses: dict[str, list[_Use]] = {name: [] for name in variables(core)}
     for node in reversed(postorder(core)):
         for sign in (1, -1):
             span = spans.get((id(node), sign))
-            if span is None or not variables(node):
+            if span is None or id(node) not in varying:
                 continue
             if isinstance(node, Var):
                 uses[node.name].append(_Use(sign, span))
                 continue
             assert isinstance(node, Apply)
-            moves = _moves(node, constants)
+            moves = _moves(node, constants, varying)
             if None in moves or (
-                0 in moves and (_repeats(node) or (period is None and len(variables(node)) > 1))
+                0 in moves
+                and (_repeats(node, constants, varying) or (period is None and len(variables(node)) > 1))
             ):
                 return variables(node)[0]
             if 0 in moves:
@@ -92,7 +112,7 @@ def loose(formula: Formula, period: Fraction | None) -> str | None:
                 before = spans.get(key, read)
                 spans[key] = min(before[0], read[0]), max(before[1], read[1])
     for name, every in uses.items():
-        if any(not one.agrees(other, dense=period is None) for one in every for other in every):
+        if not _agree(every, dense=period is None):
             return name
     return None
 
@@ -104,7 +124,7 @@ def _sums_all(node: Formula) -> bool:
     return node.interval is None or node.interval.end is None
 
 
-def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...]:
+def _moves(node: Apply, constants: Mapping[int, float], varying: Collection[int]) -> tuple[int | None, ...]:
     """Return the monotonicity of an operator in each operand; see ``enclosures.slopes``."""
     if node.op.tense is not Tense.NONE:
         return (1,) * len(node.args)
@@ -112,11 +132,11 @@ def _moves(node: Apply, constants: Mapping[int, float]) -> tuple[int | None, ...
         return (None,) * len(node.args)
     slopes = node.op.slopes(*(constants.get(id(operand)) for operand in node.args))
     return tuple(
-        1 if not variables(operand) else slope for operand, slope in zip(node.args, slopes, strict=True)
+        slope if id(operand) in varying else 1 for operand, slope in zip(node.args, slopes, strict=True)
     )
 
 
-def _repeats(node: Formula) -> bool:
+def _repeats(node: Formula, constants: Mapping[int, float], varying: Collection[int]) -> bool:
     """Return whether arithmetic reads a variable twice, or contains a temporal formula."""
     if any(isinstance(part, Apply) and part.op.tense is not Tense.NONE for part in postorder(node)):
         return True
@@ -125,8 +145,17 @@ def _repeats(node: Formula) -> bool:
         return 1 if isinstance(part, Var) else sum(below)
 
     return fold(node, reads) > len(variables(node)) or any(
-        isinstance(part, Apply) and None in _moves(part, _constants(node)) for part in postorder(node)
+        isinstance(part, Apply) and None in _moves(part, constants, varying) for part in postorder(node)
     )
+
+
+def _varying(formula: Formula) -> set[int]:
+    """Return the identities of the nodes that read a variable."""
+    found: set[int] = set()
+    for node in postorder(formula):
+        if isinstance(node, Var) or not found.isdisjoint(map(id, children(node))):
+            found.add(id(node))
+    return found
 
 
 def _constants(formula: Formula) -> dict[int, float]:
