@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from contextlib import contextmanager
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import pairwise
-from math import floor
+from math import floor, inf
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from rtamt.compiler.graph import FOREVER
@@ -45,6 +46,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         "_mark",
         "_filled",
         "_noted",
+        "_moments",
     )
 
     def _forget(self) -> None:
@@ -53,6 +55,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self._filled = 0
         #: What that changed of each output, since the last sample or watermark.
         self._noted: dict[int, tuple[Any, ...]] = {}
+        #: The first samples and their times, which the back end need not keep, while their report is the last one.
+        self._moments: tuple[tuple[int, float], ...] = ()
         self._rest: tuple[Any, ...] = ()
         #: Of each output the samples whose bounds were open when the trace ended.
         self._open_at_end: tuple[tuple[int, ...], ...] = ()
@@ -81,6 +85,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _note(self, noted: dict[int, tuple[Any, ...]]) -> None:
         """Record what one sample changed apart from the last step of the back end."""
+        self._moments = ()
         if noted != self._noted:
             self._noted = noted
             self._connect(inner_of(self._backend))
@@ -196,14 +201,19 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         self._keep()
         early = sorted(self._early, key=lambda sample: sample[0])
         noted: dict[int, tuple[Any, ...]] = dict.fromkeys(self._outputs, ())
+        moments: list[tuple[int, float]] = []
         for time, known in early:
-            if self._backend.newest >= 0:
+            before = self._backend.newest
+            if before >= 0:
                 self._check_late(time)
             self._learn(time, known)
+            if self._backend.newest > before:
+                moments.append((self._backend.newest, time))
             noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
         self._early = ()
         self._rehearsal = None
         self._note(noted)
+        self._moments = tuple(moments)
         self._retracted = None  # nothing was reported that a correction could retract
 
     def _news(self, output: int) -> list[Any]:
@@ -340,8 +350,16 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             or lower == upper
             or (lag < FOREVER and last + lag <= min(backend.closed, backend.newest))
         )
-        begin, end = (self._clock.time(backend.time(t)) for t in (first, last))
+        begin, end = (self._clock.time(self._time_of(t)) for t in (first, last))
         return Change(begin, end, Interval(lower, upper), final, retracted)
+
+    def _time_of(self, sample: int) -> float:
+        """Return the time of a sample that is reported."""
+        place = bisect_right(self._moments, (sample, inf)) - 1
+        if place < 0:
+            return float(self._backend.time(sample))
+        earlier, time = self._moments[place]
+        return time if earlier == sample else time + (sample - earlier) * float(self._step)
 
     def _first_open(self, output: int) -> int:
         """Return the first sample at which an output may still change."""

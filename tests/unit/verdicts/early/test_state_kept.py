@@ -178,3 +178,14 @@ def test_bounds_do_not_widen_where_an_operation_will_have_no_value(formula, time
     with pytest.raises(rtamt.EvaluationError):
         monitor.watermark(3)
     assert [monitor.interval(t) for t in (1, 2, 3)] == before
+
+
+@twins
+@backends
+def test_first_samples_are_reported_with_their_times_whatever_is_kept(backend, twin):
+    monitor = monitor_of("x >= 0", "discrete", backend, verdict="interval", lateness=70)
+    times = [t + 0.01 * (t % 3) for t in range(60)]
+    for t, time in enumerate([*times, 120.0]):  # after which the first 49 are final
+        monitor.update(time, x=t)
+    for each in (monitor, twin(monitor)):
+        assert [change.begin for change in each.changes()][:60] == times
