@@ -3,6 +3,7 @@
 #include "../program/snapshot.hpp"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -23,26 +24,116 @@ namespace {
     return greatest ? Interval::join(a, b) : Interval::meet(a, b);
 }
 
+[[nodiscard]] bool is_pair(const Item& item) noexcept {
+    return item.kind == Item::Kind::both || item.kind == Item::Kind::either;
+}
+
+// The item of a reference at the start. What a pair connects are references yet.
+[[nodiscard]] Item item_of(const Graph& graph, std::uint32_t ref) {
+    const Node& node = graph.nodes[ref / 2];
+    const bool flipped = (ref & 1U) != 0;
+    switch (node.kind) {
+    case Kind::both:
+    case Kind::either: {
+        const auto kind = node.kind == Kind::both ? Item::Kind::both : Item::Kind::either;
+        return {kind, flipped, node.a, node.b};
+    }
+    case Kind::least:
+    case Kind::greatest: {
+        if (node.low < 0 || node.high >= forever) break;
+        const auto kind = node.kind == Kind::least ? Item::Kind::all : Item::Kind::some;
+        return {kind, flipped, node.a, none, none, node.low, node.high};
+    }
+    case Kind::until:
+        return {Item::Kind::until, flipped, ref & ~1U, node.a, node.b};
+    default:
+        break;
+    }
+    return {Item::Kind::value, false, ref};
+}
+
 } // namespace
 
-BoundsAtStart::BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine, bool follows)
-    : items_(std::move(items)), states_(items_.size()), follows_(follows) {
+BoundsAtStart::BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine,
+                             std::span<const std::uint32_t> outputs, bool follows)
+    : items_(std::move(items)), formula_(items_.size() - 1), follows_(follows) {
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const Item& item = items_[i];
-        const bool pair = item.kind == Item::Kind::both || item.kind == Item::Kind::either;
-        const bool fits = pair ? item.a < i && item.b < i : item.a / 2 < engine.size();
+        const bool fits = is_pair(item) ? item.a < i && item.b < i : item.a / 2 < engine.size();
         if (!fits || item.tick < 0 || item.tick >= forever) {
             throw std::invalid_argument("This is no formula at the start of a trace.");
         }
+    }
+    if (!follows_ && !items_.empty()) put_together(engine.graph(), outputs);
+    states_.resize(items_.size());
+    for (std::size_t i = 0; i < items_.size(); ++i) {
         State& state = states_[i];
-        state.next = item.tick;
+        state.next = items_[i].tick;
         for (int reg = 0; reg < 2; ++reg) {
             const auto r = static_cast<std::size_t>(reg);
-            state.best[r] = up(item, reg) ? -infinity : infinity;
+            state.best[r] = up(items_[i], reg) ? -infinity : infinity;
             state.held[r] = -state.best[r];
         }
     }
     read(engine);
+}
+
+// Items of values become items of what these are made of, those of operands first. What the formula
+// does not need is left out.
+void BoundsAtStart::put_together(const Graph& graph, std::span<const std::uint32_t> outputs) {
+    const auto is_made = [&](const Item& item) {
+        return item.kind == Item::Kind::value && item.tick == 0 &&
+               std::ranges::none_of(outputs, [&](auto ref) { return ref / 2 == item.a / 2; });
+    };
+    const auto ref_of = [](const Item& item) {
+        return item.a ^ static_cast<std::uint32_t>(item.negated);
+    };
+    std::vector<bool> needed(items_.size());
+    std::map<std::uint32_t, Tick> settled; // by reference
+    const auto need = [&](std::uint32_t ref, Tick tick) {
+        Tick& known = settled.try_emplace(ref, 0).first->second;
+        known = std::max(known, std::min(tick, graph.nodes[ref / 2].horizon));
+    };
+    needed.back() = true;
+    for (std::size_t i = items_.size(); i-- > 0;) {
+        const Item& item = items_[i];
+        if (needed[i] && is_pair(item)) needed[item.a] = needed[item.b] = true;
+        if (needed[i] && is_made(item)) need(ref_of(item), forever);
+    }
+    for (auto it = settled.end(); it != settled.begin();) { // operands come before
+        --it;
+        const Item item = item_of(graph, it->first);
+        if (!is_pair(item)) continue;
+        need(item.a, it->second);
+        need(item.b, it->second);
+    }
+    std::vector<Item> result;
+    const auto add = [&](const Item& item) {
+        result.push_back(item);
+        return static_cast<std::uint32_t>(result.size() - 1);
+    };
+    std::map<std::uint32_t, std::uint32_t> places; // of references
+    for (const auto& [ref, tick] : settled) {
+        Item item = item_of(graph, ref);
+        item.settled = tick;
+        if (is_pair(item)) {
+            item.a = places.at(item.a);
+            item.b = places.at(item.b);
+        }
+        places[ref] = add(item);
+    }
+    std::vector<std::uint32_t> moved(items_.size(), none); // the places of the items given
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+        Item item = items_[i];
+        if (!needed[i]) continue;
+        if (is_pair(item)) {
+            item.a = moved[item.a];
+            item.b = moved[item.b];
+        }
+        moved[i] = is_made(item) ? places.at(ref_of(item)) : add(item);
+    }
+    items_ = std::move(result);
+    formula_ = moved.back();
 }
 
 Bounds BoundsAtStart::bounds_of(std::size_t item) const noexcept {
@@ -53,15 +144,16 @@ Bounds BoundsAtStart::bounds_of(std::size_t item) const noexcept {
 
 void BoundsAtStart::limit(std::span<Tick> last) const noexcept {
     for (const Item& item : items_) {
-        if (item.kind == Item::Kind::both || item.kind == Item::Kind::either) continue;
+        if (is_pair(item)) continue;
         Tick& of_node = last[item.a / 2];
-        of_node = std::max(of_node, item.kind == Item::Kind::value ? item.tick : forever);
+        of_node = std::max(of_node, item.kind == Item::Kind::value ? item.tick : item.last);
     }
 }
 
 std::vector<std::uint32_t> BoundsAtStart::read_forever() const {
     std::vector<std::uint32_t> refs;
     for (const Item& item : items_) {
+        if (item.settled < forever) continue;
         if (item.kind == Item::Kind::all || item.kind == Item::Kind::some) refs.push_back(item.a);
         if (item.kind == Item::Kind::until) refs.insert(refs.end(), {item.a, item.b, item.c});
     }
@@ -69,59 +161,69 @@ std::vector<std::uint32_t> BoundsAtStart::read_forever() const {
 }
 
 void BoundsAtStart::read(const BoundsEngine& engine) {
-    for (std::size_t i = 0; i < items_.size(); ++i)
-        look_at(engine, i);
-}
-
-void BoundsAtStart::look_at(const BoundsEngine& engine, std::size_t index) noexcept {
-    const Item& item = items_[index];
-    State& state = states_[index];
-    if (item.kind == Item::Kind::both || item.kind == Item::Kind::either) {
-        const Bounds value =
-            join(item.kind == Item::Kind::either, bounds_of(item.a), bounds_of(item.b));
-        state.value = {value.lower, -value.upper};
-        return;
-    }
-    if (state.next >= forever) return; // it is final
-    for (int reg = 0; reg < 2; ++reg) {
-        const auto r = static_cast<std::size_t>(reg);
-        const Runs& runs = engine.runs(item.a, reg);
-        const bool greatest = up(item, reg);
-        double now = runs.at(state.next).value;
-        if (item.kind == Item::Kind::until) {
-            now = join(greatest, state.best[r], join(!greatest, state.held[r], now));
-        } else if (item.kind != Item::Kind::value) {
-            if (greatest) {
-                now = state.value[r];
-                for (const Piece& piece : engine.new_data(item.a, reg)) {
-                    if (piece.r >= item.tick) now = Real::join(now, piece.now);
-                }
-                if (engine.new_data(item.a, reg).empty() && now == -infinity) {
-                    now = runs.most(state.next, forever);
-                }
-            } else if (state.value[r] == -infinity || !engine.new_data(item.a, reg).empty()) {
-                now = Real::meet(state.best[r], runs.least(state.next, forever));
-            } else {
-                now = state.value[r];
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+        const Item& item = items_[i];
+        State& state = states_[i];
+        if (is_pair(item)) {
+            const Bounds value =
+                join(item.kind == Item::Kind::either, bounds_of(item.a), bounds_of(item.b));
+            state.value = {value.lower, -value.upper};
+        } else if (state.next < forever) {
+            for (int reg = 0; reg < 2; ++reg) {
+                double& value = state.value[static_cast<std::size_t>(reg)];
+                value = Real::join(value, seen(engine, i, reg)); // bounds only narrow
             }
         }
-        state.value[r] = Real::join(state.value[r], now); // bounds only narrow
     }
+}
+
+// A register of an item by what is known now, where that may be above its value.
+double BoundsAtStart::seen(const BoundsEngine& engine, std::size_t index, int reg) const noexcept {
+    const Item& item = items_[index];
+    const State& state = states_[index];
+    const auto r = static_cast<std::size_t>(reg);
+    const Runs& runs = engine.runs(item.a, reg);
+    const auto& pieces = engine.new_data(item.a, reg);
+    const double value = state.value[r];
+    const bool greatest = up(item, reg);
+    switch (item.kind) {
+    case Item::Kind::all:
+    case Item::Kind::some:
+        break;
+    case Item::Kind::until:
+        return join(greatest, state.best[r],
+                    join(!greatest, state.held[r], runs.at(state.next).value));
+    default:
+        return runs.at(state.next).value;
+    }
+    if (greatest) {
+        if (pieces.empty() && value == -infinity) return runs.most(state.next, item.last);
+        double now = value;
+        for (const Piece& piece : pieces) {
+            if (piece.r >= item.tick && piece.l <= item.last) now = Real::join(now, piece.now);
+        }
+        return now;
+    }
+    // The least can rise only where it was itself.
+    const auto was_least = [&](const Piece& piece) { return piece.old <= value; };
+    if (value > -infinity && std::ranges::none_of(pieces, was_least)) return value;
+    return Real::meet(state.best[r], runs.least(state.next, item.last, value));
 }
 
 void BoundsAtStart::settle(const BoundsEngine& engine, Tick closed, std::span<Tick> wanted) {
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const Item& item = items_[i];
         State& state = states_[i];
-        if (item.kind == Item::Kind::both || item.kind == Item::Kind::either) continue;
+        if (is_pair(item)) continue;
         Tick horizon = engine.horizon(item.a);
         if (item.kind == Item::Kind::until) {
             horizon = std::max(engine.horizon(item.b), engine.horizon(item.c));
         }
         const Tick open = plus(plus(closed, 1), -horizon);
-        if (item.kind == Item::Kind::value) {
-            if (open > item.tick) state.next = forever;
-        } else if (state.next < forever && open > state.next) {
+        const Tick last = item.kind == Item::Kind::value ? item.tick : item.last;
+        if (open > last || closed >= item.settled) {
+            state.next = forever;
+        } else if (item.kind != Item::Kind::value && open > state.next) {
             fold(engine, i, open);
             state.next = open;
         }
@@ -177,15 +279,14 @@ Bounds BoundsAtStart::ended(const BoundsEngine& engine, Tick end) const {
     std::vector<std::uint32_t> refs;
     refs.reserve(items_.size());
     for (const Item& item : items_)
-        refs.push_back(item.kind == Item::Kind::both || item.kind == Item::Kind::either ? 0
-                                                                                        : item.a);
+        refs.push_back(is_pair(item) ? 0 : item.a);
     const auto rests = engine.ended(refs, end);
     std::vector<Bounds> values(items_.size());
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const Item& item = items_[i];
         const State& state = states_[i];
         Bounds value{state.value[0], -state.value[1]};
-        if (item.kind == Item::Kind::both || item.kind == Item::Kind::either) {
+        if (is_pair(item)) {
             value = join(item.kind == Item::Kind::either, values[item.a], values[item.b]);
         } else if (state.next < forever) {
             const auto& rest = rests[i];
@@ -202,13 +303,13 @@ Bounds BoundsAtStart::ended(const BoundsEngine& engine, Tick end) const {
                 value = there ? Interval::join(best, Interval::meet(held, at(from))) : best;
             } else {
                 value = best;
-                for (Tick t = from; t < end; ++t)
+                for (Tick t = from; t < end && t <= item.last; ++t)
                     value = join(item.kind == Item::Kind::some, value, at(t));
             }
         }
         values[i] = item.negated ? Interval::neg(value) : value;
     }
-    return values.back();
+    return values[formula_];
 }
 
 void BoundsAtStart::transfer(Snapshot& snapshot) {

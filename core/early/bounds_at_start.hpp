@@ -8,6 +8,9 @@
 //     until   of a, the recursion of until over operands b and c, at the tick
 //     both    the smaller of items a and b
 //     either  the larger of items a and b
+//
+// A value is put together in the same way from what the windows at the top of its formula read, so
+// that nothing follows the values of these windows at other ticks, nor keeps what is final.
 #pragma once
 
 #include "bounds_engine.hpp"
@@ -27,13 +30,16 @@ struct Item {
     std::uint32_t b = none;
     std::uint32_t c = none;
     Tick tick = 0;
+    Tick last = forever;    // of all and some: the last tick
+    Tick settled = forever; // the tick whose samples make the value final, if any do
 };
 
 class BoundsAtStart {
   public:
-    // The last item is that of the formula. `follows`: whether items continue after they are
-    // decided.
-    BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine, bool follows = false);
+    // The last item is that of the formula. `outputs`: what is followed at all ticks anyway.
+    // `follows`: whether items are kept as they are given, and continue after they are decided.
+    BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine,
+                  std::span<const std::uint32_t> outputs = {}, bool follows = false);
 
     // The last tick of each node that is looked at, where it is later.
     void limit(std::span<Tick> last) const noexcept;
@@ -44,7 +50,7 @@ class BoundsAtStart {
     // Reads the current bounds of the engine.
     void read(const BoundsEngine& engine);
 
-    [[nodiscard]] Bounds value() const noexcept { return bounds_of(items_.size() - 1); }
+    [[nodiscard]] Bounds value() const noexcept { return bounds_of(formula_); }
 
     // Folds what is final; `wanted`: by node, the first tick that is still needed.
     void settle(const BoundsEngine& engine, Tick closed, std::span<Tick> wanted);
@@ -76,11 +82,13 @@ class BoundsAtStart {
     };
     std::vector<Item> items_;
     std::vector<State> states_;
+    std::size_t formula_; // the item of it
     bool follows_;
 
+    void put_together(const Graph& graph, std::span<const std::uint32_t> outputs);
+    [[nodiscard]] double seen(const BoundsEngine& engine, std::size_t item, int reg) const noexcept;
     [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
     [[nodiscard]] bool decided(std::size_t item) const noexcept;
-    void look_at(const BoundsEngine& engine, std::size_t item) noexcept;
     void fold(const BoundsEngine& engine, std::size_t item, Tick end) noexcept;
 };
 

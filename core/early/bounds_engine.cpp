@@ -20,6 +20,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arri
         steps = std::max(steps, node(i).steps.size());
         sums_.emplace_back(plus(node(i).high, plus(-node(i).low, 1)));
         if (node(i).kind == Kind::atom) atoms_.push_back(i);
+        fallible_ = fallible_ || may_fail(node(i));
         for (const Step& step : node(i).steps) {
             partial_ = partial_ || info(step.opcode).partial;
             if (node(i).kind != Kind::atom || step.opcode != Opcode::input) continue;
@@ -175,7 +176,7 @@ void BoundsEngine::settle(Tick closed, std::span<const Tick> wanted) {
 std::size_t BoundsEngine::bytes() const noexcept {
     std::size_t sum = 0;
     for (const State& state : nodes_)
-        sum += state.own[0].bytes() + state.own[1].bytes();
+        sum += state.own[0].bytes() + state.own[1].bytes() + state.in_order.bytes();
     for (const auto& known : inputs_)
         sum += known.bytes();
     return sum;
@@ -206,6 +207,8 @@ void BoundsEngine::transfer(Snapshot& snapshot) {
     awaited_ = partial_;
     for (WindowSums& sums : sums_)
         sums.forget();
+    for (State& state : nodes_)
+        state.slid = unread;
     clear();
 }
 

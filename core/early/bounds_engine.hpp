@@ -12,6 +12,7 @@
 #pragma once
 
 #include "graph.hpp"
+#include "sliding.hpp"
 #include "window_sums.hpp"
 
 #include <algorithm>
@@ -130,6 +131,7 @@ class BoundsEngine {
     // The sum of the bounds of all windows, without those that have no end: how far from a sample a
     // value may be that it changes, and that others do not share from there on.
     [[nodiscard]] Tick reach() const noexcept;
+    [[nodiscard]] const Graph& graph() const noexcept { return graph_; }
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
     [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }
 
@@ -168,7 +170,12 @@ class BoundsEngine {
         };
         Undefined undefined;
         Undefined undefined_before; // the last change
+        // Of windows over an atom whose samples come in order, in the register that takes the
+        // least: the values of the atom up to a tick; `unread` where they are not known.
+        Sliding in_order{false};
+        Tick slid = -1;
     };
+    static constexpr Tick unread = -2;
     struct Undo {
         Runs* runs;
         Tick l;
@@ -184,6 +191,7 @@ class BoundsEngine {
     std::vector<Bounds> ranges_;
     std::vector<bool> truths_; // by node
     bool partial_ = false;     // an operation may have no value
+    bool fallible_ = false;    // the same of nodes that are computed behind the atoms of a row
     bool awaited_ = false;     // one has none somewhere, or had: see State::undefined
     std::vector<State> nodes_;
     std::vector<std::uint32_t> atoms_;
@@ -192,6 +200,7 @@ class BoundsEngine {
     std::vector<Undo> journal_;                       // of a change that may fail
     std::vector<UndoInput> input_journal_;            // the same of inputs
     bool journaling_ = false;
+    bool in_order_ = false; // what changes is a row
     bool keeps_undo_ = false;
     std::vector<double> exact_;                // results of steps
     std::vector<Bounds> bounds_;               // results of steps
@@ -247,6 +256,7 @@ class BoundsEngine {
     void change(State& state, int reg, Runs::Place place, Run run, double now);
     void change(State& state, int reg, Run run, double now);
     void lift(State& state, int reg, Tick l, Tick r, double now);
+    void append(State& state, int reg, Tick t, double now);
     void pass(std::uint32_t index, int reg);
     void combine(std::uint32_t index, int reg, bool up);
     void slide(std::uint32_t index, int reg, bool up);
@@ -254,6 +264,8 @@ class BoundsEngine {
     void pulses(std::uint32_t index, int reg);
     void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    void raise_in_order(State& state, int reg, const Node& node, Piece piece);
+    void slide_in_order(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void slide_truth(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     template <bool up>
     void until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);

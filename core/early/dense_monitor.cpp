@@ -31,7 +31,8 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
         if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
     }
     if (!settings.at_start.empty() || settings.causes) {
-        at_start_.emplace(std::move(settings.at_start), engine_, settings.causes.has_value());
+        at_start_.emplace(std::move(settings.at_start), engine_, settings.outputs,
+                          settings.causes.has_value());
         engine_.find_beyond(at_start_->read_forever());
     }
     if (settings.causes) {

@@ -12,9 +12,11 @@ namespace {
 constexpr std::int64_t pause = 64;
 
 [[nodiscard]] std::optional<BoundsAtStart> at_start_of(std::vector<Item> items,
-                                                       const BoundsEngine& engine, bool follows) {
+                                                       const BoundsEngine& engine,
+                                                       std::span<const std::uint32_t> outputs,
+                                                       bool follows) {
     if (items.empty()) return std::nullopt;
-    return BoundsAtStart(std::move(items), engine, follows);
+    return BoundsAtStart(std::move(items), engine, outputs, follows);
 }
 
 [[nodiscard]] BoundsEngine::Arrival arrival(bool late) {
@@ -26,7 +28,7 @@ constexpr std::int64_t pause = 64;
 DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
     : engine_(graph, settings.ranges, arrival(settings.lateness.has_value())),
       outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
-      at_start_(at_start_of(settings.at_start, engine_, settings.causes.has_value())),
+      at_start_(at_start_of(settings.at_start, engine_, outputs_, settings.causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(settings.ranges)),
       lateness_(settings.lateness), decides_(settings.decides), news_(outputs_.size()),
       changes_(outputs_.size()), open_(outputs_.size(), 0), kept_(outputs_.size(), 0),

@@ -77,7 +77,18 @@ template <class Value>
     if (step.opcode == Opcode::input) return inputs[step.a];
     if (step.opcode == Opcode::constant) return constant(step.x, Value{});
     const Value& a = results[step.a];
-    return apply(step.opcode, a, step.b == none ? a : results[step.b]);
+    switch (step.opcode) { // what most predicates consist of, without a call
+    case Opcode::sub:
+        return of<f::Sub>(a, results[step.b]);
+    case Opcode::neg:
+        return of<f::Neg>(a, a);
+    case Opcode::holds_gt:
+        return of<f::HoldsGreater>(a, results[step.b]);
+    case Opcode::holds_ge:
+        return of<f::HoldsGreaterEqual>(a, results[step.b]);
+    default:
+        return apply(step.opcode, a, step.b == none ? a : results[step.b]);
+    }
 }
 
 } // namespace

@@ -10,9 +10,14 @@ template <class Value>
 std::optional<BoundsEngine::Failure> BoundsEngine::take(Tick t, std::span<const Value> values) {
     settle_inputs(t);
     begin(t);
-    journaling_ = partial_;
+    journaling_ = fallible_ || awaited_;
     if (const auto failure = put(t, values, atoms_)) return attempt(failure);
-    return attempt(propagate(false));
+    in_order_ = true;
+    const auto failure = propagate(false);
+    in_order_ = false;
+    for (std::size_t i = 0; failure && i < nodes_.size(); ++i)
+        nodes_[i].slid = unread;
+    return attempt(failure);
 }
 
 // Every atom is computed before anything changes.
@@ -37,8 +42,8 @@ std::optional<BoundsEngine::Failure> BoundsEngine::put(Tick t, std::span<const V
         }
     }
     for (const std::uint32_t i : atoms) {
-        lift(nodes_[i], 0, t, t, results_[i].lower);
-        lift(nodes_[i], 1, t, t, -results_[i].upper);
+        append(nodes_[i], 0, t, results_[i].lower);
+        append(nodes_[i], 1, t, -results_[i].upper);
     }
     return std::nullopt;
 }

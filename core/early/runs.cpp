@@ -62,7 +62,7 @@ double Runs::extreme(Tick l, Tick r, double enough) const noexcept {
     };
     const Place to = find(r);
     const Chunk& last = *directory_[to.chunk].chunk;
-    if (directory_[to.chunk].first <= l || to.chunk == 0) {
+    if (directory_[to.chunk].first <= l || to.chunk == head_) {
         (void)within(last, find(l).index, to.index + 1);
         return result;
     }

@@ -57,6 +57,12 @@ class Runs : public StepMap<double> {
     least(Tick l, Tick r, double floor = -std::numeric_limits<double>::infinity()) const noexcept;
     [[nodiscard]] double most(Tick l, Tick r) const noexcept;
 
+    // Raises all values in [l, r] that are below this one, where values from l on never rise; calls
+    // `raised` with each run as it was. Returns false, with nothing done, unless r lies in the last
+    // run, and all that is raised in the last chunk, which has room.
+    template <class Raised>
+    [[nodiscard]] bool raise_end(Tick l, Tick r, double value, Raised&& raised);
+
   private:
     void sum(const Entry& entry) const noexcept;
     // Of as many chunks as there are in a group, the first one's index a multiple of that.
@@ -64,6 +70,39 @@ class Runs : public StepMap<double> {
     template <bool greatest>
     [[nodiscard]] double extreme(Tick l, Tick r, double enough) const noexcept;
 };
+
+// ---- changes ------------------------------------------------------------------------------------
+
+template <class Raised>
+bool Runs::raise_end(Tick l, Tick r, double value, Raised&& raised) {
+    Entry& entry = directory_.back();
+    Chunk& chunk = *entry.chunk;
+    const int last = chunk.end - 1;
+    const double rest = chunk.value[last];
+    if (chunk.start[last] > r) return false;
+    if (!(rest < value)) return true;
+    int place = last; // the first run that is raised
+    while (place > chunk.begin && chunk.start[place] > l && chunk.value[place - 1] < value)
+        --place;
+    if ((place == chunk.begin && directory_.size() > head_ + 1) || last + 2 >= capacity)
+        return false;
+    const Tick begin = chunk.start[place] < l ? l : chunk.start[place];
+    for (int i = place; i <= last; ++i) {
+        raised(Run{i == place ? begin : chunk.start[i], i < last ? chunk.start[i + 1] - 1 : r,
+                   chunk.value[i]});
+    }
+    const bool splits = chunk.start[place] < begin;
+    if (splits) ++place;
+    if (splits || place == chunk.begin || chunk.value[place - 1] != value) {
+        chunk.start[place] = begin;
+        chunk.value[place++] = value;
+    }
+    chunk.start[place] = r + 1;
+    chunk.value[place] = rest;
+    chunk.end = place + 1;
+    changed(directory_.size() - 1);
+    return true;
+}
 
 // ---- searches -----------------------------------------------------------------------------------
 
@@ -116,9 +155,9 @@ std::optional<Run> Runs::last(Tick l, Tick r, double value) const noexcept {
             if (chunk.start[p.index] <= l) return std::nullopt;
         }
         for (;;) {
-            if (p.chunk == 0) return std::nullopt;
+            if (p.chunk == head_) return std::nullopt;
             --p.chunk;
-            if (p.chunk % grouped == grouped - 1) {
+            if (p.chunk % grouped == grouped - 1 && p.chunk + 1 >= head_ + grouped) {
                 const std::size_t begin = p.chunk + 1 - grouped;
                 const Summary& group = group_from(begin);
                 if (!Search::possible(group.least, group.most, value)) {

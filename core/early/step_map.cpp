@@ -16,8 +16,9 @@ StepMap<Value>::StepMap(Tick from, const Value& value) {
 
 template <class Value>
 StepMap<Value>::StepMap(const StepMap& other) {
-    directory_.reserve(other.directory_.size());
-    for (const Entry& entry : other.directory_) {
+    directory_.reserve(other.directory_.size() - other.head_);
+    for (std::size_t c = other.head_; c < other.directory_.size(); ++c) {
+        const Entry& entry = other.directory_[c];
         directory_.push_back({entry.first, entry.summary, std::make_unique<Chunk>(*entry.chunk)});
     }
     moved(0);
@@ -32,7 +33,7 @@ auto StepMap<Value>::operator=(const StepMap& other) -> StepMap& {
 template <class Value>
 auto StepMap<Value>::before(Place p) const noexcept -> std::optional<Place> {
     if (p.index > directory_[p.chunk].chunk->begin) return Place{p.chunk, p.index - 1};
-    if (p.chunk == 0) return std::nullopt;
+    if (p.chunk == head_) return std::nullopt;
     return Place{p.chunk - 1, directory_[p.chunk - 1].chunk->end - 1};
 }
 
@@ -44,14 +45,7 @@ auto StepMap<Value>::after(Place p) const noexcept -> std::optional<Place> {
 }
 
 // ---- changes ------------------------------------------------------------------------------------
-
-// What the values of a chunk are, or which chunks there are from an index on, is not what it was.
-template <class Value>
-void StepMap<Value>::changed(std::size_t chunk) noexcept {
-    directory_[chunk].summary.valid = false;
-    if (chunk / grouped < groups_.size()) groups_[chunk / grouped].valid = false;
-}
-
+// Which chunks there are from an index on is not what it was.
 template <class Value>
 void StepMap<Value>::moved(std::size_t chunk) {
     groups_.resize(directory_.size() / grouped);
@@ -180,21 +174,21 @@ auto StepMap<Value>::insert_after(Place p, Tick start, const Value& value) -> Pl
 
 template <class Value>
 void StepMap<Value>::drop_before(Tick t) noexcept {
-    std::size_t whole = 0; // chunks
-    while (whole + 1 < directory_.size() && directory_[whole + 1].first <= t)
-        ++whole;
-    if (whole > 0) {
+    for (; head_ + 1 < directory_.size() && directory_[head_ + 1].first <= t; ++head_)
+        directory_[head_].chunk.reset();
+    if (head_ > 0 && 2 * head_ >= directory_.size()) { // the others are not moved often
         directory_.erase(directory_.begin(),
-                         directory_.begin() + static_cast<std::ptrdiff_t>(whole));
+                         directory_.begin() + static_cast<std::ptrdiff_t>(head_));
+        head_ = 0;
         moved(0);
     }
-    Entry& entry = directory_.front();
+    Entry& entry = directory_[head_];
     Chunk& chunk = *entry.chunk;
     const int begin = chunk.begin;
     while (chunk.begin + 1 < chunk.end && chunk.start[chunk.begin + 1] <= t)
         ++chunk.begin;
     entry.first = chunk.start[chunk.begin];
-    if (chunk.begin != begin) changed(0);
+    if (chunk.begin != begin) changed(head_);
 }
 
 // ---- state --------------------------------------------------------------------------------------
@@ -203,8 +197,8 @@ template <class Value>
 void StepMap<Value>::transfer(Snapshot& snapshot) {
     std::vector<Tick> starts;
     std::vector<Value> values;
-    for (const Entry& entry : directory_) {
-        const Chunk& chunk = *entry.chunk;
+    for (std::size_t c = head_; c < directory_.size(); ++c) {
+        const Chunk& chunk = *directory_[c].chunk;
         starts.insert(starts.end(), chunk.start + chunk.begin, chunk.start + chunk.end);
         values.insert(values.end(), chunk.value + chunk.begin, chunk.value + chunk.end);
     }
@@ -217,6 +211,7 @@ void StepMap<Value>::transfer(Snapshot& snapshot) {
     snapshot.values(values.data(), size);
     if (!snapshot.loading()) return;
     directory_.clear();
+    head_ = 0;
     for (std::size_t i = 0; i < size; ++i) {
         snapshot.require(starts[i] < forever && (i == 0 || starts[i - 1] < starts[i]));
         snapshot.require(values[i] == values[i]); // no NaN

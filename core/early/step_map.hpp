@@ -65,13 +65,23 @@ class StepMap {
     void set(Tick l, Tick r, const Value& value) { set(find(l), l, r, value); }
     void set(Place p, Tick l, Tick r, const Value& value);
 
+    // The last run, which goes on for ever.
+    [[nodiscard]] Run last_run() const noexcept {
+        const Chunk& chunk = *directory_.back().chunk;
+        return {chunk.start[chunk.end - 1], forever, chunk.value[chunk.end - 1]};
+    }
+    // Gives a new value to the tick at which it begins, and to that alone.
+    void extend(const Value& value);
+
     // Drops the runs that end before a tick.
     void drop_before(Tick t) noexcept;
 
     // The first tick that is held.
-    [[nodiscard]] Tick front() const noexcept { return directory_.front().first; }
+    [[nodiscard]] Tick front() const noexcept { return directory_[head_].first; }
 
-    [[nodiscard]] std::size_t bytes() const noexcept { return directory_.size() * sizeof(Chunk); }
+    [[nodiscard]] std::size_t bytes() const noexcept {
+        return (directory_.size() - head_) * sizeof(Chunk);
+    }
 
     void transfer(Snapshot& snapshot);
 
@@ -97,8 +107,11 @@ class StepMap {
         std::unique_ptr<Chunk> chunk;
     };
 
-    std::vector<Entry> directory_;        // never empty, and neither is a chunk in it
+    std::vector<Entry> directory_;        // never empty, and neither is a chunk from the head on
+    std::size_t head_ = 0;                // chunks before it are dropped
     mutable std::vector<Summary> groups_; // of so many chunks each
+
+    void changed(std::size_t chunk) noexcept;
 
   private:
     [[nodiscard]] Tick end_of(Place p) const noexcept;
@@ -107,7 +120,6 @@ class StepMap {
     [[nodiscard]] Value& value_at(Place p) noexcept {
         return directory_[p.chunk].chunk->value[p.index];
     }
-    void changed(std::size_t chunk) noexcept;
     void moved(std::size_t chunk);
     void move_start(Place p, Tick start) noexcept;
     void erase(Place p) noexcept;
@@ -115,13 +127,20 @@ class StepMap {
     void append(Tick start, const Value& value);
 };
 
+// What the values of a chunk are is not what it was.
+template <class Value>
+inline void StepMap<Value>::changed(std::size_t chunk) noexcept {
+    directory_[chunk].summary.valid = false;
+    if (chunk / grouped < groups_.size()) groups_[chunk / grouped].valid = false;
+}
+
 // ---- accesses -----------------------------------------------------------------------------------
 
 template <class Value>
 inline auto StepMap<Value>::find(Tick t) const noexcept -> Place {
     std::size_t c = directory_.size() - 1;
     if (directory_[c].first > t) {
-        std::size_t low = 0;
+        std::size_t low = head_;
         while (low < c) { // the last chunk that begins at t or before, or the first chunk
             const std::size_t middle = (low + c + 1) / 2;
             if (directory_[middle].first <= t) {
@@ -158,6 +177,28 @@ inline Tick StepMap<Value>::end_of(Place p) const noexcept {
     const Chunk& chunk = *directory_[p.chunk].chunk;
     if (p.index + 1 < chunk.end) return chunk.start[p.index + 1] - 1;
     return p.chunk + 1 < directory_.size() ? directory_[p.chunk + 1].first - 1 : forever;
+}
+
+// What samples in order do.
+template <class Value>
+inline void StepMap<Value>::extend(const Value& value) {
+    Entry& entry = directory_.back();
+    Chunk& chunk = *entry.chunk;
+    const int last = chunk.end - 1;
+    const Value rest = chunk.value[last];
+    if (last == chunk.begin || chunk.end == capacity || rest == value) {
+        const Tick t = chunk.start[last];
+        return set({directory_.size() - 1, last}, t, t, value);
+    }
+    const Tick next = chunk.start[last] + 1;
+    if (chunk.value[last - 1] == value) {
+        chunk.start[last] = next;
+        return;
+    }
+    chunk.value[last] = value;
+    chunk.start[chunk.end] = next;
+    chunk.value[chunk.end++] = rest;
+    changed(directory_.size() - 1);
 }
 
 template <class Value>

@@ -1,10 +1,10 @@
 // Bounds at the end of a trace: the expected samples do not arrive, so windows are cut there. That
 // may widen bounds, so they are recomputed, tick by tick, wherever they were not final.
 #include "bounds_engine.hpp"
+#include "sliding.hpp"
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 
 namespace rtamt::early {
 
@@ -23,30 +23,6 @@ struct Column {
         const Bounds& value = values.at(static_cast<std::size_t>(t - first));
         return flipped ? Interval::neg(value) : value;
     }
-};
-
-// One end of the bounds in the windows of consecutive ticks.
-template <class Value>
-class Sliding {
-  public:
-    explicit Sliding(bool greatest) : greatest_(greatest) {}
-
-    void add(Tick t, Value value) {
-        while (!queue_.empty() &&
-               (greatest_ ? queue_.back().second <= value : queue_.back().second >= value)) {
-            queue_.pop_back();
-        }
-        queue_.emplace_back(t, value);
-    }
-    [[nodiscard]] Value from(Tick t) {
-        while (!queue_.empty() && queue_.front().first < t)
-            queue_.pop_front();
-        return queue_.empty() ? (greatest_ ? -infinity : infinity) : queue_.front().second;
-    }
-
-  private:
-    bool greatest_;
-    std::deque<std::pair<Tick, Value>> queue_;
 };
 
 // The value of this rank, counted from the greatest or the least; an infinity where there are
@@ -156,8 +132,8 @@ std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_
                 }
                 break;
             }
-            Sliding<double> lower(greatest);
-            Sliding<double> upper(greatest);
+            Sliding lower(greatest);
+            Sliding upper(greatest);
             Tick next = std::max<Tick>(0, plus(from, own.low));
             for (Tick t = from; t < end; ++t) {
                 for (const Tick last = std::min(end - 1, plus(t, own.high)); next <= last; ++next) {

@@ -109,7 +109,67 @@ void check_changes(std::uint32_t seed, Tick ticks, int values, int steps) {
     }
 }
 
+// Values in the order of time: those of single ticks, or raised from the end on.
+void check_order(std::uint32_t seed, int values, Tick span) {
+    CAPTURE(seed);
+    constexpr Tick ticks = 600;
+    Random random(seed);
+    Runs singles;
+    Runs raised;
+    std::vector<double> model(ticks, -rtamt::infinity);
+    std::size_t in_place = 0;
+    Tick dropped = 0;
+    for (Tick t = 0; t < ticks; ++t) {
+        const auto value = static_cast<double>(random.between(0, values));
+        REQUIRE(singles.last_run().begin <= t);
+        if (singles.last_run().begin == t && random.chance(90)) {
+            singles.extend(value);
+        } else {
+            singles.set(t, t, value);
+        }
+        REQUIRE(singles.at(t).value == value);
+        REQUIRE(singles.last_run().begin == t + 1);
+
+        const Tick l = std::max<Tick>(0, t - span);
+        std::vector<double> before(model.begin() + l, model.begin() + t + 1);
+        const bool done = raised.raise_end(l, t, value, [&](const Run& run) {
+            for (Tick k = run.begin; k <= run.end; ++k) {
+                REQUIRE(before[static_cast<std::size_t>(k - l)] == run.value);
+                REQUIRE(run.value < value);
+                before[static_cast<std::size_t>(k - l)] = value;
+            }
+        });
+        in_place += done ? 1 : 0;
+        for (Tick k = l; k <= t; ++k) {
+            double& each = model[static_cast<std::size_t>(k)];
+            each = std::max(each, value);
+            if (done) REQUIRE(before[static_cast<std::size_t>(k - l)] == each);
+        }
+        while (const auto run = raised.first<Below>(l, t, value)) {
+            REQUIRE(!done);
+            raised.set(run->begin, run->end, value);
+        }
+        for (Tick k = std::max(dropped, l - 3); k <= t; ++k)
+            REQUIRE(raised.at(k).value == model[static_cast<std::size_t>(k)]);
+        REQUIRE(raised.last_run().begin == t + 1);
+        REQUIRE(raised.last_run().value == -rtamt::infinity);
+        if (random.chance(5)) {
+            singles.drop_before(l);
+            raised.drop_before(l);
+            dropped = l;
+        }
+        REQUIRE(raised.least(l, t) == model[static_cast<std::size_t>(t)]);
+        REQUIRE(raised.most(l, t) == model[static_cast<std::size_t>(l)]);
+    }
+    CHECK(2 * in_place > static_cast<std::size_t>(ticks));
+}
+
 } // namespace
+
+TEST_CASE("what comes in the order of time is that of an array") {
+    for (std::uint32_t seed = 0; seed < 20; ++seed)
+        check_order(seed, seed % 2 == 0 ? 3 : 1'000'000, seed % 3 == 0 ? 2 : 150);
+}
 
 TEST_CASE("runs are those of an array, whatever is set, found and dropped") {
     // Few values join, many make chunks.
