@@ -41,7 +41,8 @@ struct Both {
     Both(const Graph& graph, std::vector<std::uint32_t> asked, const Bounds& range)
         : outputs(std::move(asked)), items{{Item::Kind::value, false, outputs[0]}},
           zone(ZoneEngine::of(graph, outputs, items, std::array{range, range}, long_enough)),
-          delta(graph, {range, range}, false), start(items, delta), changes(outputs.size()) {}
+          delta(graph, {range, range}, BoundsEngine::Arrival::rows), start(items, delta),
+          changes(outputs.size()) {}
 
     std::vector<std::uint32_t> outputs;
     std::vector<Item> items;
