@@ -3,8 +3,8 @@
 //     zone_bench
 //
 // Delta: BoundsEngine follows what a sample changes. Zone: ZoneEngine computes all open ticks anew.
-// Both compute always[0,k](a >= -2), and the same below eventually[0,k]; ZoneEngine::crossover is
-// where their cost is the same.
+// Both compute always[0,k](a >= -2), and the same below eventually[0,k];
+// ZoneEngine::ticks_to_follow follows from where their cost is the same.
 #include "early/bounds_engine.hpp"
 #include "early/zone_engine.hpp"
 
@@ -74,7 +74,7 @@ double zone(Tick k, bool nested, std::span<const double> samples) {
     const Graph whole = graph(k, nested);
     const std::vector<std::uint32_t> outputs{nested ? 4U : 2U};
     return best_of(samples.size(), [&] {
-        auto engine = ZoneEngine::of(whole, outputs, {}, {}, rtamt::early::forever / 8);
+        auto engine = ZoneEngine::of(whole, outputs, {}, {}, 1'000'000);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (engine && engine->row(static_cast<Tick>(i), samples.subspan(i, 1)))
                 std::puts("undefined");

@@ -26,26 +26,28 @@ constexpr std::int64_t pause = 64;
 } // namespace
 
 DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
-    : engine_(graph, settings.ranges, arrival(settings.lateness.has_value())),
+    : engine_(std::in_place, graph, settings.ranges, arrival(settings.lateness.has_value())),
       outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
-      at_start_(at_start_of(settings.at_start, engine_, outputs_, settings.causes.has_value())),
+      at_start_(at_start_of(settings.at_start, *engine_, outputs_, settings.causes.has_value())),
       times_(settings.period, settings.tolerance), ranges_(std::move(settings.ranges)),
       lateness_(settings.lateness), decides_(settings.decides), news_(outputs_.size()),
       changes_(outputs_.size()), open_(outputs_.size(), 0), kept_(outputs_.size(), 0),
-      wanted_(engine_.size()) {
+      wanted_(graph.nodes.size()) {
     ranges_.resize(graph.inputs, bounds::anything);
     if (late()) late_rows_.emplace(ranges_);
     for (const std::uint32_t output : outputs_) {
-        if (output / 2 >= engine_.size()) throw std::invalid_argument("There is no such output.");
+        if (output / 2 >= graph.nodes.size())
+            throw std::invalid_argument("There is no such output.");
+        lags_.push_back(std::max<Tick>(0, engine_->horizon(output)));
     }
     if (settings.causes) {
-        causes_.emplace(std::move(*settings.causes), engine_, at_start_.value(), false);
+        causes_.emplace(std::move(*settings.causes), *engine_, at_start_.value(), false);
     } else { // which are of every value, needed or not
-        std::vector<Tick> last(engine_.size(), -1);
+        std::vector<Tick> last(graph.nodes.size(), -1);
         for (const std::uint32_t output : outputs_)
             last[output / 2] = forever;
         if (at_start_) at_start_->limit(last);
-        engine_.limit(last);
+        engine_->limit(last);
         // What is late may need any tick, and verdicts cost little as they are.
         if (!late() && !decides_ && !outputs_.empty()) {
             zone_ = ZoneEngine::of(graph, outputs_, settings.at_start, ranges_, settings.zone);
@@ -53,7 +55,8 @@ DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
     }
     // Facts known before any sample, such as the truth of constants, are reported with the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
-        waiting_[i].begin(engine_, outputs_[i]);
+        waiting_[i].begin(*engine_, outputs_[i]);
+    if (zone_) engine_.reset();
 }
 
 // ---- samples ------------------------------------------------------------------------------------
@@ -66,7 +69,7 @@ bool DiscreteMonitor::in_order(Tick index) const noexcept {
 template <class Value>
 std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
                                                              std::span<const Value> row) {
-    if (auto failure = zone_ ? zone_->row(index, row) : engine_.row(index, row)) return failure;
+    if (auto failure = zone_ ? zone_->row(index, row) : engine_->row(index, row)) return failure;
     advance(index, time);
     return std::nullopt;
 }
@@ -85,8 +88,8 @@ DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> obs
         row_[each.input] = each.bounds;
         given_.push_back(each.input);
     }
-    engine_.settle_inputs(closed_after(index));
-    if (auto failure = engine_.late_row(index, row_, given_)) return failure;
+    engine_->settle_inputs(closed_after(index));
+    if (auto failure = engine_->late_row(index, row_, given_)) return failure;
     late_rows_->set(index, row_);
     advance(index, time);
     return std::nullopt;
@@ -102,7 +105,7 @@ std::optional<DiscreteMonitor::Failure> DiscreteMonitor::watermark(double time) 
     const Tick floor = times_.floor(time);
     if (floor <= closed_) return std::nullopt;
     if (late()) {
-        if (auto failure = engine_.close_inputs(floor)) return failure;
+        if (auto failure = engine_->close_inputs(floor)) return failure;
     }
     closed_ = floor;
     settle();
@@ -126,18 +129,18 @@ void DiscreteMonitor::note(Tick before) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (decides_) {
             news_[i].clear();
-            waiting_[i].collect(engine_, outputs_[i], newest, newest, news_[i]);
+            waiting_[i].collect(*engine_, outputs_[i], newest, newest, news_[i]);
             if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
             continue;
         }
-        changes_[i].collect(engine_, outputs_[i], before, newest);
+        changes_[i].collect(*engine_, outputs_[i], before, newest);
     }
-    if (at_start_) at_start_->read(engine_);
-    if (causes_) causes_->read(engine_, *at_start_, newest);
+    if (at_start_) at_start_->read(*engine_);
+    if (causes_) causes_->read(*engine_, *at_start_, newest);
 }
 
 Tick DiscreteMonitor::lag(std::size_t output) const noexcept {
-    return std::max<Tick>(0, engine_.horizon(outputs_[output]));
+    return lags_[output];
 }
 
 // What is missing behind the newest sample cuts windows if the trace ends now.
@@ -153,7 +156,7 @@ void DiscreteMonitor::settle() {
         Tick& wanted = wanted_[outputs_[i] / 2];
         Tick from = 0;
         if (decides_) {
-            open_[i] = EagerVerdicts::open(engine_, outputs_[i], open_[i]);
+            open_[i] = EagerVerdicts::open(*engine_, outputs_[i], open_[i]);
             from = std::max(plus(closed + 1, -lag(i)), open_[i]);
             oldest = std::min({oldest, waiting_[i].oldest(), oldest_of(news_[i])});
         } else {
@@ -167,9 +170,9 @@ void DiscreteMonitor::settle() {
     times_.drop_before(oldest);
     if (late_rows_) late_rows_->drop_before(closed_ + 1);
     if (zone_) return;
-    if (at_start_) at_start_->settle(engine_, closed, wanted_);
-    if (causes_) causes_->settle(engine_, closed, wanted_);
-    engine_.settle(closed, wanted_);
+    if (at_start_) at_start_->settle(*engine_, closed, wanted_);
+    if (causes_) causes_->settle(*engine_, closed, wanted_);
+    engine_->settle(closed, wanted_);
 }
 
 std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::finish() {
@@ -177,7 +180,7 @@ std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::fi
     std::optional<Failure> failure;
     const auto zone = zone_ ? std::optional(zone_->ended()) : std::nullopt;
     std::vector<BoundsEngine::Rest> rests;
-    if (!zone) rests = engine_.ended(outputs_, end, &failure);
+    if (!zone) rests = engine_->ended(outputs_, end, &failure);
     if (failure) return *failure;
     End last;
     finished_ = true;
@@ -196,7 +199,7 @@ std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::fi
         }
     }
     if (at_start_ && end > 0) {
-        last.at_start = unsigned_zeros(zone ? zone->at_start() : at_start_->ended(engine_, end));
+        last.at_start = unsigned_zeros(zone ? zone->at_start() : at_start_->ended(*engine_, end));
     }
     return last;
 }
@@ -207,7 +210,7 @@ void DiscreteMonitor::decide_rest(std::span<const BoundsEngine::Rest> rests, Tic
         news_[i].clear();
         const BoundsEngine::Rest& rest = rests[i];
         for (Tick t = std::max(rest.first, open_[i]); t < end; ++t) {
-            const Bounds was = engine_.at(outputs_[i], t);
+            const Bounds was = engine_->at(outputs_[i], t);
             const Bounds now = rest.bounds[static_cast<std::size_t>(t - rest.first)];
             if (was.lower > 0 || was.upper < 0) continue;
             if (now.lower > 0) news_[i].push_back({t, t, end - 1, true});
@@ -225,7 +228,8 @@ std::optional<Bounds> DiscreteMonitor::at_start() const noexcept {
 
 std::optional<Bounds> DiscreteMonitor::bounds(std::size_t output, Tick sample) const noexcept {
     if (sample < held(output)) return std::nullopt;
-    return unsigned_zeros(zone_ ? zone_->at(output, sample) : engine_.at(outputs_[output], sample));
+    return unsigned_zeros(zone_ ? zone_->at(output, sample)
+                                : engine_->at(outputs_[output], sample));
 }
 
 Tick DiscreteMonitor::held(std::size_t output) const noexcept {
@@ -233,7 +237,7 @@ Tick DiscreteMonitor::held(std::size_t output) const noexcept {
 }
 
 std::vector<BoundChange> DiscreteMonitor::changes(std::size_t output) const {
-    auto found = zone_ ? zone_->changes(output) : changes_[output].runs(engine_, outputs_[output]);
+    auto found = zone_ ? zone_->changes(output) : changes_[output].runs(*engine_, outputs_[output]);
     for (BoundChange& run : found)
         run.bounds = unsigned_zeros(run.bounds);
     return found;
@@ -263,21 +267,21 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
         const ZoneEngine zone = zone_->supposed(suppositions);
         return unsigned_zeros(output ? zone.at(*output, sample) : zone.at_start());
     }
-    if (const auto failure = engine_.suppose(suppositions)) return *failure;
+    if (const auto failure = engine_->suppose(suppositions)) return *failure;
     Bounds value{};
     if (output) {
-        value = engine_.at(outputs_[*output], sample);
+        value = engine_->at(outputs_[*output], sample);
     } else {
         BoundsAtStart at_start = at_start_.value();
-        at_start.read(engine_);
+        at_start.read(*engine_);
         value = at_start.value();
     }
-    engine_.revert();
+    engine_->revert();
     return unsigned_zeros(value);
 }
 
 std::size_t DiscreteMonitor::bytes() const noexcept {
-    std::size_t sum = (zone_ ? zone_->bytes() : engine_.bytes()) + times_.bytes();
+    std::size_t sum = (zone_ ? zone_->bytes() : engine_->bytes()) + times_.bytes();
     if (late_rows_) sum += late_rows_->bytes();
     for (const EagerVerdicts& waiting : waiting_)
         sum += waiting.bytes();
@@ -290,7 +294,7 @@ void DiscreteMonitor::transfer(Snapshot& snapshot) {
     if (zone_) {
         zone_->transfer(snapshot);
     } else {
-        engine_.transfer(snapshot);
+        engine_->transfer(snapshot);
         if (at_start_) at_start_->transfer(snapshot);
     }
     if (causes_) causes_->transfer(snapshot);

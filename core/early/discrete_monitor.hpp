@@ -35,7 +35,7 @@ struct DiscreteSettings {
     std::optional<Tick> lateness;      // by how many samples at most; none: samples are in order
     bool decides = false;              // verdicts; if not, bounds
     std::optional<CauseGraph> causes;  // what samples cause, in addition to bounds
-    Tick zone = ZoneEngine::crossover; // up to where bounds are recomputed
+    Tick zone = ZoneEngine::crossover; // the factor up to which bounds are recomputed
 };
 
 class DiscreteMonitor {
@@ -126,9 +126,10 @@ class DiscreteMonitor {
     void transfer(Snapshot& snapshot);
 
   private:
-    BoundsEngine engine_;
+    std::optional<BoundsEngine> engine_;
     std::optional<ZoneEngine> zone_; // in its place where windows are short
     std::vector<std::uint32_t> outputs_;
+    std::vector<Tick> lags_;             // by output, until its values are final
     std::vector<EagerVerdicts> waiting_; // by output
     std::optional<BoundsAtStart> at_start_;
     std::optional<Causes> causes_;

@@ -13,13 +13,13 @@ namespace rtamt::early {
 
 std::optional<ZoneEngine> ZoneEngine::of(const Graph& graph, std::span<const std::uint32_t> outputs,
                                          std::span<const Item> start,
-                                         std::span<const Bounds> ranges, Tick limit) {
+                                         std::span<const Bounds> ranges, Tick factor) {
     const bool known_start =
         start.empty() ||
         (start.size() == 1 && start[0].kind == Item::Kind::value && start[0].tick == 0);
     if (!known_start) return std::nullopt;
     ZoneEngine zone(graph, outputs, start, ranges);
-    if (!zone.fits(limit)) return std::nullopt;
+    if (!zone.fits(factor)) return std::nullopt;
     zone.compute();
     return zone;
 }
@@ -38,10 +38,31 @@ ZoneEngine::ZoneEngine(const Graph& graph, std::span<const std::uint32_t> output
     bounds_.resize(steps);
 }
 
+// How many ticks are computed in the time in which BoundsEngine follows what a sample of noise
+// changes of a node (benchmarks/zone_bench.cpp, benchmarks/early.py).
+Tick ZoneEngine::ticks_to_follow(const Node& node) const noexcept {
+    switch (node.kind) {
+    case Kind::atom:
+        return 14;
+    case Kind::least:
+    case Kind::greatest: // a window over an atom slides
+        return !is_unbounded(node) && graph_.nodes[node.a / 2].kind == Kind::atom ? 25 : 120;
+    case Kind::until:
+        return 220;
+    case Kind::since:
+        return 85;
+    default:
+        return 110;
+    }
+}
+
 // Whether columns are short enough, and every node is one of which they can be computed.
-bool ZoneEngine::fits(Tick each) {
-    const Tick limit = each * std::ssize(columns_);
-    Tick total = 0; // ticks that are computed
+bool ZoneEngine::fits(Tick factor) {
+    constexpr Tick row = 30; // what a row costs whatever the columns, in ticks
+    Tick limit = 0;
+    for (const Node& node : graph_.nodes)
+        limit += factor * ticks_to_follow(node);
+    Tick total = row; // ticks that are computed
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         const Node& node = graph_.nodes[i];
         Reach& own = reach_[i];

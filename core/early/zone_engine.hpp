@@ -6,9 +6,9 @@
 // operands.
 //
 // Cost: proportional to the length of all columns. Memory: the columns. Below a few dozen ticks
-// that is less than to follow what changes (benchmarks/zone_bench.cpp). Samples must be in order,
-// and operators must be those that take the least or the greatest of their operands; both engines
-// give the same bounds.
+// that is less than to follow what changes, which costs more for some operators than for others
+// (benchmarks/zone_bench.cpp). Samples must be in order, and operators must be those that take the
+// least or the greatest of their operands; both engines give the same bounds.
 #pragma once
 
 #include "bound_changes.hpp"
@@ -36,16 +36,17 @@ namespace rtamt::early {
 
 class ZoneEngine {
   public:
-    // How many ticks a node may have on average so that this engine is faster than BoundsEngine.
-    static constexpr Tick crossover = 50;
+    // This engine is faster while it computes fewer ticks for a sample than it could, times this
+    // factor, in the time that BoundsEngine needs.
+    static constexpr Tick crossover = 1;
 
-    // The engine for what is asked of a graph, unless a node has more than `limit` ticks on average
+    // The engine for what is asked of a graph, unless it computes more ticks than `factor` allows
     // or the graph is not one for this engine. `start`: the items of the formula at the start of
     // the trace, if any.
     [[nodiscard]] static std::optional<ZoneEngine> of(const Graph& graph,
                                                       std::span<const std::uint32_t> outputs,
                                                       std::span<const Item> start,
-                                                      std::span<const Bounds> ranges, Tick limit);
+                                                      std::span<const Bounds> ranges, Tick factor);
 
     // The values of all inputs at a tick later than all before; what lies between stays unknown.
     // What fails changes nothing.
@@ -117,7 +118,8 @@ class ZoneEngine {
     ZoneEngine(const Graph& graph, std::span<const std::uint32_t> outputs,
                std::span<const Item> start, std::span<const Bounds> ranges);
 
-    [[nodiscard]] bool fits(Tick each);
+    [[nodiscard]] Tick ticks_to_follow(const Node& node) const noexcept;
+    [[nodiscard]] bool fits(Tick factor);
     void append(std::span<const Bounds> results);
     void skip(Tick t);
     void compute();
