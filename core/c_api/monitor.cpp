@@ -276,7 +276,7 @@ void Monitor::restore(std::span<const std::uint8_t> state) {
     broken_ = false;
 }
 
-// ---- what goes wrong ----------------------------------------------------------------------------
+// ---- errors -------------------------------------------------------------------------------------
 
 std::string Monitor::undefined(const Undefined& failure) const {
     const auto found = metadata_.meanings.find(failure.instruction);

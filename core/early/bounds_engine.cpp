@@ -97,7 +97,7 @@ void BoundsEngine::revert() {
     clear();
 }
 
-// ---- what is not needed any more
+// ---- clean-up
 // -----------------------------------------------------------------
 
 // An operation that may have no value is followed wherever it is, needed or not: whether a sample

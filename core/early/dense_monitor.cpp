@@ -202,7 +202,7 @@ std::optional<Tick> DenseMonitor::complete() const noexcept {
     return start() + closed_;
 }
 
-// ---- what is not needed any more ----------------------------------------------------------------
+// ---- clean-up -----------------------------------------------------------------------------------
 
 void DenseMonitor::settle() {
     std::ranges::fill(wanted_, forever);

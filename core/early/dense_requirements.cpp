@@ -319,7 +319,7 @@ std::vector<BoundChange> DenseRequirements::caused(std::size_t output) const {
     return timed(caused_runs(pieces[0], pieces[1], last), minimum_->start);
 }
 
-// ---- suppositions -------------------------------------------------------------------------------
+// ---- predictions --------------------------------------------------------------------------------
 
 std::variant<std::optional<Bounds>, DenseRequirements::Failure>
 DenseRequirements::suppose(std::optional<std::size_t> output, Tick time,

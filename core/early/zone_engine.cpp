@@ -194,7 +194,7 @@ void ZoneEngine::skip(Tick t) {
     newest_ = t - 1;
 }
 
-// ---- answers
+// ---- results
 // -------------------------------------------------------------------------------------
 
 Bounds ZoneEngine::bounds_of(const Column& column, std::uint32_t ref, Tick t) noexcept {

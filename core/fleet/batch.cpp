@@ -140,7 +140,7 @@ void Fleet::take_turns(std::size_t count, std::uint32_t most) {
         order_[next[turns_[i]]++] = static_cast<std::uint32_t>(i);
 }
 
-// ---- undoing ------------------------------------------------------------------------------------
+// ---- rollback -----------------------------------------------------------------------------------
 
 // Copies the records of a batch, each before its key's first sample.
 void Fleet::save(std::size_t count, std::size_t old_size) {

@@ -73,7 +73,7 @@ constexpr const char* never_pending = "A step of this unit is never pending.";
 
 } // namespace
 
-// ---- life ---------------------------------------------------------------------------------------
+// ---- lifecycle ----------------------------------------------------------------------------------
 
 RTAMT_FMI2_EXPORT const char* fmi2GetTypesPlatform() {
     return "default";
@@ -295,7 +295,7 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2GetStringStatus(fmi2Component instance, fmi2Sta
     return refuse(instance, never_pending);
 }
 
-// ---- what the unit does not offer ---------------------------------------------------------------
+// ---- unsupported features -----------------------------------------------------------------------
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component instance,
                                                           const fmi2ValueReference[], std::size_t,

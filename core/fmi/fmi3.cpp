@@ -58,7 +58,7 @@ fmi3Status set(fmi3Instance instance, const fmi3ValueReference references[], std
 
 } // namespace
 
-// ---- life ---------------------------------------------------------------------------------------
+// ---- lifecycle ----------------------------------------------------------------------------------
 
 RTAMT_FMI3_EXPORT const char* fmi3GetVersion() {
     return "3.0";

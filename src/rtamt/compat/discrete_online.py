@@ -130,7 +130,7 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
             self._refusals = self._stream.refusals
         return self._stream
 
-    # ---- the careful way: objects, values assigned from outside, any iterable, and errors ----------
+    # ---- the slow path: objects, values assigned from outside, any iterable, and errors ------------
 
     @raises_rtamt
     @exclusive

@@ -306,7 +306,7 @@ STL: Language = Language.of((
              latex="", tense=Tense.PAST, bounds=Bounds.DURATION, definition=d.rate, dense=dense.rate,
              expansion=expand.rate, strict=True, positive=True, timed=True, units=r.per_second,
            phrase="the change per second of {0} in {D}"),
-    # ---- one sample away ---------------------------------------------------------------------
+    # ---- one-sample shifts -------------------------------------------------------------------
     prefix("prev", "prev Y previous", 70, "One sample ago; holds where there is none.", "prev(x >= 3)",
            latex=r"\mathbf{{Y}} {0}", tense=Tense.PAST, reach=1, discrete_only=True,
            definition=d.prev, kernel=Shift(inf), dual="s_prev", guards=("implies",),

@@ -172,7 +172,7 @@ def _window(interval: Interval | None) -> tuple[int, int | None]:
     return begin, begin + (interval.end > interval.begin)
 
 
-# ---- what follows for a text ---------------------------------------------------------------------
+# ---- analysis of a text --------------------------------------------------------------------------
 
 
 class Decided:

@@ -213,7 +213,7 @@ def _change_interval(interval: Interval, begin: Fraction, end: Fraction | None) 
     return replace(interval, begin=begin, end=end, constants=(), written=None)
 
 
-# ---- what a change looks like --------------------------------------------------------------------
+# ---- descriptions of changes ---------------------------------------------------------------------
 
 
 def describe_change(change: Change) -> str:

@@ -138,7 +138,7 @@ def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[lis
         yield [raws]
 
 
-# ---- which columns -------------------------------------------------------------------------------
+# ---- column selection ----------------------------------------------------------------------------
 
 
 def select(source: Source, choice: Choice) -> list[Selection]:

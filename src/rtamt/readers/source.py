@@ -112,7 +112,7 @@ def library(module: str, what: str) -> Any:
     return extras.library(module, f"reading {what}", "data")
 
 
-# ---- what goes wrong in a library ----------------------------------------------------------------
+# ---- errors of libraries -------------------------------------------------------------------------
 
 #: Errors of the operating system that a library causes only if numbers in the file are wrong.
 _WRONG_NUMBERS = (None, errno.EINVAL, errno.EOVERFLOW, errno.EFBIG)

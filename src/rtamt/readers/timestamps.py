@@ -146,7 +146,7 @@ class TimestampColumn:
             refuse_implausible(raw, self.field.column, before, self._source)
         return self._unit or "s"
 
-    # ---- what is in the cells --------------------------------------------------------------------
+    # ---- cell contents ---------------------------------------------------------------------------
 
     def _plain(self, raw: Raw, before: int) -> Raw:
         """Return timestamps as numbers or dates of numpy, none of which is missing."""

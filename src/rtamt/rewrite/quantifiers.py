@@ -97,7 +97,7 @@ class Scope(Known):
     #: None where they are present throughout.
     present: Formula | None = None
 
-    # ---- where operands are known ----------------------------------------------------------------
+    # ---- known operands --------------------------------------------------------------------------
 
     @property
     def now(self) -> Formula:

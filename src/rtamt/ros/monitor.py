@@ -258,7 +258,7 @@ class RosMonitor:
         group.fault = None
         return records
 
-    # ---- what goes wrong -------------------------------------------------------------------------
+    # ---- errors ----------------------------------------------------------------------------------
 
     def _advance(self, now: int) -> None:
         if self._last is not None and now < self._last:

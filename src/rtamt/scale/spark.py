@@ -163,7 +163,7 @@ def _schema(job: Job, *, etag: bool) -> str:
     return ", ".join([*parts, *(["etag string"] if etag else [])])
 
 
-# ---- what workers do -----------------------------------------------------------------------------
+# ---- work of the processes -----------------------------------------------------------------------
 
 
 def _of_paths(frame: Any, job: Job) -> Any:

@@ -94,7 +94,7 @@ class Trace(WithTimeBases):
         self._conversions = tuple(conversions)
         self._origin = origin
 
-    # ---- what is in it ---------------------------------------------------------------------------
+    # ---- contents --------------------------------------------------------------------------------
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -204,7 +204,7 @@ class PythonDenseEarlyMonitor:
     def set_time_scale(self, signal: type, rate: float) -> None:
         """Ignore the time scale: callers convert all times."""
 
-    # ---- answers ---------------------------------------------------------------------------------
+    # ---- results ---------------------------------------------------------------------------------
 
     @property
     def samples(self) -> int:

@@ -256,7 +256,7 @@ class DenseGroups:
         self._minimum = float(values[-1])
         return self._results[0]
 
-    # ---- what is known ---------------------------------------------------------------------------
+    # ---- knowledge -------------------------------------------------------------------------------
 
     @property
     def counts(self) -> list[int]:

@@ -194,7 +194,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         if self._episodes is not None:
             self._remember_episodes(continuous=True)
 
-    # ---- the long way ----------------------------------------------------------------------------
+    # ---- the slow path ---------------------------------------------------------------------------
 
     def _push(self, chunk: Mapping[str, Samples], scale: TimeScale) -> Samples:
         """See :func:`push_ticks`."""

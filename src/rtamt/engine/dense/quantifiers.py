@@ -162,7 +162,7 @@ class DenseMemberMonitor(QuantifierMonitor):
                 )
         return self._signal((ticks, values))
 
-    # ---- what is given ---------------------------------------------------------------------------
+    # ---- arguments -------------------------------------------------------------------------------
 
     def _is_of_member(self, name: str) -> bool:
         """Return whether a name is that of a member or of one of its fields."""
@@ -227,7 +227,7 @@ class DenseMemberMonitor(QuantifierMonitor):
             )
         return ticks, numbers
 
-    # ---- the long way ------------------------------------------------------------------------------
+    # ---- the slow path -----------------------------------------------------------------------------
 
     def _advance(self, chunk: Mapping[str, Samples], now: int | None, scale: TimeScale) -> Samples:
         """See :class:`QuantifierMonitor`."""

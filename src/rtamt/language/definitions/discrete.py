@@ -183,7 +183,7 @@ def wasatleast(x: Array, a: int, b: int, k: int, outside: float) -> Array:
     return _share(x, [range(t - b, t - a + 1) for t in range(len(x))], k, outside)
 
 
-# ---- one sample away ----------------------------------------------------------------------------
+# ---- one-sample shifts --------------------------------------------------------------------------
 
 
 def prev(x: Array) -> Array:

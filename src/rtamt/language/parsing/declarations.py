@@ -323,7 +323,7 @@ class DeclarationParser(ImportParser):
             raise self._expected_error("the name of a topic")
         return self.text[first.start : end]
 
-    # ---- looking ahead ---------------------------------------------------------------------------
+    # ---- lookahead -------------------------------------------------------------------------------
 
     def _is_type(self, token: Token) -> bool:
         return token.text in TYPES or token.text in self._imports or token.text in self._enumerations

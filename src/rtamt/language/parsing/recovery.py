@@ -104,7 +104,7 @@ class _RecoveringParser(DocumentParser):
             return error
         return None
 
-    # ---- what follows from an error --------------------------------------------------------------
+    # ---- consequences of an error ----------------------------------------------------------------
 
     def _follows(self, error: SpecificationError, begin: int) -> bool:
         """Return whether an error follows from one before it. ``begin``: of the statement."""

@@ -126,7 +126,7 @@ class RequirementParser(FormulaParser):
             found.append(Requirement(name, assertion.formula, span=assertion.span))
         return tuple(found)
 
-    # ---- looking ahead ---------------------------------------------------------------------------
+    # ---- lookahead -------------------------------------------------------------------------------
 
     def _requires(self) -> bool:
         """Return whether a requirement begins here: ``require`` where it cannot be a variable."""

@@ -122,7 +122,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         self._retracted = None
         self._scale = scale
 
-    # ---- answers ---------------------------------------------------------------------------------
+    # ---- results ---------------------------------------------------------------------------------
 
     def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
         """See :meth:`IntervalMonitor.interval`."""

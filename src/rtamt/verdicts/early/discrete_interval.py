@@ -275,7 +275,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             self._fill(backend.newest + min(ahead, 0))
         super()._watermark(time)
 
-    # ---- answers ---------------------------------------------------------------------------------
+    # ---- results ---------------------------------------------------------------------------------
 
     def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:
         """See :meth:`IntervalMonitor.interval`."""

@@ -213,7 +213,7 @@ class IntervalMonitor(EarlyMonitor):
         self._backend.watermark(time)
         self._mark = time if self._mark is None else max(self._mark, time)
 
-    # ---- answers ---------------------------------------------------------------------------------
+    # ---- results ---------------------------------------------------------------------------------
 
     @abstractmethod
     def interval(self, time: Any = None, *, prediction: Mapping[str, Any] | None = None) -> Interval:

@@ -304,7 +304,7 @@ class MemberIntervalMonitor(SampledMembers):
         for output in self._outer._outputs:
             self._changed[output] = self._changed.get(output, {}) | self._outer.shrunk(output)
 
-    # ---- answers -----------------------------------------------------------------------------------
+    # ---- results -----------------------------------------------------------------------------------
 
     def interval(self, time: Any = None) -> Interval:
         """Return the bounds at the start of the trace, or at an instant that is not long final (``at="every"``)."""
