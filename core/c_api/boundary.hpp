@@ -1,5 +1,5 @@
-// What every function of the C API does with the caller's memory, and with what is thrown: no
-// exception leaves it, and each failure becomes a status and a sentence.
+// The boundary of the C API: checks of the caller's memory, and exceptions. No exception leaves it;
+// each failure becomes a status and a message.
 #pragma once
 
 #include "rtamt.h"

@@ -1,4 +1,4 @@
-// What the C API of fleets and streams shares: making handles, keys, and the sentences of errors.
+// Shared parts of the C API of fleets and streams: handles, keys, and error messages.
 #pragma once
 
 #include "../fleet/fleet.hpp"

@@ -1,4 +1,5 @@
-// What every kernel is in dense time: one virtual call for a stretch of time, events in and out.
+// The interface of kernels in dense time: one virtual call for a stretch of time, events in and
+// out.
 //
 // Arrival time: with lag L, what happens at time t arrives at s = t + L. In arrival time, all that
 // happens up to the frontier is known. A run moves the frontier: the operands bring their events

@@ -1,4 +1,4 @@
-// From an instruction to its kernel.
+// The factory of kernels: creates the kernel of an instruction.
 #pragma once
 
 #include "../program/program.hpp"

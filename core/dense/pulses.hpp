@@ -1,4 +1,4 @@
-// How many ticks of the last w have a positive operand, a pulse of one tick each: count.
+// count: the number of ticks of the last w with a positive operand, a pulse of one tick each.
 //
 // The window [s - w, s] meets the ticks from s - w to s. A run of several positive ticks, as the
 // upper bound of a pulse that is not known may have, counts as infinitely many where more than one

@@ -1,4 +1,4 @@
-// What a kernel remembers of its window, oldest first, and how an update is taken back.
+// The elements of a kernel's window, oldest first, with rollback of an update.
 //
 // Memory: twice the cells of the longest window so far; an emptied ring is reused. After
 // checkpoint(), cells that leave at the front stay where they are until the next one, and a cell

@@ -1,4 +1,5 @@
-// What every kernel is: one virtual call for a block of slots, operands and result in registers.
+// The interface of kernels: one virtual call for a block of slots, operands and result in
+// registers.
 //
 // A value is present at slot s of an instruction with lag L where 0 <= s - L < samples. Registers
 // hold anything at all in absent slots, and kernels skip these in their operands: that one rule

@@ -1,4 +1,4 @@
-// From an instruction to its kernel, and to the memory that the kernel needs.
+// The factory of kernels: the kernel of an instruction, and the memory that it needs.
 #pragma once
 
 #include "../program/program.hpp"

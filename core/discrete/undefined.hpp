@@ -1,4 +1,4 @@
-// Where a block of values is undefined.
+// The undefined values of a block.
 //
 // Cost: one pass over the block, vectorised.
 #pragma once

@@ -1,5 +1,5 @@
-// Which kernels read a trace, and write results, where the caller has them: no copy to a register
-// and back.
+// Kernels that read a trace and write results in the caller's memory, without copies to and from
+// registers.
 //
 // An input that only kernels read needs no register, nor does an output that nothing else reads:
 // for each block these kernels use the caller's memory directly. Blocks with absent slots are

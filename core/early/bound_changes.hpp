@@ -1,4 +1,4 @@
-// What the last change of an engine made of one of its nodes: runs of ticks and their bounds now.
+// The last change of a node of an engine: runs of ticks and their new bounds.
 #pragma once
 
 #include "../program/snapshot.hpp"

@@ -1,4 +1,4 @@
-// What the newest samples alone make of a formula: by how much they violate and satisfy it.
+// Causation: by how much the newest samples alone violate and satisfy a formula.
 //
 // Z. Zhang et al., "Online causation monitoring of signal temporal logic", CAV 2023. Two more
 // registers beside those of the bounds: register 0 holds how good the newest samples make a part at

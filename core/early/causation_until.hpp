@@ -1,6 +1,6 @@
-// What the newest samples cause of until, hold until a goal within [t + low, t + high], where they
-// make its operands good: a goal, or an instant of hold before one. What else must hold is as good
-// as its lower bound.
+// Causation of until by the newest samples, hold until a goal within [t + low, t + high], where
+// they make its operands good: a goal, or an instant of hold before one. What else must hold is as
+// good as its lower bound.
 //
 // In discrete time hold is required on [t, goal). In dense time ticks are intervals: hold may be
 // required until within the tick of the goal, and is from low > 0 on until within the first one;

@@ -1,5 +1,4 @@
-// What is reported of one value in dense time: its verdicts, or the runs of its bounds that
-// changed.
+// The reports of one value in dense time: its verdicts, or the runs of its changed bounds.
 //
 // The engine counts ticks from the start of the trace; what is reported has the caller's.
 #pragma once

@@ -1,5 +1,5 @@
-// Which ticks a node has decided, each once: where its lower bound has become positive or its upper
-// bound negative. What is decided before it is reached waits.
+// The decided ticks of a node, each reported once: where its lower bound has become positive or its
+// upper bound negative. What is decided before it is reached waits.
 #pragma once
 
 #include "../program/snapshot.hpp"

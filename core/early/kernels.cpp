@@ -1,4 +1,4 @@
-// How nodes follow what their operands change. Every kernel raises one register; where a value
+// Propagation of changes from operands to nodes. Every kernel raises one register; where a value
 // rises, the maps of all operands are those after the whole change.
 #include "bounds_engine.hpp"
 

@@ -1,4 +1,4 @@
-// How the number of pulses in a window follows what its operand changes.
+// Propagation of changes to the number of pulses in a window.
 #include "bounds_engine.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How a rank in a window follows what its operand changes: the values in the window are kept in
+// Propagation of changes to a rank in a window: the values in the window are kept in
 // order while it passes over the ticks that can have changed.
 #include "../values/components.hpp"
 #include "../values/weighted.hpp"

@@ -1,4 +1,4 @@
-// How sums follow what their operand changes: both registers at once, since inf - inf is undefined
+// Propagation of changes to sums: both registers at once, since inf - inf is undefined
 // for numbers and not for bounds.
 //
 // As far as samples have been seen, bounds are sums of bounds. Where a whole window lies beyond and

@@ -1,4 +1,4 @@
-// Where the state of each instruction is in the record of a key, and what identifies it.
+// The layout of a key's record: the place and the identity of each instruction's state.
 //
 // A record: the header; the clock, if a value is known later than its sample; the heads of all
 // instructions with state; after a change of the requirement, from which slot on each of them and

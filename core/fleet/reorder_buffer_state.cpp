@@ -1,5 +1,5 @@
-// What waits in a reorder buffer as bytes (docs/reference/fleet-state.md), and back. The bytes may
-// come from anywhere.
+// Serialisation of the waiting samples of a reorder buffer (docs/reference/fleet-state.md). The
+// bytes are untrusted.
 #include "reorder_buffer.hpp"
 #include "state_bytes.hpp"
 

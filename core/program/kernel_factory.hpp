@@ -1,4 +1,4 @@
-// Which operation an opcode is, for the kernels of both time domains.
+// The operation of an opcode, for the kernels of both time domains.
 //
 // A `Make` has a template for every kind of kernel: unary and binary for an operation
 // (values/operations.hpp), shift, since, until and rank for a domain, slide and running for an

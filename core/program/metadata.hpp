@@ -1,4 +1,4 @@
-// What users of a program need to know: names, the period, and the meaning of instructions.
+// The metadata of a program: names, the period, and the meaning of instructions.
 //
 // Layout of the note of a program, little endian; a text is u32 length and so many bytes of UTF-8:
 //

@@ -1,4 +1,4 @@
-// Which instructions of a program are numbers and which are formulas.
+// The sort of each instruction of a program: number or formula.
 //
 // An instruction that works on either gives what its readers take: a formula, unless one of them
 // takes a number. So a value crosses from one sort to the other in a predicate, or as late as it

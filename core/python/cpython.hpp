@@ -1,4 +1,4 @@
-// What CPython's stable ABI has as functions and CPython itself as macros without checks.
+// Functions of CPython's stable ABI that CPython itself has as macros without checks.
 //
 // Wheels for Python 3.12 and newer use the stable ABI, so that one serves all of them; others use
 // the macros, which save one to two nanoseconds a call. Callers have checked the types.

@@ -1,4 +1,4 @@
-// What the monitors of verdicts and bounds before the horizon have in common, as Python sees them.
+// The common base of the Python classes of early monitors: verdicts, bounds and causation.
 #pragma once
 
 #include "../early/bounds_at_start.hpp"

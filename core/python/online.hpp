@@ -1,4 +1,4 @@
-// What the public monitors of Python derive from: their methods that take one sample.
+// The base of the public monitors in Python: the methods that take one sample.
 //
 // Where the back end is a compiled monitor, it takes the sample without a Python frame in between.
 // Python is called for an error message, for samples that are not plain numbers by name, such as

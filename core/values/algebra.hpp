@@ -1,5 +1,5 @@
-// What kernels join values with: the two lattices of a value domain, so that no kernel is written
-// once for max and again for min, and addition; and the maps that until is made of.
+// The joins of values in kernels: the two lattices of a value domain, so that max and min share
+// each kernel; addition; and the maps of until.
 //
 // `associative`: whether values may be joined in another grouping with the same result. `partial`:
 // whether a result may be undefined, as inf - inf is.

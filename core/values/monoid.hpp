@@ -1,4 +1,4 @@
-// What a sliding window aggregates: the monoids of extrema, of sums and of until.
+// The monoids of sliding windows: extrema, sums and until.
 //
 // A monoid combines elements in the order of time and need not commute. An element is made of the
 // operands' values at one slot; a result is read from the combination of all elements in a window,

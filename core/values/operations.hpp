@@ -1,4 +1,4 @@
-// What pointwise instructions do to values: an operation maps values of the domain `In` to values
+// The operations of pointwise instructions: an operation maps values of the domain `In` to values
 // of the domain `Out`. `partial` ones may return undefined values.
 #pragma once
 

@@ -1,4 +1,4 @@
-// How an operator is made fast outside this repository: include this header, write a class, name it
+// The interface of custom operators in C++: include this header, write a class, name it
 // with RTAMT_KERNEL, build a shared library, and give its path to the operator's record
 // (docs/how-to/extend.md). Nothing of the core has to be linked.
 //
