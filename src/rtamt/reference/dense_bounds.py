@@ -52,7 +52,8 @@ class DenseKnowledge:
     ``ranges`` are the declared ones, which hold where nothing else is known; without one a variable may be
     anything. ``finished``: no more samples will arrive. ``closed``: of variables the tick up to which, inclusive,
     no more samples will arrive; without one that of the newest sample. ``later``: what is supposed of variables where
-    nothing but the range is known after their newest samples: bounds from each time on, the last for ever.
+    nothing but the range is known after their newest samples: bounds from each time on, the last for ever. ``end``:
+    the tick of the newest sample of any variable, also of others; by default of these.
     """
 
     samples: Mapping[str, Samples]
@@ -60,6 +61,7 @@ class DenseKnowledge:
     finished: bool = False
     closed: Mapping[str, int] = field(default_factory=dict)
     later: Mapping[str, Samples] = field(default_factory=dict)
+    end: int | None = None
 
     @property
     def start(self) -> int | None:
@@ -83,7 +85,14 @@ class DenseKnowledge:
     def of(self, names: Collection[str]) -> DenseKnowledge:
         """Return the knowledge about some of the variables."""
         samples = {name: self.samples[name] for name in names}
-        return DenseKnowledge(samples, self.ranges, self.finished, self.closed, self.later)
+        return DenseKnowledge(samples, self.ranges, self.finished, self.closed, self.later, self.newest)
+
+    @property
+    def newest(self) -> int:
+        """The tick of the newest sample of any variable, 0 before the first."""
+        if self.end is not None:
+            return self.end
+        return max((int(times[-1]) for times, _, _ in self.samples.values() if len(times)), default=0)
 
 
 class _Signal(NamedTuple):
@@ -125,7 +134,7 @@ def bounds(
     origin = (0 if start is None else start) * QUARTERS
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
     complete = None if start is None else known.complete
-    last = max((int(times[-1]) for times, _, _ in known.samples.values() if len(times)), default=0) * QUARTERS
+    last = known.newest * QUARTERS
     read = last_read(core, last, tick)
 
     def final(node: Formula) -> float:

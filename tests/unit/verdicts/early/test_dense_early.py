@@ -343,3 +343,17 @@ def test_a_requirement_may_read_the_presence_of_a_variable_alone(verdict):
         monitor.update(2, z=4 if verdict == "causation" else None)
         reports.append((monitor["B"], monitor.finish(), monitor["B"]))
     assert reports[0] == reports[1]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_every_requirement_is_read_up_to_the_end_of_the_whole_trace(backend):
+    text = "require A: eventually[0:1](sqrt(delay[2](x, 1)) < 1)\nrequire B: y > 0"
+    spec = rtamt.parse(text, time=rtamt.Dense("1s"), backend=backend)
+    with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\("):
+        spec.evaluate({"x": ([0, 1], [1, -2]), "y": ([0, 2], [1, 1])})
+    monitor = spec.monitor(verdict="eager")
+    monitor.update(0, x=1, y=1)
+    monitor.update(1, x=-2)
+    monitor.update(2, y=1)
+    with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\("):  # read a second after the last sample of y
+        monitor.finish()
