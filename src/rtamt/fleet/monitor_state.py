@@ -56,7 +56,7 @@ _TRUTH = Field(
 )
 
 
-# ---- state of monitors -----------------------------------------------------------------------------
+# ---- what monitors remember ------------------------------------------------------------------------
 
 
 def _scale(monitor: Any) -> Field:
@@ -221,6 +221,7 @@ REMEMBERED: Mapping[str, Callable[[Any], Field]] = MappingProxyType(
         "_mark": lambda monitor: optional(_step(monitor)),
         "_filled": lambda _: NATURAL,
         "_noted": _evidence_state,
+        "_moments": lambda _: many(row(NATURAL, checked(REAL, isfinite))),
         "_rest": lambda _: fixed(()),
         "_open_at_end": lambda _: fixed(()),
         "_at_end": lambda _: fixed(None),
