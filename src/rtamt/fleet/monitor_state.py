@@ -226,7 +226,6 @@ REMEMBERED: Mapping[str, Callable[[Any], Field]] = MappingProxyType(
         "_open_at_end": lambda _: fixed(()),
         "_at_end": lambda _: fixed(None),
         "_ended": lambda _: fixed(()),
-        "_moments": lambda _: many(row(NATURAL, REAL)),
     }
 )
 
