@@ -50,6 +50,21 @@ def to_english(
     return text_of(formula, english.pieces, limit)
 
 
+def begins_with_name(formula: Formula, names: Mapping[int, str]) -> bool:
+    """Return whether a formula in English begins with a name or a number instead of a word; ``names`` as above."""
+    english = _English(names, {})
+    first = formula
+    while isinstance(first, Apply) and id(first) not in names:
+        if first.op is WHERE_PRESENT:
+            first = first.args[0]
+            continue
+        piece = next(piece for piece in english.pieces(first) if piece != "")
+        if isinstance(piece, str):
+            return False
+        first = piece
+    return True
+
+
 class _English:
     """The printer of the nodes of a formula."""
 

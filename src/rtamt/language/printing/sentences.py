@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, postorder
-from rtamt.language.printing.english import to_english
+from rtamt.language.printing.english import begins_with_name, to_english
 from rtamt.language.printing.writing import PAGE
 from rtamt.lazy_tuples import NamedTuple
 
@@ -52,19 +52,5 @@ def _others(named: Mapping[int, str], formula: Formula) -> dict[int, str]:
 def _sentence(formula: Formula, names: Mapping[int, str], units: Mapping[str, str]) -> str:
     text = to_english(formula, names=names, units=units, limit=PAGE)
     # A name is written as it is.
-    begins_with_word = (
-        isinstance(formula, Apply) and text[:1].islower() and not _begins_with_name(formula, names)
-    )
+    begins_with_word = text[:1].islower() and not begins_with_name(formula, names)
     return f"{text[:1].upper() + text[1:] if begins_with_word else text}."
-
-
-def _begins_with_name(formula: Apply, names: Mapping[int, str]) -> bool:
-    """Return whether the first word of a sentence is a name."""
-    first: Formula = formula
-    while isinstance(first, Apply) and id(first) not in names:
-        english = to_english(first, names=names)
-        operands = [each for each in first.args if english.startswith(to_english(each, names=names))]
-        if not operands:
-            return False
-        first = operands[0]
-    return True
