@@ -1,9 +1,8 @@
 #include "early_runner.hpp"
 
-#include "../program/reader.hpp"
+#include "../early/graph_bytes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -16,97 +15,27 @@ using early::Tick;
 // How many samples come between two looks at what is not needed any more.
 constexpr std::int64_t pause = 64;
 
-class GraphReader {
-  public:
-    explicit GraphReader(const std::string& bytes)
-        : reader_({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}) {}
+using early::GraphReader;
 
-    [[nodiscard]] std::uint32_t number() { return take<std::uint32_t>(); }
-    [[nodiscard]] Tick tick() { return std::bit_cast<Tick>(take<std::uint64_t>()); }
-    [[nodiscard]] double real() { return std::bit_cast<double>(take<std::uint64_t>()); }
-
-    // A number of records, each of at least so many bytes.
-    [[nodiscard]] std::uint32_t count(std::size_t size) {
-        const std::uint32_t count = number();
-        require(count <= reader_.left() / size);
-        return count;
-    }
-
-    static void require(bool holds) {
-        if (!holds) {
-            throw std::invalid_argument(
-                "This is not a program that can be run: its graph is damaged.");
-        }
-    }
-
-    [[nodiscard]] bool left() const noexcept { return reader_.left() != 0; }
-    void end() const { require(!left()); }
-
-  private:
-    Reader reader_;
-
-    template <class Unsigned>
-    [[nodiscard]] Unsigned take() {
-        require(sizeof(Unsigned) <= reader_.left());
-        return reader_.take<Unsigned>();
-    }
-};
-
-[[nodiscard]] early::Node read_node(GraphReader& reader) {
-    early::Node node;
-    const std::uint32_t kind = reader.number();
-    GraphReader::require(kind <= static_cast<std::uint32_t>(early::Kind::pulses));
-    node.kind = static_cast<early::Kind>(kind);
-    node.a = reader.number();
-    node.b = reader.number();
-    node.low = reader.tick();
-    node.high = reader.tick();
-    node.horizon = reader.tick();
-    GraphReader::require(node.low >= -early::forever && node.high <= early::forever &&
-                         node.horizon >= 0 && node.horizon <= early::forever);
-    const std::uint32_t steps = reader.count(20);
-    for (std::uint32_t i = 0; i < steps; ++i) {
-        const std::uint32_t opcode = reader.number();
-        GraphReader::require(opcode < opcodes.size());
-        early::Step step{static_cast<Opcode>(opcode), reader.number(), reader.number(), 0.0};
-        step.x = reader.real();
-        GraphReader::require(step.x == step.x); // no NaN
-        node.steps.push_back(step);
-    }
-    return node;
-}
-
-[[nodiscard]] early::Item read_item(GraphReader& reader, std::size_t nodes) {
-    const std::uint32_t kind = reader.number();
-    GraphReader::require(kind <= static_cast<std::uint32_t>(early::Item::Kind::either));
-    early::Item item;
-    item.kind = static_cast<early::Item::Kind>(kind);
-    item.negated = reader.number() != 0;
-    item.a = reader.number();
-    item.b = reader.number();
-    item.c = reader.number();
-    item.tick = reader.tick();
-    if (item.kind == early::Item::Kind::until) {
-        GraphReader::require(item.b / 2 < nodes && item.c / 2 < nodes);
-    }
-    return item;
+[[nodiscard]] std::span<const std::uint8_t> span_of(const std::string& bytes) noexcept {
+    return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
 } // namespace
 
 EarlyGraph EarlyGraph::parse(const std::string& bytes, std::uint32_t inputs) {
-    GraphReader reader(bytes);
+    GraphReader reader(span_of(bytes));
     EarlyGraph parsed;
     parsed.graph.inputs = inputs;
-    const std::uint32_t nodes = reader.count(40);
-    const std::uint32_t items = reader.count(28);
+    const std::uint32_t nodes = reader.count(early::node_size);
+    const std::uint32_t items = reader.count(early::item_size);
     const std::uint32_t first = reader.number();
     GraphReader::require(nodes > 0 && first > 0 && first < items);
     for (std::uint32_t i = 0; i < nodes; ++i)
-        parsed.graph.nodes.push_back(read_node(reader));
+        parsed.graph.nodes.push_back(early::read_node(reader));
     parsed.graph.check();
     for (std::uint32_t i = 0; i < items; ++i)
-        parsed.truth.push_back(read_item(reader, nodes));
+        parsed.truth.push_back(early::read_item(reader, nodes));
     for (std::uint32_t i = 0; i < inputs && reader.left(); ++i) {
         const double lower = reader.real();
         const double upper = reader.real();

@@ -7,9 +7,7 @@
 //
 //     u32, u32, u32   numbers of nodes, of items, and of those that are of the robustness; the last
 //                     item is that of the truth
-//     nodes           u32 kind, u32 a, u32 b, i64 low, i64 high, i64 horizon, u32 number of steps;
-//                     of each step u32 opcode, u32 a, u32 b, f64 x
-//     items           u32 kind, u32 negated, u32 a, u32 b, u32 c, i64 tick
+//     nodes, items    as in ../early/graph_bytes.hpp
 //     ranges          none; or of each input f64 least, f64 greatest value: a sample outside is
 //                     refused
 //

@@ -117,12 +117,24 @@ template <class Handle, class Work>
 [[nodiscard]] inline fleet::Fleet::Settings settings_of(const Metadata& metadata,
                                                         std::size_t capacity, double tolerance) {
     if (!metadata.early.empty()) {
-        throw std::invalid_argument("A fleet runs no programs of bounds.");
+        throw std::invalid_argument("This program of bounds is for one monitor: compile it for a "
+                                    "fleet, with rtamt compile --fleet.");
     }
     if (!(tolerance >= 0.0)) {
         throw std::invalid_argument("The tolerance must be 0 or more.");
     }
     return {metadata.seconds(), tolerance, false, capacity};
+}
+
+// A program of discrete time.
+[[nodiscard]] inline Program parsed_of(std::span<const std::uint8_t> program) {
+    constexpr std::size_t place = 10; // of the time domain
+    if (program.size() > place && program[place] == 1) {
+        (void)Program::parse(program, Domain::dense);
+        throw std::invalid_argument("This program of dense time is for one monitor: compile it for "
+                                    "a fleet, with rtamt compile --fleet.");
+    }
+    return Program::parse(program);
 }
 
 // A handle of what `make` makes of a program, the names of its inputs and its settings.
@@ -138,7 +150,7 @@ template <class Handle, class Make>
     *handle = nullptr;
     return guarded(
         [&] {
-            Program parsed = Program::parse(bytes(program, size));
+            Program parsed = parsed_of(bytes(program, size));
             Metadata metadata = Metadata::parse(parsed);
             const fleet::Fleet::Settings settings = settings_of(metadata, capacity, tolerance);
             auto made = make(std::move(parsed), metadata.inputs, settings);

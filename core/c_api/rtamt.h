@@ -183,21 +183,60 @@ RTAMT_API rtamt_status rtamt_restore(rtamt_monitor* monitor, const void* state, 
 
 /* ---- many keys ------------------------------------------------------------------------------- */
 
-/* Many monitors of one program for discrete time, by key: vehicles, machines, sessions. A call that
- * fails leaves every key as it was. */
+/* Many monitors of one requirement, by key: vehicles, machines, sessions. A call that fails leaves
+ * every key as it was.
+ *
+ * The program is one of discrete time as for rtamt_create, or what Fleet.compile() in Python and
+ * `rtamt compile --fleet` write: that of a fleet in either time domain and any mode. */
 typedef struct rtamt_fleet rtamt_fleet;
+
+/* What a fleet reports. */
+typedef enum rtamt_mode {
+    RTAMT_DELAYED = 0,   /* the robustness, one horizon later */
+    RTAMT_EAGER = 1,     /* verdicts, as soon as no later sample can change them */
+    RTAMT_INTERVAL = 2,  /* bounds of the robustness */
+    RTAMT_CAUSATION = 3, /* by how much each sample alone violates and satisfies the formula */
+    RTAMT_NO_MODE = -1   /* of a null fleet */
+} rtamt_mode;
 
 /* What a sample has made known of an output. */
 typedef struct rtamt_fleet_value {
     double value; /* 0 where it is not known */
-    double time;  /* that the value is for; NaN where it is not known */
+    double time; /* that the value is for; NaN where it is not known, and at the start of a trace */
     int32_t known;
     int32_t warming; /* whether it is not known because the program was another one before */
 } rtamt_fleet_value;
 
-/* A new fleet for at most `capacity` keys. A gap between two samples of a key may differ from the
- * period by `tolerance` periods, such as 0.1. Its parameters have the values of the program.
- * `message` as for rtamt_create. */
+/* What a sample has made known from `begin` to `end`, in seconds. */
+typedef struct rtamt_fleet_row {
+    size_t index; /* of the sample in the batch; of a watermark that of the key */
+    double begin; /* delayed: of the point, which is the end, too */
+    double end;   /* discrete time: of the last sample; dense time: excluded */
+    double lower; /* bounds of the robustness; delayed: its value; eager: +inf where the formula */
+    double upper; /* holds, -inf where it does not */
+    double decided_at; /* eager: the time of the sample that decided; else NaN */
+    int32_t is_final;  /* whether no later sample can change the bounds */
+} rtamt_fleet_row;
+
+/* Samples of a batch. */
+typedef struct rtamt_fleet_batch {
+    size_t count;
+    const int64_t* keys;          /* of each sample; null where keys are texts */
+    const char* const* texts;     /* keys that are texts; else null */
+    const double* times;          /* of each sample, in seconds */
+    const double* const* columns; /* of each input, its values; a column may be null: no sample has
+                                     a value of the input */
+    const double* const* uppers;  /* may be null, and so may be its columns: eager and interval
+                                     alone, values are bounds, of which these are the upper ones */
+    const uint8_t* const* given;  /* may be null, and so may be its columns: a sample with 0 has no
+                                     value of the input. Dense time: it has no sample of it; eager
+                                     and interval in discrete time: its value is missing */
+} rtamt_fleet_batch;
+
+/* A new fleet for at most `capacity` keys. Discrete time, delayed: a gap between two samples of a
+ * key may differ from the period by `tolerance` periods, such as 0.1; in other modes the tolerance
+ * is that of the program. Its parameters have the values of the program. `message` as for
+ * rtamt_create. */
 RTAMT_API rtamt_status rtamt_fleet_create(const void* program, size_t size, size_t capacity,
                                           double tolerance, rtamt_fleet** fleet, char* message,
                                           size_t room);
@@ -208,11 +247,29 @@ RTAMT_API void rtamt_fleet_destroy(rtamt_fleet* fleet);
 /* The reason why the last call failed, valid until the next call. */
 RTAMT_API const char* rtamt_fleet_message(const rtamt_fleet* fleet);
 
-/* Takes a batch of `count` samples, keys in any order: the key and the time in seconds of each, and
- * a column of `count` values for each input. A new key starts a trace. `results` receives the
- * values of the first `outputs` outputs, one sample after another. After RTAMT_REFUSED and
+RTAMT_API rtamt_mode rtamt_fleet_mode(const rtamt_fleet* fleet);
+RTAMT_API rtamt_domain rtamt_fleet_time(const rtamt_fleet* fleet);
+
+/* The inputs, in the order of the columns, and the outputs: those of the program; lower and upper
+ * for bounds, violation and satisfaction for causation; else none. Names are valid as long as the
+ * fleet; NULL beyond the last one. */
+RTAMT_API uint32_t rtamt_fleet_inputs(const rtamt_fleet* fleet);
+RTAMT_API uint32_t rtamt_fleet_outputs(const rtamt_fleet* fleet);
+RTAMT_API const char* rtamt_fleet_input(const rtamt_fleet* fleet, uint32_t input);
+RTAMT_API const char* rtamt_fleet_output(const rtamt_fleet* fleet, uint32_t output);
+
+/* Takes a batch, keys in any order. A new key starts a trace. `results` receives the values of the
+ * first `outputs` outputs, one sample after another: in the modes but delayed those at the start of
+ * the trace; there an output is not known of a sample that was later than the lateness allows, and
+ * was left out. rtamt_fleet_rows has what became known of other instants. After RTAMT_REFUSED and
  * RTAMT_UNDEFINED, `rejected` is the index in the batch, or `count` if no sample is wrong; it may
  * be null. */
+RTAMT_API rtamt_status rtamt_fleet_take(rtamt_fleet* fleet, const rtamt_fleet_batch* batch,
+                                        rtamt_fleet_value* results, size_t outputs,
+                                        size_t* rejected);
+
+/* The same of samples that have a value of each input: the key and the time in seconds of each, and
+ * a column of `count` values for each input. */
 RTAMT_API rtamt_status rtamt_fleet_update(rtamt_fleet* fleet, const int64_t* keys,
                                           const double* times, const double* const* columns,
                                           size_t count, rtamt_fleet_value* results, size_t outputs,
@@ -223,6 +280,20 @@ RTAMT_API rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* c
                                                const double* times, const double* const* columns,
                                                size_t count, rtamt_fleet_value* results,
                                                size_t outputs, size_t* rejected);
+
+/* No sample at or before a time will come, of any key: for bounds, and for causation in dense time.
+ * `results` receives the values of each key, in the order of rtamt_fleet_key. */
+RTAMT_API rtamt_status rtamt_fleet_watermark(rtamt_fleet* fleet, double time,
+                                             rtamt_fleet_value* results, size_t outputs);
+
+/* What the last batch or watermark that succeeded has made known of other instants than the start:
+ * returns how many rows, and where they are, valid until the next call. Dense time, delayed: a row
+ * for each point of the robustness; eager: for each verdict; bounds: for each run whose bounds
+ * changed, unless the program reports the start alone; else none. */
+RTAMT_API size_t rtamt_fleet_rows(const rtamt_fleet* fleet, const rtamt_fleet_row** rows);
+
+/* How many samples were later than the lateness allows; 0 for a null fleet. */
+RTAMT_API uint64_t rtamt_fleet_late(const rtamt_fleet* fleet);
 
 /* Forgets keys; where one is not there, it is refused, and all stay. */
 RTAMT_API rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count);
@@ -236,13 +307,19 @@ RTAMT_API rtamt_status rtamt_fleet_expire(rtamt_fleet* fleet, double before, siz
 /* How many keys there are; 0 for a null fleet. */
 RTAMT_API size_t rtamt_fleet_size(const rtamt_fleet* fleet);
 
-/* Writes the state of all keys, as rtamt_save does; the bytes are the same on all machines
- * (docs/reference/fleet-state.md). */
+/* Returns 1 and the key at an index, in an order that changes when keys come and go: a number, or
+ * else a text, valid until the next call; 0 beyond the last one. Either place may be null. */
+RTAMT_API int rtamt_fleet_key(const rtamt_fleet* fleet, size_t index, int64_t* key,
+                              const char** text);
+
+/* Writes the state of all keys, as rtamt_save does; the bytes are those of Fleet.snapshot() in
+ * Python (docs/reference/fleet-state.md). */
 RTAMT_API rtamt_status rtamt_fleet_save(rtamt_fleet* fleet, void* state, size_t room, size_t* size);
 
-/* A new fleet in a state that rtamt_fleet_save has written, maybe of another program: what the two
- * programs share goes on where it was. A damaged state is refused, and a forged one does no harm.
- * `capacity`: 0 for that of the state. */
+/* A new fleet in a state that rtamt_fleet_save has written, or Fleet.snapshot(). In discrete time
+ * and delayed, maybe of another program: what the two programs share goes on where it was; in dense
+ * time and in other modes of the same program. A damaged state is refused. `capacity`: 0 for that
+ * of the state. */
 RTAMT_API rtamt_status rtamt_fleet_restore(const void* program, size_t size, const void* state,
                                            size_t state_size, size_t capacity, double tolerance,
                                            rtamt_fleet** fleet, char* message, size_t room);
@@ -250,9 +327,9 @@ RTAMT_API rtamt_status rtamt_fleet_restore(const void* program, size_t size, con
 /* ---- many keys, samples in any order ----------------------------------------------------------
  */
 
-/* A fleet whose samples come in any order. Each waits until its key has a sample that is newer by
- * the lateness, or until the watermark has reached it; then it leaves, and is monitored. A call
- * that fails leaves every key as it was. */
+/* A fleet of discrete time whose samples come in any order; delayed. Each waits until its key has a
+ * sample that is newer by the lateness, or until the watermark has reached it; then it leaves, and
+ * is monitored. A call that fails leaves every key as it was. */
 typedef struct rtamt_stream rtamt_stream;
 
 /* What a gap between two samples of a key does that is not the period: the call is refused, the

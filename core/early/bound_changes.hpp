@@ -5,7 +5,10 @@
 #include "bounds_engine.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,6 +24,37 @@ struct BoundChange {
     Tick r;
     Bounds bounds;
 };
+
+// Runs without overlap, in order: each tick has the bounds of its last run.
+[[nodiscard]] inline std::vector<BoundChange> latest(std::span<const BoundChange> runs) {
+    std::vector<std::size_t> begins(runs.size());
+    std::vector<Tick> cuts;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        begins[i] = i;
+        cuts.insert(cuts.end(), {runs[i].l, runs[i].r + 1});
+    }
+    std::ranges::sort(begins, {}, [&](std::size_t i) { return runs[i].l; });
+    std::ranges::sort(cuts);
+    std::vector<BoundChange> found;
+    std::priority_queue<std::size_t> open; // the last of these has its bounds
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        const Tick begin = cuts[i];
+        const Tick last = cuts[i + 1] - 1;
+        for (; taken < begins.size() && runs[begins[taken]].l <= begin; ++taken)
+            open.push(begins[taken]);
+        while (!open.empty() && runs[open.top()].r < begin)
+            open.pop();
+        if (open.empty() || last < begin) continue;
+        const Bounds& bounds = runs[open.top()].bounds;
+        if (!found.empty() && found.back().r == begin - 1 && found.back().bounds == bounds) {
+            found.back().r = last;
+        } else {
+            found.push_back({begin, last, bounds});
+        }
+    }
+    return found;
+}
 
 class BoundChanges {
   public:

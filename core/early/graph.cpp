@@ -149,7 +149,7 @@ void Graph::check() const {
         require(node.kind <= Kind::pulses && (node.kind != Kind::held || node.low == node.high));
         if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
         if (node.kind != Kind::atom) require(earlier(node.a));
-        if (pair || (node.kind == Kind::map && node.b != none)) require(earlier(node.b));
+        if (pair || (node.kind != Kind::atom && node.b != none)) require(earlier(node.b));
         require(node.low <= node.high && node.high > -forever && node.low < forever);
         require(node.low >= 0 || node.high <= 0);
         require(node.kind != Kind::pulses || node.high <= 0);

@@ -78,6 +78,11 @@ class SampleTimes {
         snapshot.item(newest_);
         snapshot.item(last_);
         snapshot.require(newest_ >= -1 && newest_ < forever && (newest_ < 0) == anchors_.empty());
+        Tick before = -1;
+        for (const Anchor& anchor : anchors_) {
+            snapshot.require(before < anchor.index && anchor.index <= newest_);
+            before = anchor.index;
+        }
     }
 
   private:

@@ -1,6 +1,7 @@
 // Real numbers from Python objects.
 #pragma once
 
+#include "../values/ticks.hpp"
 #include "../values/vectors.hpp"
 #include "cpython.hpp"
 #include "numpy_attribute.hpp"
@@ -13,8 +14,7 @@ namespace rtamt::python {
 
 namespace nb = nanobind;
 
-// Numbers from here on are not times in seconds (IMPLAUSIBLE in counting.py explains why).
-inline constexpr double implausible = 1e11;
+using ticks::implausible;
 
 // Clears a Python exception for an object that is not a number or is too large.
 inline bool forget_no_number() noexcept {

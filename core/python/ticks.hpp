@@ -1,6 +1,7 @@
 // Ticks of dense time from the times of Python callers.
 #pragma once
 
+#include "../values/ticks.hpp"
 #include "numbers.hpp"
 
 #include <nanobind/nanobind.h>
@@ -13,33 +14,9 @@ namespace rtamt::python {
 
 namespace nb = nanobind;
 
-// Times stay this far from the ends of their range, so that bounds can be added to them.
-inline constexpr double farthest = 0x1p62;
-
-// Up to here a product of doubles is within half a tick of the truth; NEAR in counting.py.
-inline constexpr double near = 0x1p50;
-
-// Up to here every integer is a double.
-inline constexpr double exact = 0x1p53;
-
-// The tick of a time far from 0, where doubles are further apart than ticks: that of the shortest
-// decimal that prints it (tick_of in counting.py says why).
-[[nodiscard]] inline std::int64_t far_tick(double seconds, std::int64_t rate) noexcept {
-    const double whole = std::trunc(seconds);
-    const double rest = seconds - whole;
-    const std::int64_t begin = static_cast<std::int64_t>(whole) * rate;
-    if (rate % 1000 == 0) {
-        for (const std::int64_t step : {1000, 100, 10}) {
-            const std::int64_t steps_in_one = rate / step;
-            const auto grid = static_cast<double>(steps_in_one);
-            const double steps = std::nearbyint(rest * grid);
-            if (whole + steps / grid == seconds) {
-                return begin + static_cast<std::int64_t>(steps) * step;
-            }
-        }
-    }
-    return begin + static_cast<std::int64_t>(std::nearbyint(rest * static_cast<double>(rate)));
-}
+using ticks::exact;
+using ticks::farthest;
+using ticks::near;
 
 // The tick of a plain time, of which 1 is `rate` ticks: of a float or an int, rounded to the
 // nearest and halves to the even one; where times are `whole`, of an integer of any kind, without a
@@ -64,11 +41,7 @@ inline constexpr double exact = 0x1p53;
     } else {
         return std::nullopt;
     }
-    const double tick = std::nearbyint(number * rate);
-    if (!(std::fabs(tick) < farthest)) return std::nullopt;
-    if (!(std::fabs(number) < implausible)) return std::nullopt;
-    return std::fabs(tick) < near ? static_cast<std::int64_t>(tick)
-                                  : far_tick(number, static_cast<std::int64_t>(rate));
+    return ticks::tick_of(number, rate);
 }
 
 } // namespace rtamt::python

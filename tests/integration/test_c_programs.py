@@ -56,13 +56,19 @@ def test_programs_in_c_and_cpp_find_the_library_by_cmake(place: Path) -> None:
         assert run(program, place / compiled) == (place / expected).read_text("utf-8")
 
 
-#: Calls the functions of docs/how-to/fleet.md: two cars in order, and one whose samples come late.
+#: Calls the functions of docs/how-to/fleet.md: two cars in order, one whose samples come late, and verdicts of two.
 FLEETS = r"""
+static size_t read_program(const char* name, unsigned char* program, size_t room) {
+    FILE* file = fopen(name, "rb");
+    const size_t size = file == NULL ? 0 : fread(program, 1, room, file);
+    if (file != NULL) fclose(file);
+    return size;
+}
+
 int main(int argc, char** argv) {
     static unsigned char program[65536];
-    FILE* file = argc > 1 ? fopen(argv[1], "rb") : NULL;
-    const size_t size = file == NULL ? 0 : fread(program, 1, sizeof program, file);
-    if (file != NULL) fclose(file);
+    if (argc < 3) return 2;
+    size_t size = read_program(argv[1], program, sizeof program);
     rtamt_fleet* fleet = NULL;
     rtamt_stream* stream = NULL;
     char message[200];
@@ -82,6 +88,15 @@ int main(int argc, char** argv) {
         printf("%d late\n", take(stream, keys + i, times + i, speeds + i, 2, late));
     rtamt_stream_destroy(stream);
     rtamt_fleet_destroy(fleet);
+    size = read_program(argv[2], program, sizeof program);
+    if (rtamt_fleet_create(program, size, 10, 0.1, &fleet, message, sizeof message) != RTAMT_OK) {
+        puts(message);
+        return 1;
+    }
+    const int64_t cars[] = {101, 102, 102};
+    const double then[] = {0.0, 0.0, 1.0}, fast[] = {20.0, 28.0, 33.0};
+    if (print_verdicts(fleet, cars, then, fast, 3) != RTAMT_OK) return 1;
+    rtamt_fleet_destroy(fleet);
     return 0;
 }
 """
@@ -90,16 +105,21 @@ int main(int argc, char** argv) {
 def test_the_functions_for_fleets_of_the_documentation(place: Path) -> None:
     page = (ROOT / "docs/how-to/fleet.md").read_text(encoding="utf-8")
     code = [block.text for block in blocks(page) if block.language == "c"]
-    assert len(code) == 2
+    assert len(code) == 3
     (place / "fleets.c").write_text("".join(code) + FLEETS, encoding="utf-8")
     run("rtamt", "compile", "sqrt(speed) <= 5", "--period", "1s", "-o", place / "roots.rtamt")
+    eager = "--fleet", "--period", "1s", "--verdict", "eager", "-o", place / "eager.rtamt"
+    run("rtamt", "compile", "always[0:2](speed <= 30)", *eager)
     prefix = place / "prefix"
     (library,) = prefix.glob("lib*")
-    warnings = ["-std=c99", "-Wall", "-Wextra", "-Werror"]
+    warnings = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-fsanitize=address,undefined"]
     flags = [f"-I{prefix / 'include'}", f"-L{library}", "-lrtamt"]
     run("cc", *warnings, place / "fleets.c", "-o", place / "fleets", *flags)
-    said = run(place / "fleets", place / "roots.rtamt", LD_LIBRARY_PATH=str(library))
-    assert said == "0.527864 -0.291503\n7: robustness 2 at 0 s\n0 late\n1 late\n"
+    said = run(place / "fleets", place / "roots.rtamt", place / "eager.rtamt", LD_LIBRARY_PATH=str(library))
+    assert said == (
+        "0.527864 -0.291503\n7: robustness 2 at 0 s\n0 late\n1 late\n"
+        "102 at 0 s: violated at 1 s\n102 at 1 s: violated at 1 s\n"
+    )
 
 
 def test_a_c_program_finds_the_library_by_pkg_config(place: Path) -> None:

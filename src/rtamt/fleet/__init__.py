@@ -17,6 +17,7 @@ fleet_snapshot     the bytes of a fleet with late data or gaps
 monitors_snapshot  the bytes of a fleet with a monitor for each key
 monitor_state      the state of one of these monitors
 fields             the fields of a state as bytes
+compiled           the program of a fleet, for the C API
 suite              ``Suite``: many requirements compiled once into few programs
 groups             requirements that read a recording in the same way
 suite_snapshot     the bytes of a suite: programs, and how recordings are read

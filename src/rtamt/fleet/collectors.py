@@ -35,6 +35,8 @@ class Collector(ABC):
 
     #: What the monitors report, for messages.
     what: ClassVar[str]
+    #: The number of the mode in programs for the C API.
+    mode: ClassVar[int]
 
     def __init__(self) -> None:
         #: Of each row of a report with several for a sample, the index of the sample.
@@ -61,7 +63,7 @@ class Collector(ABC):
 class _Values(Collector):
     """Delayed verdicts in discrete time."""
 
-    what = "delayed verdicts with settings that the records of the core do not have"
+    what, mode = "delayed verdicts with settings that the records of the core do not have", 0
 
     def __init__(self) -> None:
         super().__init__()
@@ -88,7 +90,7 @@ class _Values(Collector):
 class _Points(Collector):
     """Delayed verdicts in dense time."""
 
-    what = "delayed verdicts in dense time"
+    what, mode = "delayed verdicts in dense time", 0
 
     def __init__(self) -> None:
         super().__init__()
@@ -109,7 +111,7 @@ class _Points(Collector):
 class _Verdicts(Collector):
     """Eager verdicts in discrete time."""
 
-    what = "verdict='eager'"
+    what, mode = "verdict='eager'", 1
 
     def __init__(self) -> None:
         super().__init__()
@@ -141,7 +143,7 @@ class _Runs(_Verdicts):
 class _Bounds(Collector):
     """Interval verdicts."""
 
-    what = "verdict='interval'"
+    what, mode = "verdict='interval'", 2
 
     def __init__(self) -> None:
         super().__init__()
@@ -187,7 +189,7 @@ class _Bounds(Collector):
 class _Causes(Collector):
     """Causation."""
 
-    what = "verdict='causation'"
+    what, mode = "verdict='causation'", 3
 
     def __init__(self) -> None:
         super().__init__()

@@ -353,6 +353,21 @@ class Fleet(Generic[Update]):
         return self._samples.expire(moment_of(before, "before"), keys_of)
 
     @exclusive
+    def compile(self) -> bytes:
+        """Return the program of this fleet, for ``rtamt_fleet_create`` and ``rtamt_fleet_restore`` of the C API.
+
+        Fleets in C take the same samples, report the same, and read the same snapshots. ``capacity``, and in discrete
+        time with delayed verdicts the tolerance, ``gaps`` and ``lateness``, are arguments of the functions in C.
+        Raises :class:`UsageError` for settings that are for Python alone.
+
+        >>> import rtamt
+        >>> fleet = rtamt.Fleet(rtamt.parse("once[0:1](x >= 3)"), capacity=10, verdict="eager")
+        >>> fleet.compile()[:8]
+        b'RTAMTMON'
+        """
+        return self._samples.program()
+
+    @exclusive
     def snapshot(self) -> bytes:
         """Return the state of all keys, in the format of [the state of a fleet](fleet-state.md).
 

@@ -161,6 +161,13 @@ class InOrder:
         """Forget the keys whose last sample is before a time; return how many."""
         return int(self.records.expire(before))
 
+    def program(self) -> bytes:
+        """Return the program of the records, for the C API."""
+        from rtamt.fleet.compiled import records_program  # with the compiler
+
+        session, formulas = self.records.compiled
+        return records_program(session, formulas, self._requirements)
+
     def snapshot(self, gaps: Gaps) -> bytes:
         """Return the state; that of rejected gaps is that of the monitors alone."""
         records = bytes(self.records.snapshot())

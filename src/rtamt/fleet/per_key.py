@@ -259,6 +259,12 @@ class MonitorPerKey:
 
     # ---- state -------------------------------------------------------------------------------------
 
+    def program(self) -> bytes:
+        """Return the program of the monitors, for the C API."""
+        from rtamt.fleet.compiled import monitors_program  # with the compiler
+
+        return monitors_program(self._new, self._identities)
+
     def snapshot(self, gaps: Gaps) -> bytes:  # noqa: ARG002 - gaps are rejected
         """Return the state of all keys."""
         states = MonitorStates(self._new, self._identities)

@@ -126,6 +126,12 @@ class SuitePerKey:
         self.drop(arrays(list(stale)))
         return len(stale)
 
+    def program(self) -> bytes:
+        """Raise :class:`UsageError`: there is one for each requirement."""
+        raise UsageError(
+            "fleets of the C API that have a monitor for each key have one requirement; compile a fleet of each"
+        )
+
     def snapshot(self, gaps: Gaps) -> bytes:
         """Return the state of all keys."""
         return packed_requirements(

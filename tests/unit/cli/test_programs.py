@@ -3,8 +3,11 @@
 import struct
 import zipfile
 import zlib
+from pathlib import Path
 
 import pytest
+
+import rtamt
 
 SPEC = "const float limit = 3  always[0:200ms](x >= limit)"
 
@@ -122,3 +125,22 @@ def test_a_program_of_bounds_is_compiled_for_unbounded_future(run):
 
 def test_a_unit_of_bounds_is_exported_for_unbounded_future(run):
     assert run("fmu", "always(x >= 3)", "--verdict", "interval", "-o", "bounds.fmu").code == 0
+
+
+def test_a_program_of_a_fleet_is_that_of_the_api(run):
+    options = "--fleet", "--time", "dense", "--verdict", "causation", "-o", "fleet.rtamt"
+    answer = run("compile", "always[0:2](x >= 3)", *options)
+    program = rtamt.Fleet(rtamt.parse("always[0:2](x >= 3)"), 1, time="dense", verdict="causation").compile()
+    assert answer == (0, f"fleet.rtamt: a fleet, {len(program)} bytes, dense time, causation verdicts\n", "")
+    assert Path("fleet.rtamt").read_bytes() == program
+
+
+def test_what_only_fleets_or_only_monitors_have_is_an_error(run):
+    assert run("compile", SPEC, "--verdict", "eager", "-o", "x.rtamt") == (
+        2,
+        "",
+        "rtamt: --verdict eager is compiled for fleets; add --fleet\n",
+    )
+    for option in ("--dump", "--worst-case"):
+        answer = run("compile", SPEC, "--period", "100ms", "--fleet", option, "-o", "x.rtamt")
+        assert answer.err == f"rtamt: {option} is for programs of one monitor; leave it or --fleet out\n"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
 
 
@@ -196,6 +197,11 @@ class DiscreteFleet:
         )
         buffer.follow(self._core.keys(), np.asarray(self._core.last_times()), new=state is None)
         return buffer
+
+    @property
+    def compiled(self) -> tuple[SampleProgram, Sequence[Formula]]:
+        """The session of all records, and its formulas."""
+        return self._session, self._session._formulas
 
     @property
     def capacity(self) -> int:

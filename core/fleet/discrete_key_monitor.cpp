@@ -1,0 +1,417 @@
+// Monitors of keys in discrete time: verdicts, bounds and causation before the horizon.
+#include "key_monitor.hpp"
+
+#include "../early/discrete_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rtamt::fleet {
+
+namespace {
+
+using early::Tick;
+
+// How many times the clock of Python keeps at first.
+constexpr std::int64_t few_times = 64;
+
+[[nodiscard]] early::DiscreteSettings settings_of(const MonitorProgram& program) {
+    const early::DenseSettings& of = program.groups.front().settings;
+    early::DiscreteSettings settings;
+    settings.outputs = of.outputs;
+    settings.at_start = of.at_start;
+    settings.ranges = of.ranges;
+    settings.period = program.period();
+    settings.tolerance = program.tolerance;
+    settings.lateness = program.lateness;
+    settings.decides = of.decides;
+    settings.causes = of.causes;
+    return settings;
+}
+
+class DiscreteEarly final : public KeyMonitor {
+  public:
+    explicit DiscreteEarly(const MonitorProgram& program)
+        : program_(program), monitor_(program.groups.front().graph, settings_of(program)) {}
+
+    AtStart take(const KeySample& sample, std::size_t index, std::vector<Row>& rows) override {
+        check_time(sample.time);
+        for (std::size_t input = 0; input < program_.inputs.size(); ++input) {
+            if (sample.given[input] != 0) {
+                check_value(program_, input, sample.values[input], sample.time);
+            }
+        }
+        if (!monitor_.late()) {
+            take_next(sample);
+        } else if (monitor_.newest() >= 0) {
+            forget_start();
+            if (!learn(monitor_, seen_of(sample))) return at_start(true);
+        } else {
+            keep(seen_of(sample));
+            const double span = early_.back().time - early_.front().time;
+            if (std::nearbyint(span / monitor_.period()) >
+                static_cast<double>(*program_.lateness)) {
+                begin();
+            }
+        }
+        return report(index, rows);
+    }
+
+    AtStart watermark(double time, std::size_t index, std::vector<Row>& rows) override {
+        if (!interval()) return KeyMonitor::watermark(time, index, rows);
+        check_time(time);
+        forget_start();
+        if (!early_.empty() && time >= early_.front().time) begin();
+        if (const auto failure = monitor_.watermark(time)) {
+            fail(*failure, monitor_.newest(), monitor_.last_time());
+        }
+        mark_ = std::max(mark_.value_or(time), time);
+        return report(index, rows);
+    }
+
+    std::vector<std::uint8_t> state() override {
+        StateWriter state;
+        // The clock: no times but seconds.
+        state.put(std::uint8_t{0});
+        state.put_count(0);
+        state.put_count(0);
+        state.put(few_times);
+        if (interval()) {
+            put_early(state);
+            // No corrections: no samples, no states, nothing retracted.
+            state.put_count(0);
+            state.put_count(0);
+            state.put(std::uint8_t{0});
+            state.put(std::uint8_t{mark_.has_value()});
+            if (mark_) state.put(*mark_);
+            state.put(std::int64_t{0}); // nothing was filled in
+            put_noted(state);
+            state.put_count(moments_.size());
+            for (const auto& [sample, time] : moments_) {
+                state.put(sample);
+                state.put(time);
+            }
+        }
+        monitor_.settle();
+        Snapshot snapshot;
+        monitor_.transfer(snapshot);
+        state.put_data(snapshot.bytes());
+        return std::move(state.bytes());
+    }
+
+    void restore(std::span<const std::uint8_t> bytes) override {
+        StateReader state(bytes);
+        state.nothing(1 + 2 * sizeof(std::uint64_t));
+        (void)state.take<std::int64_t>();
+        if (interval()) {
+            take_early(state);
+            state.nothing(2 * sizeof(std::uint64_t) + 1);
+            mark_.reset();
+            if (state.flag()) mark_ = finite(state);
+            state.nothing(sizeof(std::uint64_t));
+            take_noted(state);
+            take_moments(state);
+        }
+        Snapshot snapshot(state.take_data());
+        monitor_.transfer(snapshot);
+        snapshot.end();
+        state.end();
+        snapshot.require(!monitor_.finished());
+        if (noted_) {
+            for (const early::BoundChange& run : *noted_)
+                snapshot.require(0 <= run.l && run.l <= run.r && run.r <= monitor_.newest());
+        }
+    }
+
+    [[nodiscard]] std::size_t bytes() const override { return monitor_.bytes(); }
+
+  private:
+    // What came at a time, where samples may be late.
+    struct Seen {
+        double time = 0;
+        std::vector<early::DenseMonitor::Given> known;
+    };
+
+    const MonitorProgram& program_;
+    early::DiscreteMonitor monitor_;
+    std::vector<Bounds> row_;
+    std::vector<double> exact_;
+    std::vector<early::DiscreteMonitor::Observation> observations_;
+    std::optional<double> mark_; // the last watermark
+    std::vector<Seen> early_;    // that came before it is known where the trace starts, in order
+    std::optional<early::DiscreteMonitor> rehearsal_; // which has taken them
+    // What these changed when the trace started, until the next sample.
+    std::optional<std::vector<early::BoundChange>> noted_;
+    std::vector<std::pair<Tick, double>> moments_; // the first samples and their times, likewise
+
+    [[nodiscard]] bool interval() const noexcept {
+        return program_.mode == MonitorProgram::Mode::interval;
+    }
+
+    [[nodiscard]] Bounds missing(std::size_t input, double time) const {
+        const MonitorProgram::Input& of = program_.inputs[input];
+        if (program_.mode == MonitorProgram::Mode::causation) {
+            throw WrongSample("has no value of '" + of.name + "' at " + shown(time) +
+                              " s, and causation needs exact samples: give a number.");
+        }
+        return of.range;
+    }
+
+    [[noreturn]] void fail(const early::DiscreteMonitor::Failure& failure, Tick place,
+                           double time) const {
+        const double steps = static_cast<double>(failure.tick) - static_cast<double>(place);
+        has_no_value(program_, program_.steps_before.front()[failure.node] + failure.step,
+                     time + steps * monitor_.period());
+    }
+
+    // ---- samples in order
+
+    void take_next(const KeySample& sample) {
+        row_.clear();
+        exact_.clear();
+        for (std::size_t input = 0; input < program_.inputs.size(); ++input) {
+            row_.push_back(sample.given[input] != 0 ? sample.values[input]
+                                                    : missing(input, sample.time));
+            if (row_.back().lower == row_.back().upper) exact_.push_back(row_.back().lower);
+        }
+        const Tick place = next_place(sample.time);
+        const auto failure = exact_.size() == row_.size()
+                                 ? monitor_.row(place, sample.time, std::span<const double>(exact_))
+                                 : monitor_.row(place, sample.time, std::span<const Bounds>(row_));
+        if (failure) fail(*failure, place, sample.time);
+    }
+
+    [[nodiscard]] Tick next_place(double time) const {
+        const auto place = monitor_.place(time);
+        if (monitor_.newest() < 0) return place.value_or(0);
+        const double last = monitor_.last_time();
+        if (time <= last) not_later(time, last);
+        if (!place || !monitor_.in_order(*place)) off_grid(time, last);
+        return *place;
+    }
+
+    [[noreturn]] void off_grid(double time, double last) const {
+        throw WrongSample("has a sample at " + shown(time) + " s, which is not one period of " +
+                          shown(monitor_.period()) + " s after the one at " + shown(last) + " s.");
+    }
+
+    // ---- samples in any order
+
+    [[nodiscard]] Seen seen_of(const KeySample& sample) const {
+        Seen seen{sample.time, {}};
+        for (std::uint32_t input = 0; input < program_.inputs.size(); ++input) {
+            if (sample.given[input] != 0) seen.known.push_back({input, sample.values[input]});
+        }
+        return seen;
+    }
+
+    // Whether a sample did not come too late, and was taken.
+    [[nodiscard]] bool learn(early::DiscreteMonitor& monitor, const Seen& seen) {
+        const auto place = monitor.place(seen.time);
+        if (!place) off_grid(seen.time, monitor.last_time());
+        if (monitor.newest() >= 0 && *place <= monitor.closed()) return false;
+        observations_.clear();
+        for (const auto& [input, bounds] : seen.known) {
+            if (narrows(program_, input, bounds, monitor.known(input, *place), seen.time)) {
+                observations_.push_back({input, *place, *place, bounds});
+            }
+        }
+        if (const auto failure = monitor.learn(*place, seen.time, observations_)) {
+            fail(*failure, *place, seen.time);
+        }
+        return true;
+    }
+
+    // Keeps a sample until it is known where the trace starts, in the order of their times; throws
+    // for one that cannot be taken then.
+    void keep(Seen&& seen) {
+        const bool follows = early_.empty() || seen.time >= early_.back().time;
+        const auto after = std::ranges::upper_bound(early_, seen.time, {}, &Seen::time);
+        const auto kept = early_.insert(after, std::move(seen));
+        if (follows && rehearsal_) {
+            (void)learn(*rehearsal_, *kept);
+            return;
+        }
+        rehearsal_.emplace(program_.groups.front().graph, settings_of(program_));
+        for (const Seen& each : early_)
+            (void)learn(*rehearsal_, each);
+    }
+
+    void forget_start() noexcept {
+        noted_.reset();
+        moments_.clear();
+    }
+
+    // The time of a sample that is reported.
+    [[nodiscard]] double time_of(Tick sample) const noexcept {
+        const auto after = std::ranges::upper_bound(
+            moments_, sample, {},
+            [](const std::pair<Tick, double>& moment) { return moment.first; });
+        if (after == moments_.begin()) return monitor_.time(sample);
+        const auto& [earlier, time] = *std::prev(after);
+        if (earlier == sample) return time;
+        return time + static_cast<double>(sample - earlier) * monitor_.period();
+    }
+
+    void take_moments(StateReader& state) {
+        moments_.clear();
+        const std::size_t count = state.take_count();
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto sample = state.take<Tick>();
+            if (sample < 0 || (i > 0 && sample <= moments_.back().first)) {
+                refuse("its times are not in order");
+            }
+            moments_.emplace_back(sample, finite(state));
+        }
+    }
+
+    // Takes the samples that were kept, in order, so that none is too late; all that they change
+    // counts as changed by the last of them.
+    void begin() {
+        std::vector<early::BoundChange> noted;
+        for (const Seen& seen : early_) {
+            const Tick before = monitor_.newest();
+            (void)learn(monitor_, seen);
+            if (monitor_.newest() > before) moments_.emplace_back(monitor_.newest(), seen.time);
+            if (monitor_.outputs() == 0) continue;
+            const auto changes = monitor_.changes(0);
+            noted.insert(noted.end(), changes.begin(), changes.end());
+        }
+        early_.clear();
+        rehearsal_.reset();
+        if (monitor_.outputs() != 0) noted_ = std::move(noted);
+    }
+
+    // ---- what monitors of Python remember of that
+
+    [[nodiscard]] static double finite(StateReader& state) {
+        const auto time = state.take<double>();
+        if (!std::isfinite(time)) refuse("it has no time where one belongs");
+        return time;
+    }
+
+    void put_early(StateWriter& state) const {
+        state.put_count(early_.size());
+        for (const Seen& seen : early_) {
+            state.put(seen.time);
+            state.put_count(seen.known.size());
+            for (const auto& [input, bounds] : seen.known) {
+                state.put_text(program_.inputs[input].name);
+                state.put(std::uint8_t{1});
+                state.put(bounds.lower);
+                state.put(bounds.upper);
+            }
+        }
+    }
+
+    void take_early(StateReader& state) {
+        early_.clear();
+        const std::size_t count = state.take_count();
+        for (std::size_t i = 0; i < count; ++i) {
+            Seen seen{finite(state), {}};
+            const std::size_t known = state.take_count();
+            for (std::size_t k = 0; k < known; ++k) {
+                const std::uint32_t input = input_called(state.take_text());
+                if (!state.flag()) continue; // it is missing
+                const auto lower = state.take<double>();
+                const auto upper = state.take<double>();
+                if (!(lower <= upper)) refuse("it has bounds that are reversed");
+                seen.known.push_back({input, {lower, upper}});
+            }
+            early_.insert(std::ranges::upper_bound(early_, seen.time, {}, &Seen::time),
+                          std::move(seen));
+        }
+    }
+
+    [[nodiscard]] std::uint32_t input_called(std::string_view name) const {
+        const auto found = std::ranges::find(program_.inputs, name, &MonitorProgram::Input::name);
+        if (found == program_.inputs.end()) refuse("it has an unknown name");
+        return static_cast<std::uint32_t>(found - program_.inputs.begin());
+    }
+
+    void put_noted(StateWriter& state) const {
+        state.put_count(noted_ ? 1 : 0);
+        if (!noted_) return;
+        state.put(std::int64_t{0});
+        state.put_count(noted_->size());
+        for (const early::BoundChange& run : *noted_) {
+            state.put(run.l);
+            state.put(run.r);
+            state.put(run.bounds.lower);
+            state.put(run.bounds.upper);
+        }
+    }
+
+    void take_noted(StateReader& state) {
+        noted_.reset();
+        const std::size_t outputs = state.take_count();
+        if (outputs == 0) return;
+        if (outputs > 1 || state.take<std::int64_t>() != 0 || monitor_.outputs() != 1) {
+            refuse("it has another output");
+        }
+        noted_.emplace();
+        const std::size_t count = state.take_count();
+        for (std::size_t i = 0; i < count; ++i) {
+            early::BoundChange run{};
+            run.l = state.take<Tick>();
+            run.r = state.take<Tick>();
+            run.bounds.lower = state.take<double>();
+            run.bounds.upper = state.take<double>();
+            if (!(run.bounds.lower <= run.bounds.upper)) refuse("it has bounds that are reversed");
+            noted_->push_back(run);
+        }
+    }
+
+    // ---- results
+
+    [[nodiscard]] AtStart at_start(bool late = false) const {
+        if (interval()) {
+            const Bounds bounds = monitor_.at_start().value_or(bounds::anything);
+            return {{bounds.lower, bounds.upper}, late};
+        }
+        if (program_.mode != MonitorProgram::Mode::causation) return {};
+        const Bounds caused = monitor_.caused_at_start();
+        return {{caused.upper + 0.0, caused.lower + 0.0}};
+    }
+
+    [[nodiscard]] std::vector<early::BoundChange> changes() const {
+        auto now = monitor_.changes(0);
+        if (!noted_ || noted_->empty()) return now;
+        std::vector<early::BoundChange> all = *noted_;
+        all.insert(all.end(), now.begin(), now.end());
+        return early::latest(all);
+    }
+
+    [[nodiscard]] AtStart report(std::size_t index, std::vector<Row>& rows) const {
+        if (program_.mode == MonitorProgram::Mode::eager) {
+            for (const early::Decision& each : monitor_.decisions(0)) {
+                const double verdict = each.satisfied ? infinity : -infinity;
+                const double decided = monitor_.time(each.at);
+                for (Tick t = each.l; t <= each.r; ++t) {
+                    const double time = monitor_.time(t);
+                    rows.push_back({index, time, time, {verdict, verdict}, decided});
+                }
+            }
+        }
+        if (interval() && monitor_.outputs() != 0) {
+            const bool noted = noted_ && !noted_->empty();
+            for (const early::BoundChange& run : changes()) {
+                rows.push_back({.index = index,
+                                .begin = noted ? time_of(run.l) : monitor_.time(run.l),
+                                .end = noted ? time_of(run.r) : monitor_.time(run.r),
+                                .bounds = run.bounds,
+                                .is_final = monitor_.is_final(0, run)});
+            }
+        }
+        return at_start();
+    }
+};
+
+} // namespace
+
+std::unique_ptr<KeyMonitor> make_discrete_early(const MonitorProgram& program) {
+    return std::make_unique<DiscreteEarly>(program);
+}
+
+} // namespace rtamt::fleet
