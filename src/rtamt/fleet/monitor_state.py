@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 #: Bounds, and a number of an input.
-_BOUNDS = row(NUMBER, NUMBER)
+_BOUNDS = checked(row(NUMBER, NUMBER), lambda found: found[0] <= found[1])
 _TRUTH = Field(
     lambda out, value: KIND.put(out, int(value)),
     lambda source: bool(checked(KIND, lambda kind: kind <= 1).get(source)),
@@ -166,7 +166,8 @@ def _step(monitor: Any) -> Field:
 
 
 def _events(monitor: Any) -> Field:
-    return many(row(_step(monitor), INTEGER, many(row(_input(monitor), NUMBER, NUMBER))))
+    known = checked(row(_input(monitor), NUMBER, NUMBER), lambda found: found[1] <= found[2])
+    return many(row(_step(monitor), INTEGER, many(known)))
 
 
 def _snapshots(monitor: Any) -> Field:
