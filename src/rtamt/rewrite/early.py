@@ -150,10 +150,11 @@ def _repeats(node: Formula, constants: Mapping[int, float], varying: Collection[
 
 
 def _varying(formula: Formula) -> set[int]:
-    """Return the identities of the nodes that read a variable."""
+    """Return the identities of the nodes that read a variable; fields of members are none."""
     found: set[int] = set()
     for node in postorder(formula):
-        if isinstance(node, Var) or not found.isdisjoint(map(id, children(node))):
+        own = isinstance(node, Var) and not node.bound
+        if own or not found.isdisjoint(map(id, children(node))):
             found.add(id(node))
     return found
 
