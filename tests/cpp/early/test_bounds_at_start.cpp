@@ -73,14 +73,15 @@ struct Both {
 // A formula at the start: a value, or two that are connected.
 std::vector<Item> random_items(Random& random, const Graph& graph) {
     std::vector<Item> items;
-    const auto count = random.between(1, 3);
-    for (std::int64_t i = 0; i < count; ++i) {
+    const auto count = static_cast<std::uint32_t>(random.between(1, 3));
+    const auto last = static_cast<std::uint32_t>(2 * graph.nodes.size() - 1);
+    for (std::uint32_t i = 0; i < count; ++i) {
         Item item;
         item.negated = random.chance(30);
-        item.a = static_cast<std::uint32_t>(2 * graph.nodes.size() - 1 - random.between(0, 5));
+        item.a = last - static_cast<std::uint32_t>(random.between(0, 5));
         items.push_back(item);
     }
-    for (std::uint32_t i = 1; i < static_cast<std::uint32_t>(count); ++i) {
+    for (std::uint32_t i = 1; i < count; ++i) {
         const auto kind = random.chance(50) ? Item::Kind::both : Item::Kind::either;
         const auto before = i == 1 ? 0 : static_cast<std::uint32_t>(items.size() - 1);
         items.push_back({kind, random.chance(30), before, i, none, 0});

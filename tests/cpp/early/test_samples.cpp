@@ -49,7 +49,7 @@ struct Model {
 BoundsEngine knowledge() {
     Graph graph;
     graph.inputs = 2;
-    return {graph, {range, range}, true};
+    return {graph, {range, range}, BoundsEngine::Arrival::pieces};
 }
 
 void check_same(Samples& samples, BoundsEngine& engine, const Model& model) {
