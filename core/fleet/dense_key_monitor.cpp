@@ -102,19 +102,14 @@ class DenseDelayed final : public DenseKeyMonitor {
     std::vector<std::uint8_t> state() override {
         StateWriter state;
         put_scale(state);
-        Snapshot snapshot;
-        transfer(snapshot);
-        state.put_data(snapshot.bytes());
+        state.put_snapshot([&](Snapshot& snapshot) { transfer(snapshot); });
         return std::move(state.bytes());
     }
 
     void restore(std::span<const std::uint8_t> bytes) override {
         StateReader state(bytes);
         take_scale(state);
-        Snapshot snapshot(state.take_data());
-        transfer(snapshot);
-        snapshot.end();
-        state.end();
+        state.take_snapshot([&](Snapshot& snapshot) { transfer(snapshot); });
     }
 
     [[nodiscard]] std::size_t bytes() const override { return executor_.state_bytes(); }
@@ -204,9 +199,7 @@ class DenseEarly final : public DenseKeyMonitor {
             state.put(std::uint8_t{mark_.has_value()});
             if (mark_) state.put(*mark_);
         }
-        Snapshot snapshot;
-        transfer(snapshot);
-        state.put_data(snapshot.bytes());
+        state.put_snapshot([&](Snapshot& snapshot) { transfer(snapshot); });
         return std::move(state.bytes());
     }
 
@@ -218,11 +211,10 @@ class DenseEarly final : public DenseKeyMonitor {
             mark_.reset();
             if (state.flag()) mark_ = state.take<Tick>();
         }
-        Snapshot snapshot(state.take_data());
-        transfer(snapshot);
-        snapshot.end();
-        state.end();
-        snapshot.require(!monitor_.finished());
+        state.take_snapshot([&](Snapshot& snapshot) {
+            transfer(snapshot);
+            snapshot.require(!monitor_.finished());
+        });
     }
 
     [[nodiscard]] std::size_t bytes() const override { return monitor_.bytes(); }
@@ -261,23 +253,25 @@ class DenseEarly final : public DenseKeyMonitor {
     [[nodiscard]] AtStart report(std::size_t index, std::vector<Row>& rows) const {
         if (program_.mode == MonitorProgram::Mode::eager) {
             for (const early::Decision& each : monitor_.decisions(0)) {
+                const double begin = time_of(each.l);
+                const double end = time_of(early::plus(each.r, 1));
+                if (begin == end) continue; // no time is in it
                 const double verdict = each.satisfied ? infinity : -infinity;
-                rows.push_back({index,
-                                time_of(each.l),
-                                time_of(early::plus(each.r, 1)),
-                                {verdict, verdict},
-                                time_of(each.at)});
+                rows.push_back({index, begin, end, {verdict, verdict}, time_of(each.at)});
             }
         }
         if (interval() && monitor_.outputs() != 0) {
             const Tick lag = program_.lag(0);
             const auto complete = monitor_.complete();
             for (const early::BoundChange& run : monitor_.changes(0)) {
+                const double begin = time_of(run.l);
+                const double end = time_of(early::plus(run.r, 1));
+                if (begin == end) continue; // no time is in it
                 const bool settled =
                     complete && lag < early::forever && early::plus(run.r, lag) <= *complete;
                 rows.push_back({.index = index,
-                                .begin = time_of(run.l),
-                                .end = time_of(early::plus(run.r, 1)),
+                                .begin = begin,
+                                .end = end,
                                 .bounds = run.bounds,
                                 .is_final = settled || run.bounds.lower == run.bounds.upper});
             }

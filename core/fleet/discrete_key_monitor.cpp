@@ -94,9 +94,7 @@ class DiscreteEarly final : public KeyMonitor {
             }
         }
         monitor_.settle();
-        Snapshot snapshot;
-        monitor_.transfer(snapshot);
-        state.put_data(snapshot.bytes());
+        state.put_snapshot([&](Snapshot& snapshot) { monitor_.transfer(snapshot); });
         return std::move(state.bytes());
     }
 
@@ -113,15 +111,13 @@ class DiscreteEarly final : public KeyMonitor {
             take_noted(state);
             take_moments(state);
         }
-        Snapshot snapshot(state.take_data());
-        monitor_.transfer(snapshot);
-        snapshot.end();
-        state.end();
-        snapshot.require(!monitor_.finished());
-        if (noted_) {
+        state.take_snapshot([&](Snapshot& snapshot) {
+            monitor_.transfer(snapshot);
+            snapshot.require(!monitor_.finished());
+            if (!noted_) return;
             for (const early::BoundChange& run : *noted_)
                 snapshot.require(0 <= run.l && run.l <= run.r && run.r <= monitor_.newest());
-        }
+        });
     }
 
     [[nodiscard]] std::size_t bytes() const override { return monitor_.bytes(); }

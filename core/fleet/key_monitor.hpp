@@ -3,6 +3,7 @@
 // be thrown away.
 #pragma once
 
+#include "../program/snapshot.hpp"
 #include "../values/interval.hpp"
 #include "monitor_program.hpp"
 #include "state_bytes.hpp"
@@ -118,6 +119,13 @@ class StateWriter {
         put_count(bytes.size());
         out_.insert(out_.end(), bytes.begin(), bytes.end());
     }
+    // What a function transfers, as data.
+    template <class Transfer>
+    void put_snapshot(Transfer&& transfer) {
+        Snapshot snapshot;
+        transfer(snapshot);
+        put_data(snapshot.bytes());
+    }
     [[nodiscard]] std::vector<std::uint8_t>& bytes() noexcept { return out_; }
 
   private:
@@ -137,6 +145,14 @@ class StateReader {
         return static_cast<std::size_t>(count);
     }
     [[nodiscard]] std::span<const std::uint8_t> take_data() { return bytes_.take(take_count()); }
+    // Reads what put_snapshot has written at the end of a state.
+    template <class Transfer>
+    void take_snapshot(Transfer&& transfer) {
+        Snapshot snapshot(take_data());
+        transfer(snapshot);
+        snapshot.end();
+        end();
+    }
     [[nodiscard]] std::string_view take_text() {
         const auto text = take_data();
         return {reinterpret_cast<const char*>(text.data()), text.size()};

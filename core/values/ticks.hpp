@@ -50,9 +50,8 @@ inline constexpr double implausible = 1e11;
                                   : far_tick(seconds, static_cast<std::int64_t>(rate));
 }
 
-// The time of a tick, of which `rate`, at most 2^53, are 1: the double that is nearest to the
-// quotient.
-[[nodiscard]] inline double seconds_of(std::int64_t tick, std::int64_t rate) noexcept {
+// The double that is nearest to a tick divided by `rate`, at most 2^53.
+[[nodiscard]] inline double nearest_to(std::int64_t tick, std::int64_t rate) noexcept {
     const auto number = static_cast<double>(tick);
     if (std::fabs(number) <= exact) return number / static_cast<double>(rate);
     // Long division, until there are more bits than a double has; the last one stands for the rest.
@@ -72,6 +71,17 @@ inline constexpr double implausible = 1e11;
     if (rest != 0) bits |= 1U;
     const double quotient = std::ldexp(static_cast<double>(bits), exponent);
     return tick < 0 ? -quotient : quotient;
+}
+
+// The time of a tick, of which `rate` are 1: the nearest double, or the next one where that is an
+// instant before the tick (TimeScale._doubles in ticks.py says why).
+[[nodiscard]] inline double seconds_of(std::int64_t tick, std::int64_t rate) noexcept {
+    const double nearest = nearest_to(tick, rate);
+    const double size = std::fabs(static_cast<double>(tick));
+    if (size < near || size >= farthest - 0x1p12)
+        return nearest; // doubles next to others are too far
+    const auto read = tick_of(nearest, static_cast<double>(rate));
+    return read && *read < tick ? std::nextafter(nearest, HUGE_VAL) : nearest;
 }
 
 } // namespace rtamt::ticks
