@@ -9,9 +9,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.errors import BoundError, EvaluationError, SpecificationError, TraceError
+from rtamt.errors import EvaluationError, SpecificationError, TraceError
 from rtamt.language.printing.printer import to_text
-from tests.laws.test_fleet_monitor_laws import MODES, NUMBERS, columns_of, of_fleet, sample
+from tests.laws.fleet_batches import MODES, NUMBERS, Mode, columns_of, draw_batch, draw_fleet
+from tests.laws.test_fleet_monitor_laws import of_fleet
 from tests.support.c_api import REFUSED, UNDEFINED
 from tests.support.c_fleet import CFleet, RejectedError, Report
 from tests.support.strategies import formulas
@@ -19,7 +20,7 @@ from tests.support.strategies import formulas
 #: The modes of the other law without settings that are for Python alone, and records.
 OWN = {
     **{name: mode for name, mode in MODES.items() if name not in ("delayed", "interval with corrections")},
-    "records": (False, False, False, {}),
+    "records": Mode(False, False, False, {}),
 }
 
 
@@ -64,53 +65,25 @@ def attempted(fleet: rtamt.Fleet[Any], *batch: Any) -> tuple[Any, Exception | No
         return None, error
 
 
-#: The first timestamp, and the sampling period: also Unix time, in seconds below one.
-CLOCKS = ((0.0, 1.0), (1_700_000_000.0, 0.5), (1_700_000_000.1, 0.1))
-
-
 @pytest.mark.parametrize("mode", OWN)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_a_fleet_in_c_is_one_of_python(mode: str, data: st.DataObject) -> None:
-    dense, shuffled, partial, made = OWN[mode]
-    formula = data.draw(formulas(max_depth=3, discrete=not dense, arithmetic=not partial))
-    start, step = data.draw(st.sampled_from(CLOCKS))
-    try:
-        spec = rtamt.parse(to_text(formula), **({"time": "dense"} if dense else {"period": step}))
-    except BoundError:  # a share of another number of samples
-        assume(False)
-    names = spec.input_names
-    assume(names)
-    if "ranges" in made:
-        made = {**made, "ranges": {name: made["ranges"][name] for name in names if name in made["ranges"]}}
-    try:
-        fleet = rtamt.Fleet(spec, 3, **made)
-    except SpecificationError:  # shares have no causation
-        assume(False)
+    drawn = draw_fleet(data, OWN[mode])
+    spec, made = drawn.spec, drawn.settings
+    fleet = rtamt.Fleet(spec, 3, **made)
     program = fleet.compile()
     ranges = made.get("ranges", {})
     in_c = CFleet(program, 3, ranges=ranges)
-    assert set(in_c.inputs) == set(names)
+    assert set(in_c.inputs) == set(spec.input_names)
     every = data.draw(st.sampled_from([[3, -1, 2**40], ["a", "Ä\U0001f600", "long-" * 9]]))
-    clocks = dict.fromkeys(every, start)
+    clocks = dict.fromkeys(every, drawn.start)
     for _ in range(data.draw(st.integers(2, 5))):
-        keys = data.draw(st.lists(st.sampled_from(every), min_size=1, max_size=8))
-        times, rows, ahead = [], [], dict(clocks)
-        for key in keys:
-            times.append(ahead[key] - (data.draw(st.integers(0, 3)) * step if shuffled else 0))
-            ahead[key] += (data.draw(st.sampled_from([0.5, 1.0, 2.25])) if dense else 1.0) * step
-            rows.append(
-                {name: sample(data, partial) for name in names if not dense or data.draw(st.integers(0, 3))}
-            )
-        wrong = data.draw(st.sampled_from([None, None, "nan", "back", "range"]))
-        if wrong == "nan":
-            rows[-1] = {**rows[-1], names[0]: float("nan")}
-        elif wrong == "back":
-            times[-1] = start - 50.0 if keys[-1] in fleet or keys[-1] in keys[:-1] else float("inf")
-        elif wrong == "range" and made.get("ranges"):
+        keys, times, rows, ahead = draw_batch(data, drawn, every, clocks, fleet)
+        if made.get("ranges") and data.draw(st.integers(0, 4)) == 4:
             rows[-1] = {**rows[-1], "x": 50.0}
-        columns = {name: [row.get(name, ...) for row in rows] for name in names}
-        update, refused = attempted(fleet, keys, times, columns_of(names, rows))
+        columns = {name: [row.get(name, ...) for row in rows] for name in spec.input_names}
+        update, refused = attempted(fleet, keys, times, columns_of(spec.input_names, rows))
         if refused is not None:
             with pytest.raises(RejectedError) as rejected:
                 in_c.update(keys, times, columns)
@@ -133,7 +106,7 @@ def test_a_fleet_in_c_is_one_of_python(mode: str, data: st.DataObject) -> None:
             fleet.drop([gone])
             in_c.drop([gone])
         if data.draw(st.booleans()):
-            before = start + data.draw(st.sampled_from([0.5, 1.5, 3.0])) * step
+            before = drawn.start + data.draw(st.sampled_from([0.5, 1.5, 3.0])) * drawn.step
             assert in_c.expire(before) == fleet.expire(before=before)
         if data.draw(st.booleans()):
             exchanged = fleet.snapshot(), in_c.snapshot()

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -15,26 +14,8 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError, SpecificationError, TraceError
 from rtamt.language.printing.printer import to_text
+from tests.laws.fleet_batches import MODES, NUMBERS, columns_of, draw_batch, draw_fleet
 from tests.support.strategies import formulas
-
-#: Whether time is dense, whether samples are late, whether values may be missing or uncertain; and the settings.
-MODES: dict[str, tuple[bool, bool, bool, dict[str, Any]]] = {
-    "delayed": (False, False, False, {"time_unit": "s"}),
-    "delayed dense": (True, False, False, {}),
-    "eager": (False, False, True, {"verdict": "eager"}),
-    "eager dense": (True, False, True, {"verdict": "eager"}),
-    "interval": (False, False, True, {"verdict": "interval"}),
-    "interval at the start": (False, False, True, {"verdict": "interval", "at": "start"}),
-    "interval with late samples": (False, True, True, {"verdict": "interval", "lateness": 2}),
-    "interval with corrections": (
-        False, True, False, {"verdict": "interval", "lateness": 3, "on_correction": "replay"}
-    ),
-    "interval dense": (True, False, True, {"verdict": "interval", "ranges": {"x": (-9, 9)}}),
-    "interval dense with late samples": (True, True, True, {"verdict": "interval", "lateness": 2}),
-    "causation": (False, False, False, {"verdict": "causation"}),
-    "causation dense": (True, False, False, {"verdict": "causation"}),
-}  # fmt: skip
-NUMBERS = st.integers(-9, 8).map(lambda k: k / 2)
 
 
 class Alone:
@@ -130,54 +111,21 @@ def grouped(rows: Any, keys: list[Any], columns: tuple[Any, ...]) -> list[Any]:
     return found
 
 
-def columns_of(names: tuple[str, ...], rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return a column for each variable; where a sample does not have it, masked."""
-    found: dict[str, Any] = {}
-    for name in names:
-        values = np.empty(len(rows), object)
-        for i, row in enumerate(rows):
-            values[i] = row.get(name)
-        absent = [name not in row for row in rows]
-        found[name] = np.ma.array(values, mask=absent) if any(absent) else list(values)
-    return found
-
-
 @pytest.mark.parametrize("mode", MODES)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
 def test_each_report_is_that_of_a_monitor_of_the_key(mode: str, data: st.DataObject) -> None:
-    dense, shuffled, partial, made = MODES[mode]
-    formula = data.draw(formulas(max_depth=3, discrete=not dense, arithmetic=not partial))
-    spec = rtamt.parse(to_text(formula), time="dense" if dense else "discrete")
-    names = spec.input_names
-    assume(names)
-    ranges = made.get("ranges", {})
-    made = {**made, "ranges": {name: ranges[name] for name in names if name in ranges}} if ranges else made
-    try:
-        spec.monitor(**made)
-    except SpecificationError:  # shares have no causation
-        assume(False)
+    drawn = draw_fleet(data, MODES[mode])
+    spec, made = drawn.spec, drawn.settings
     every = data.draw(
         st.sampled_from([[3, -1, 2**40], ["a", "\u00c4\U0001f600", "long-" * 9], [b"a", b"\xff", b"b"]])
     )
     fleet, alone = rtamt.Fleet(spec, 3, **made), Alone(spec, made)
-    clocks = dict.fromkeys(every, 0.0)
+    clocks = dict.fromkeys(every, drawn.start)
     for _ in range(data.draw(st.integers(2, 5))):
-        keys = data.draw(st.lists(st.sampled_from(every), min_size=1, max_size=8))
-        times, rows, ahead = [], [], dict(clocks)
-        for key in keys:
-            times.append(ahead[key] - (data.draw(st.integers(0, 3)) if shuffled else 0))
-            ahead[key] += data.draw(st.sampled_from([0.5, 1.0, 2.25])) if dense else 1.0
-            rows.append(
-                {name: sample(data, partial) for name in names if not dense or data.draw(st.integers(0, 3))}
-            )
-        wrong = data.draw(st.sampled_from([None, None, "nan", "back", "unknown"]))
-        if wrong == "nan":
-            rows[-1] = {**rows[-1], names[0]: np.nan}
-        elif wrong == "back":
-            times[-1] = -50.0 if keys[-1] in alone.taken or keys[-1] in keys[:-1] else np.inf
-        columns = columns_of(names, rows)
-        if wrong == "unknown":
+        keys, times, rows, ahead = draw_batch(data, drawn, every, clocks, alone.taken)
+        columns = columns_of(spec.input_names, rows)
+        if data.draw(st.integers(0, 4)) == 4:  # a variable that the requirement does not read
             columns["zz"] = [1.0] * len(keys)
             rows[-1] = {**rows[-1], "zz": 1.0}
         try:
@@ -199,13 +147,6 @@ def test_each_report_is_that_of_a_monitor_of_the_key(mode: str, data: st.DataObj
             fleet = rtamt.Fleet.restore(spec, fleet.snapshot(), **made)
     for key in every:
         assert (key in fleet) == (key in alone.taken)
-
-
-def sample(data: st.DataObject, partial: bool) -> Any:
-    """Return a value of a sample: a number or, where it may be, bounds or nothing."""
-    number = data.draw(NUMBERS)
-    kind = data.draw(st.integers(0, 5)) if partial else 0
-    return None if kind == 5 else (number, number + 1) if kind == 4 else number
 
 
 SUITES: dict[str, dict[str, Any]] = {
