@@ -16,8 +16,8 @@ import numpy as np
 from conformance.cases import FOLDER, each, number, text
 from conformance.trees import in_steps, tree
 from rtamt.errors import EvaluationError
+from rtamt.language.contents import variables
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.language.formula import variables
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.reference import dense_bounds, dense_causation, discrete_bounds, eager_verdicts
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge

@@ -22,7 +22,8 @@ from conformance import cases, corners, early, quantified
 from conformance.cases import SEMANTICS, Case
 from conformance.trees import in_steps, table_of, tree
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Operator, Sort
 from rtamt.language.shares import Share, ShareKind

@@ -14,7 +14,8 @@ from conformance.trees import in_steps, tree
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, fold, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Tense
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from asking import Asked, Question, Talk, answerable, ask, together
 
-from rtamt.language.formula import Apply, Const, Formula, Interval, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Interval
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,8 +18,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from rtamt.engine.native import core
+from rtamt.language.contents import variables
 from rtamt.language.definitions.dense import QUARTERS, Steps
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.operators import STL
 from rtamt.language.records import Blocks, Bounds, Compiled, Fixity, Language, Operator, Sort, Tense
 from rtamt.rewrite.truth import truth

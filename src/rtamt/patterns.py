@@ -12,7 +12,8 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, UsageError, choices
-from rtamt.language.formula import Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Var
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.imports import PACKAGED
 from rtamt.language.parsing.lexer import NAME, quoted

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, UsageError, did_you_mean
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
-from rtamt.language.formula import Formula, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Formula
 from rtamt.language.operators import Language
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Watched
 from rtamt.errors import UsageError
-from rtamt.language.formula import Formula, outermost, types_of, variables
+from rtamt.language.contents import types_of, variables
+from rtamt.language.formula import Formula, outermost
 from rtamt.language.operators import STL, Language
 from rtamt.language.parameters import assigned, bounding, with_values
 from rtamt.language.parsing.grammar import is_number

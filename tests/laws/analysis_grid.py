@@ -15,7 +15,8 @@ import rtamt
 from rtamt.analysis.arithmetic import ENCODED
 from rtamt.analysis.encoder import Encoder
 from rtamt.analysis.solver import Solver
-from rtamt.language.formula import Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Var
 from rtamt.language.operators import Pointwise
 from tests.support.strategies import formulas
 

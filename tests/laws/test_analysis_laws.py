@@ -8,7 +8,7 @@ from rtamt.analysis.arithmetic import ENCODED, NONLINEAR
 from rtamt.analysis.bounded_checker import BoundedChecker, Part
 from rtamt.analysis.encoder import NotCoveredError
 from rtamt.errors import StlError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.language.operators import STL, Pointwise
 from rtamt.language.unwritten import UNWRITTEN
 from tests.laws.analysis_grid import COVERED, by_force, by_solver, encoded

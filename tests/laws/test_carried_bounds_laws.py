@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.compiler.program import Program
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Const, Var, fold, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Var, fold
 from rtamt.language.printing.printer import to_text
 from rtamt.verdicts.early.at_start import StartMonitor
 from tests.support import c_api

@@ -15,7 +15,8 @@ from rtamt.compiler.program import Program
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Const, Formula, fold, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, fold
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, boolean
 from rtamt.signals.dense import Dense

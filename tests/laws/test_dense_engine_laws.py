@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -13,12 +13,15 @@ from hypothesis import strategies as st
 from rtamt.engine import Evaluators
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Formula, variables
+from rtamt.language.contents import variables
 from rtamt.reference import dense_robustness as dense_reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.dense import Dense, DenseTrace, record_dense
 from tests.support.strategies import dense_chunkings, dense_traces, formulas
+
+if TYPE_CHECKING:
+    from rtamt.language.formula import Formula
 
 TICK = Fraction(1)
 NAMES = ("x", "y")

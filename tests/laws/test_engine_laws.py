@@ -16,7 +16,8 @@ from rtamt.compiler.plan import compile_program
 from rtamt.engine.discrete.evaluate import Evaluator
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, Formula, Var, fold, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Bounds, Pointwise, Sort, Tense
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import rank_arguments

@@ -21,7 +21,8 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import EvaluationError
 from rtamt.explain.explain import explain
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var, postorder
 from rtamt.language.operators import STL
 from rtamt.language.records import Sort
 from rtamt.reference import dense_robustness as dense_reference

@@ -12,7 +12,8 @@ import rtamt
 from rtamt.engine.dense.backends import BACKENDS as DENSE_BACKENDS
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, postorder
 from rtamt.language.printing.printer import to_text
 from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import DenseTrace

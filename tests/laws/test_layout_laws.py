@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rtamt.errors import SpecificationError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.language.operators import STL
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.lexer import comments, quoted, tokenize

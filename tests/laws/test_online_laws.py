@@ -18,7 +18,8 @@ from rtamt.engine import Watched
 from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Formula, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Formula, postorder
 from rtamt.reference import dense_robustness as dense_reference
 from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import Dense

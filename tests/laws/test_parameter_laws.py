@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import SpecificationError, StlError
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.printing.printer import number, to_text
 from rtamt.language.units.durations import UNITS
 from tests.support.strategies import dense_traces, formulas, traces

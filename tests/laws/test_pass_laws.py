@@ -14,12 +14,13 @@ from rtamt.compiler.passes import PASSES
 from rtamt.compiler.plan import compile_program
 from rtamt.engine.native import calls_of, core
 from rtamt.errors import StlError
-from rtamt.language.formula import Formula, variables
+from rtamt.language.contents import variables
 from rtamt.rewrite.desugar import desugar
 from tests.support.strategies import chunkings, formulas, traces
 
 if TYPE_CHECKING:
     from rtamt.compiler.program import Program
+    from rtamt.language.formula import Formula
 
 SUBSETS = [names for size in range(1, len(PASSES) + 1) for names in combinations(PASSES, size)]
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rtamt.language.formula import Apply, Const, Interval, Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Interval, Var
 from rtamt.language.operators import STL, Bounds, Fixity, Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula as parse

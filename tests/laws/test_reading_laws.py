@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from rtamt.errors import EvaluationError
 from rtamt.explain.explain import explain
-from rtamt.language.formula import Const, Formula, Interval, Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Const, Formula, Interval, Var
 from rtamt.language.operators import STL, Bounds, Sort
 from rtamt.reference import discrete_robustness as reference
 from rtamt.signals.dense import record_dense

@@ -17,7 +17,7 @@ import rtamt
 from rtamt.engine import native
 from rtamt.engine.discrete import ENGINE
 from rtamt.errors import StlError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import has_period, infer_period
 from tests.support.strategies import chunkings, formulas, traces

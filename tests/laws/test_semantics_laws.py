@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import Apply, children, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, children, postorder
 from rtamt.language.operators import Sort
 from rtamt.language.printing.printer import canonical
 from rtamt.rewrite.horizon import horizon

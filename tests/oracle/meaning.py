@@ -14,7 +14,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from tests.oracle import over_time
 from tests.oracle.arithmetic import COMPARISONS, NUMBERS
 

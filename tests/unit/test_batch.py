@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from tests.support import strategies
 
 NAN = float("nan")

@@ -14,7 +14,7 @@ from rtamt.analysis.bounded_checker import (
     unbounded,
 )
 from rtamt.analysis.encoder import NotCoveredError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.value_types import WHOLE

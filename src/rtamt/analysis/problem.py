@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from rtamt.analysis.encoder import Encoder, Limits
 from rtamt.analysis.solver import Solver
 from rtamt.analysis.witness import Goal, Witness
-from rtamt.language.formula import Const, Formula, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Const, Formula, postorder
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 

@@ -22,7 +22,8 @@ from rtamt.errors import (
     with_article,
 )
 from rtamt.extras import message_class
-from rtamt.language.formula import Var, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Var, postorder
 from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document

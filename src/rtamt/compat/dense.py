@@ -17,7 +17,8 @@ from rtamt.compat.options import Language, Semantics, sampling
 from rtamt.engine import Watched
 from rtamt.engine.dense.monitor import DenseMonitor, part_of
 from rtamt.errors import NameInFormulaError, StlError, UsageError
-from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorder
 from rtamt.language.operators import Tense
 from rtamt.language.printing.printer import canonical
 from rtamt.language.printing.writing import EXCERPT

@@ -11,7 +11,8 @@ from rtamt.compat.declarations import Declarations
 from rtamt.compat.failures import raises_rtamt
 from rtamt.compat.options import Semantics
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import Formula, Var, outermost, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Formula, Var, outermost, postorder
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import canonical
 from rtamt.language.units.durations import UNITS

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.passes import passed
 from rtamt.compiler.time_lowering import lowering_of
-from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder
 from rtamt.language.operators import STL, Until, Window
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace

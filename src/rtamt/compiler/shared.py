@@ -9,7 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
-from rtamt.language.formula import Formula, Parameter, leaves_of
+from rtamt.language.contents import leaves_of
+from rtamt.language.formula import Formula, Parameter
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.merge import merged

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.engine.engine import BACKENDS, engine_of
 from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
-from rtamt.language.formula import postorder, types_of
+from rtamt.language.contents import types_of
+from rtamt.language.formula import postorder
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar

@@ -7,7 +7,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.language.formula import Formula, types_of, variables
+from rtamt.language.contents import types_of, variables
+from rtamt.language.formula import Formula
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.rewrite.check import check_online

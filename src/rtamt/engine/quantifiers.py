@@ -10,7 +10,7 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.language.formula import types_of
+from rtamt.language.contents import types_of
 from rtamt.language.quantifiers import JOINS
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals import arrays, members

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from rtamt.explain.explanation import Listed, Reading, Stretch
 from rtamt.explain.readings import Readings
 from rtamt.explain.wording import predicate_text, reading
-from rtamt.language.formula import Var, types_of, variables
+from rtamt.language.contents import types_of, variables
+from rtamt.language.formula import Var
 from rtamt.language.value_types import value_text
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np

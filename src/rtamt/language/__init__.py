@@ -12,6 +12,7 @@ rows             shorthands for rows of the table
 expansions       derived operators in terms of simpler ones
 unwritten        operators that no text contains: truths of predicates, parts of expansions
 formula          formulas: three immutable node types
+contents         the operators, variables and constants of formulas
 equal_nodes      which nodes were found equal
 value_types      the types of variables that are no plain numbers: Booleans, enumerations
 enumerations     ``enum Mode { MANUAL, AUTO = 4 }``

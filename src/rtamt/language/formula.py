@@ -20,7 +20,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.language.equal_nodes import EqualNodes, representative
-from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy_dataclasses import dataclass, field, fields, replace
 from rtamt.lazy_tuples import NamedTuple
 
@@ -28,9 +27,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.language.contents import Contents
     from rtamt.language.operators import Operator
     from rtamt.language.shares import Share
-    from rtamt.language.value_types import PartType, ValueType
+    from rtamt.language.value_types import PartType
 
 T = TypeVar("T")
 
@@ -38,7 +38,7 @@ T = TypeVar("T")
 COUNTLESS = 10**18
 
 #: The largest formula that caches the list of its nodes: a file may name each of its sub-formulas.
-_KEPT = 5000
+KEPT = 5000
 
 
 class Span(NamedTuple):
@@ -237,7 +237,7 @@ class Apply(Formula):
 _store_op, _store_args, _store_interval, _store_span = (
     vars(Apply)[name].__set__ for name in ("op", "args", "interval", "span")
 )
-_store_hash, _store_size, _store_class, _store_below, _store_contents = (
+_store_hash, _store_size, _store_class, _store_below, store_contents = (
     vars(Apply)[name].__set__ for name in ("_hash", "_size", "_class", "_below", "_contents")
 )
 
@@ -314,7 +314,7 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
         below = formula._below
     except AttributeError:
         below = _distinct(formula.args)
-        if len(below) <= _KEPT:
+        if len(below) <= KEPT:
             _store_below(formula, below)
     return (*below, formula)
 
@@ -343,7 +343,7 @@ def _distinct_of_several(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     for formula in formulas:
         nodes = postorder(formula)
         walked += len(nodes)
-        if walked > 20 * _KEPT:  # each may contain the ones before
+        if walked > 20 * KEPT:  # each may contain the ones before
             return _distinct_of_graph(formulas)
         found.update(zip(map(id, nodes), nodes, strict=True))
     return tuple(found.values())
@@ -427,74 +427,3 @@ def size(formula: Formula) -> int:
             count = sum(operand._size if isinstance(operand, Apply) else 1 for operand in node.args)
             _store_size(node, min(count + 1, COUNTLESS))
         return formula._size
-
-
-class Contents(NamedTuple):
-    """The contents of a formula in postorder: operators, variables and constants, nodes with intervals."""
-
-    operators: frozenset[Operator]
-    leaves: tuple[Formula, ...]
-    timed: tuple[Apply, ...]
-
-
-def contents(formula: Formula) -> Contents:
-    """Return the contents of a formula: most checks and analyses need only a part of its nodes.
-
-    >>> from rtamt.language.operators import STL
-    >>> x = Var("x")
-    >>> contents(STL["not"](STL["and"](x, x))).leaves
-    (<formula x>,)
-    """
-    if not isinstance(formula, Apply):
-        return Contents(frozenset(), (formula,), ())
-    try:
-        return formula._contents
-    except AttributeError:
-        nodes = postorder(formula)
-        operators: set[Operator] = set()
-        leaves, timed = [], []
-        for node in nodes:
-            if isinstance(node, Apply):
-                operators.add(node.op)
-                if node.interval is not None:
-                    timed.append(node)
-            else:
-                leaves.append(node)
-        found = Contents(frozenset(operators), tuple(leaves), tuple(timed))
-        if len(nodes) <= _KEPT:
-            _store_contents(formula, found)
-        return found
-
-
-def leaves_of(*formulas: Formula) -> tuple[Formula, ...]:
-    """Return the variables and constants of formulas in order of appearance."""
-    if len(formulas) == 1:
-        return contents(formulas[0]).leaves
-    return tuple([node for node in postorder(*formulas) if not isinstance(node, Apply)])
-
-
-def operators_of(*formulas: Formula) -> frozenset[Operator]:
-    """Return the operators of formulas: what depends on these alone is asked once for each."""
-    if len(formulas) == 1:
-        return contents(formulas[0]).operators
-    return frozenset([node.op for node in postorder(*formulas) if isinstance(node, Apply)])
-
-
-def types_of(*formulas: Formula) -> dict[str, ValueType]:
-    """Return the types of the variables of formulas that are no plain numbers."""
-    found: dict[str, ValueType] = {}
-    for node in leaves_of(*formulas):
-        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration) and not node.bound:
-            found[node.name] = node.type
-    return found
-
-
-def variables(*formulas: Formula) -> tuple[str, ...]:
-    """Return the names of the variables of formulas, each once, in order of first appearance; no fields of members."""
-    leaves = leaves_of(*formulas)
-    return tuple(dict.fromkeys([node.name for node in leaves if isinstance(node, Var) and not node.bound]))
-
-
-def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
-    """Return the variables that form the trace of a formula; for a constant ``every`` variable."""
-    return variables(formula) or tuple(every)

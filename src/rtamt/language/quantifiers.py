@@ -24,7 +24,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, Var, leaves_of, operators_of, postorder
+from rtamt.language.contents import leaves_of, operators_of
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator

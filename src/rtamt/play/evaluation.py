@@ -6,7 +6,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
-from rtamt.language.formula import Apply, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration

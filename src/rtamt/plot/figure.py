@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.lazy_numpy import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges, matplotlib

@@ -5,7 +5,8 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Const, Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Var
 from rtamt.language.parsing.grammar import is_predicate as is_comparison
 from rtamt.lazy_dataclasses import dataclass
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.wording import predicate_text
-from rtamt.language.formula import Apply, Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Var
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
 from rtamt.lazy_dataclasses import dataclass

@@ -13,9 +13,10 @@ from bisect import bisect_right
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from rtamt.language.contents import variables
 from rtamt.language.definitions import dense as dense_definitions
 from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged, pieces
-from rtamt.language.formula import Apply, Formula, postorder, variables
+from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.reference.cores import core_of

@@ -6,7 +6,8 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.formula import Apply, Const, Formula, Interval, children, contents, postorder
+from rtamt.language.contents import contents
+from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of

@@ -11,8 +11,9 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
+from rtamt.language.contents import variables
 from rtamt.language.definitions.enclosures import Enclosure, extended
-from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder, variables
+from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import is_share
 from rtamt.lazy_numpy import np

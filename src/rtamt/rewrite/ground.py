@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, Interval, contents, folds
+from rtamt.language.contents import contents
+from rtamt.language.formula import Apply, Formula, Interval, folds
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import replace

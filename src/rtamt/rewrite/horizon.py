@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from math import inf, lcm
 
-from rtamt.language.formula import Apply, Formula, contents, fold, postorder
+from rtamt.language.contents import contents
+from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
 

@@ -38,7 +38,7 @@ def presences(*formulas: Formula) -> tuple[str, ...]:
 def tracked(formula: Formula) -> Formula:
     """Return a formula that reads the presence of variables from their channels; the same object if it asks for none.
 
-    >>> from rtamt.language.formula import variables
+    >>> from rtamt.language.contents import variables
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> variables(tracked(parse_formula("x > 3 and valid(y)")))
     ('x', 'valid(y)')

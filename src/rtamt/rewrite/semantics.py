@@ -19,7 +19,8 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
-from rtamt.language.formula import Apply, Const, Formula, located, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, located
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN

@@ -11,7 +11,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeGuard
 
-from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Pointwise, Rank, Shift, Since, Sort, Tense, Until, Window
 from rtamt.lazy_dataclasses import dataclass, replace

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Formula, fold, operators_of, postorder
+from rtamt.language.contents import operators_of
+from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.unwritten import holds, is_truth

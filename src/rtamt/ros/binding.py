@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown, with_article
 from rtamt.extras import message_class
-from rtamt.language.formula import types_of, variables
+from rtamt.language.contents import types_of, variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import unbounded_future

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from typing import TYPE_CHECKING, TypeAlias
 
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.signals.ticks import NANOSECOND
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.engine.dense.monitor import points_of
 from rtamt.errors import SpecificationError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
 from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict

@@ -8,7 +8,7 @@ from hypothesis import assume
 
 from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.language.operators import Tense
 from rtamt.lazy_numpy import np
 from rtamt.reference import dense_robustness as dense_reference

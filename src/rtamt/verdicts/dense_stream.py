@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.errors import TraceError
-from rtamt.language.formula import own_variables
+from rtamt.language.contents import own_variables
 from rtamt.lazy_numpy import np
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.ticks import TimeScale

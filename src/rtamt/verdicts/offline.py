@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import own_variables
+from rtamt.language.contents import own_variables
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar

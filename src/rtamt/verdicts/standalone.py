@@ -14,7 +14,8 @@ from rtamt.compiler.program import Instruction, Program
 from rtamt.engine import engine_of
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
-from rtamt.language.formula import Apply, Const, Formula, Parameter, fold, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Parameter, fold
 from rtamt.language.parameters import bounds_of
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE

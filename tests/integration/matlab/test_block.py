@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.errors import EvaluationError
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.signals.discrete import Discrete
 from rtamt.verdicts.standalone import carried_program
 from tests.integration.matlab.octave import DOUBLES, ROOT, needs_octave, run_octave

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rtamt.language.formula import Apply, Const, Formula, Interval, Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.operators import STL, Bounds, Fixity, Operator, Sort, Tense
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.shares import Share, ShareKind

@@ -11,7 +11,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt import Causation
-from rtamt.language.formula import Apply, Formula, postorder, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Tense
 from rtamt.reference import dense_bounds
 from rtamt.reference.cores import core_of

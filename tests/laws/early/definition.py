@@ -10,8 +10,8 @@ import numpy as np
 
 from rtamt import Interval, Verdict, VerdictRun
 from rtamt.compiler.graph import FOREVER
+from rtamt.language.contents import variables
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.language.formula import variables
 from rtamt.lazy_dataclasses import replace
 from rtamt.reference import dense_bounds, discrete_bounds, discrete_causation, eager_verdicts
 from rtamt.reference.dense_bounds import DenseKnowledge

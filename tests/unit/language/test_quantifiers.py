@@ -8,7 +8,8 @@ import pytest
 
 import rtamt
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
-from rtamt.language.formula import Var, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Var
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.quantifiers import Binder, Field, Group, quantifiers
 from rtamt.language.value_types import BOOLEAN

@@ -6,7 +6,8 @@ import pickle
 
 import pytest
 
-from rtamt.language.formula import Apply, Const, fold, types_of
+from rtamt.language.contents import types_of
+from rtamt.language.formula import Apply, Const, fold
 from rtamt.language.operators import STL
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document

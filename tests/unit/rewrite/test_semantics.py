@@ -9,7 +9,8 @@ from math import copysign, inf
 import pytest
 
 import rtamt
-from rtamt.language.formula import Const, variables
+from rtamt.language.contents import variables
+from rtamt.language.formula import Const
 from rtamt.rewrite.semantics import SEMANTICS, Relative
 from rtamt.rewrite.truth import truth
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rtamt.engine.dense.early_python_backend import PythonDenseEarlyMonitor
 from rtamt.engine.early import EarlyDefinition, EarlyProgram, EarlyQuery, Group
 from rtamt.engine.native import core
-from rtamt.language.formula import own_variables
+from rtamt.language.contents import own_variables
 from rtamt.language.operators import STL
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of

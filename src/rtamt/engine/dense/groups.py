@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
-from rtamt.language.formula import own_variables
+from rtamt.language.contents import own_variables
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
 from rtamt.rewrite.check import always_has_a_value

@@ -10,7 +10,7 @@ from rtamt.engine.native import DenseMonitorBase, TickPoints
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.engine.slow_path import SlowPath
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import own_variables
+from rtamt.language.contents import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_numpy import np

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.errors import ParseError
+from rtamt.language.contents import variables
 from rtamt.language.document import SEVERITIES, Requirement
-from rtamt.language.formula import Span, variables
+from rtamt.language.formula import Span
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.lexer import unquoted
 from rtamt.language.parsing.parser import FormulaParser

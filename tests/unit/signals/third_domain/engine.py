@@ -3,7 +3,7 @@
 import numpy as np
 
 from rtamt.engine.backend import Defined
-from rtamt.language.formula import variables
+from rtamt.language.contents import variables
 from rtamt.reference.discrete_robustness import evaluate
 from rtamt.rewrite.horizon import horizon
 from tests.unit.signals.third_domain.turns import TURN

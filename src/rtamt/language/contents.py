@@ -1,0 +1,87 @@
+"""The contents of formulas: operators, variables and constants, and the nodes with intervals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rtamt.language.formula import KEPT, Apply, Var, postorder, store_contents
+from rtamt.language.value_types import Boolean, Enumeration
+from rtamt.lazy_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.language.formula import Formula
+    from rtamt.language.operators import Operator
+    from rtamt.language.value_types import ValueType
+
+
+class Contents(NamedTuple):
+    """The contents of a formula in postorder: operators, variables and constants, nodes with intervals."""
+
+    operators: frozenset[Operator]
+    leaves: tuple[Formula, ...]
+    timed: tuple[Apply, ...]
+
+
+def contents(formula: Formula) -> Contents:
+    """Return the contents of a formula: most checks and analyses need only a part of its nodes.
+
+    >>> from rtamt.language.operators import STL
+    >>> x = Var("x")
+    >>> contents(STL["not"](STL["and"](x, x))).leaves
+    (<formula x>,)
+    """
+    if not isinstance(formula, Apply):
+        return Contents(frozenset(), (formula,), ())
+    try:
+        return formula._contents
+    except AttributeError:
+        nodes = postorder(formula)
+        operators: set[Operator] = set()
+        leaves, timed = [], []
+        for node in nodes:
+            if isinstance(node, Apply):
+                operators.add(node.op)
+                if node.interval is not None:
+                    timed.append(node)
+            else:
+                leaves.append(node)
+        found = Contents(frozenset(operators), tuple(leaves), tuple(timed))
+        if len(nodes) <= KEPT:
+            store_contents(formula, found)
+        return found
+
+
+def leaves_of(*formulas: Formula) -> tuple[Formula, ...]:
+    """Return the variables and constants of formulas in order of appearance."""
+    if len(formulas) == 1:
+        return contents(formulas[0]).leaves
+    return tuple([node for node in postorder(*formulas) if not isinstance(node, Apply)])
+
+
+def operators_of(*formulas: Formula) -> frozenset[Operator]:
+    """Return the operators of formulas: what depends on these alone is asked once for each."""
+    if len(formulas) == 1:
+        return contents(formulas[0]).operators
+    return frozenset([node.op for node in postorder(*formulas) if isinstance(node, Apply)])
+
+
+def types_of(*formulas: Formula) -> dict[str, ValueType]:
+    """Return the types of the variables of formulas that are no plain numbers."""
+    found: dict[str, ValueType] = {}
+    for node in leaves_of(*formulas):
+        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration) and not node.bound:
+            found[node.name] = node.type
+    return found
+
+
+def variables(*formulas: Formula) -> tuple[str, ...]:
+    """Return the names of the variables of formulas, each once, in order of first appearance; no fields of members."""
+    leaves = leaves_of(*formulas)
+    return tuple(dict.fromkeys([node.name for node in leaves if isinstance(node, Var) and not node.bound]))
+
+
+def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:
+    """Return the variables that form the trace of a formula; for a constant ``every`` variable."""
+    return variables(formula) or tuple(every)
