@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description
 from rtamt.explain.explanation import CriticalPoint, Explanation, Listed
-from rtamt.explain.minimise import Forcing, intervals_of, minimal
+from rtamt.explain.minimise import Forcing, Intervals, minimal
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
 from rtamt.explain.signals import Signals, truths
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from rtamt.engine import TimeAxis
-    from rtamt.explain.minimise import Interval
     from rtamt.language.formula import Formula
     from rtamt.signals.time_domain_interface import DomainTrace
 
@@ -130,7 +128,7 @@ class _Explainer:
 
     # ---- the critical point ------------------------------------------------------------------------
 
-    def _critical(self, cell: int, implicant: list[Interval]) -> tuple[CriticalPoint, int]:
+    def _critical(self, cell: int, implicant: Intervals) -> tuple[CriticalPoint, int]:
         """Return the critical point, and its cell.
 
         Where several places have the value of the robustness it is, if there is one, a place that overturns
@@ -159,29 +157,27 @@ class _Explainer:
         half = len(points) // 2
         return self._alone(points[:half], cell) or self._alone(points[half:], cell)
 
-    def _places(self, implicant: list[Interval], robustness: float) -> Iterator[Point]:
+    def _places(self, implicant: Intervals, robustness: float) -> Iterator[Point]:
         """Yield the places of an implicant that have the value of the robustness."""
-        of: dict[tuple[str, int], list[int]] = defaultdict(list)
-        for number, interval in enumerate(implicant):
-            of[interval.name, interval.sign].append(number)
         found: list[tuple[int, int, int]] = []
-        for (name, sign), numbers in of.items():
+        for (name, sign), numbers in implicant.numbers():
+            begins, stops = implicant.starts[numbers], implicant.ends[numbers]
             starts, ends = self._values[name].stretches(sign * robustness)
-            firsts = np.searchsorted(ends, [implicant[number].start for number in numbers], side="right")
-            lasts = np.searchsorted(starts, [implicant[number].end for number in numbers], side="left")
+            firsts = np.searchsorted(ends, begins, side="right")
+            lasts = np.searchsorted(starts, stops, side="left")
             for which in np.flatnonzero(firsts < lasts).tolist():
-                number = numbers[which]
-                interval = implicant[number]
                 for start, end in zip(
                     starts[firsts[which] : lasts[which]].tolist(),
                     ends[firsts[which] : lasts[which]].tolist(),
                     strict=True,
                 ):
-                    found.append((number, max(start, interval.start), min(end, interval.end)))
+                    inside = max(start, int(begins[which])), min(end, int(stops[which]))
+                    found.append((int(numbers[which]), *inside))
         for number, start, end in sorted(found):
             # In dense time a value changes on its whole segment, in discrete time sample by sample.
             cells = (start,) if self._dense else range(start, end)
-            yield from (Point(there, implicant[number].sign, implicant[number].name) for there in cells)
+            name, sign = implicant.literals[implicant.of[number]]
+            yield from (Point(there, sign, name) for there in cells)
 
     def _describe(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
         """Return a place that has the value of the robustness as a critical point, and its cell."""
@@ -230,7 +226,7 @@ class _Explainer:
 
     # ---- the implicant -----------------------------------------------------------------------------
 
-    def _implicant(self, cell: int, satisfied: bool) -> list[Interval]:
+    def _implicant(self, cell: int, satisfied: bool) -> Intervals:
         period, end = self._line.period, self._line.end
         given = (self._structure, self._holds, self._signals, self._walk, period, end)
         demands = Demands(*given, dense=self._dense)
@@ -242,12 +238,16 @@ class _Explainer:
             if leaf.fixed
         }
         forcing = Forcing(self._structure, demands, self._line, fixed)
-        candidates = intervals_of(demands)
+        candidates = Intervals.asked_in(demands)
         needs = Needs(*given, dense=self._dense).given(forcing.support(candidates))
         needs.ask(here, satisfied=satisfied)
         found = minimal(candidates, needs, forcing)
         places = {name: i for i, name in enumerate(self._structure.leaves)}
-        return sorted(found, key=lambda interval: (places[interval.name], interval.start, interval.sign))
+        signs, names = (
+            np.array([key(literal_) for literal_ in found.literals], np.int64)[found.of]
+            for key in (lambda literal_: literal_[1], lambda literal_: places[literal_[0]])
+        )
+        return found.take(np.lexsort((signs, found.starts, names)))
 
 
 def overturns(point: CriticalPoint) -> bool:
@@ -256,13 +256,14 @@ def overturns(point: CriticalPoint) -> bool:
     return point.lowest < 0 if robustness > 0 else point.highest > 0 if robustness < 0 else True
 
 
-def _rank(implicant: Sequence[Interval], point: int) -> tuple[int, ...]:
+def _rank(implicant: Intervals, point: int) -> tuple[int, ...]:
     """Return the numbers of the intervals: of each predicate the closest to a cell, then the others, closest first."""
-    starts, ends = (np.array([getattr(i, end) for i in implicant], np.int64) for end in ("start", "end"))
-    order = np.argsort(np.maximum(starts - point, point - ends + 1).clip(0), kind="stable").tolist()
-    closest = {(implicant[i].name, implicant[i].sign): i for i in reversed(order)}
-    first = set(closest.values())
-    return (*(i for i in order if i in first), *(i for i in order if i not in first))
+    distances = np.maximum(implicant.starts - point, point - implicant.ends + 1).clip(0)
+    order = np.argsort(distances, kind="stable")
+    closest = np.zeros(len(order), bool)
+    for _, numbers in implicant.take(order).numbers():
+        closest[numbers[0]] = True
+    return tuple(np.concatenate((order[closest], order[~closest])).tolist())
 
 
 def _infinite(steps: StepFunction) -> StepFunction:

@@ -18,13 +18,14 @@ from rtamt.rewrite.structure import literal, reaches
 from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from rtamt.engine import TimeAxis
     from rtamt.explain.propagate import Demands
     from rtamt.rewrite.structure import Place, Structure
+    from rtamt.signals.instants import Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,47 @@ class Interval:
     end: int
     name: str
     sign: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Intervals:
+    """Intervals of predicates as arrays; ``of``: the index of each one's predicate and sign in ``literals``."""
+
+    starts: Ints
+    ends: Ints
+    of: Ints
+    literals: Sequence[tuple[str, int]]
+
+    @classmethod
+    def asked_in(cls, demands: Demands) -> Intervals:
+        """Return the required truth of the predicates, which forces the verdict; those of a predicate in order."""
+        found = [asked.cells for asked in demands.leaves.values()]
+        if not found:
+            return cls(NONE.starts, NONE.ends, NONE.starts, ())
+        return cls(
+            np.concatenate([cells.starts for cells in found]),
+            np.concatenate([cells.ends for cells in found]),
+            np.repeat(np.arange(len(found)), [len(cells) for cells in found]),
+            tuple(demands.leaves),
+        )
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def __getitem__(self, number: int) -> Interval:
+        return Interval(int(self.starts[number]), int(self.ends[number]), *self.literals[self.of[number]])
+
+    def take(self, numbers: Ints) -> Intervals:
+        """Return some of the intervals."""
+        return Intervals(self.starts[numbers], self.ends[numbers], self.of[numbers], self.literals)
+
+    def numbers(self) -> Iterator[tuple[tuple[str, int], Ints]]:
+        """Yield each predicate and sign with the indices of its intervals, in their order."""
+        order = np.argsort(self.of, kind="stable")
+        edges = np.searchsorted(self.of[order], np.arange(len(self.literals) + 1)).tolist()
+        for literal_, begin, end in zip(self.literals, edges, edges[1:], strict=False):
+            if begin < end:
+                yield literal_, order[begin:end]
 
 
 class Forcing:
@@ -60,19 +102,20 @@ class Forcing:
         self.behind = max((found[node][0] for node in nodes), default=0)
         self.ahead = max((found[node][1] for node in nodes), default=0)
 
-    def _signals(self, intervals: Iterable[Interval]) -> dict[str, StepFunction]:
+    def _signals(self, intervals: Intervals) -> dict[str, StepFunction]:
         """Return replacements for the predicates: unchanged on the intervals, worst case elsewhere."""
-        known: dict[tuple[str, int], list[tuple[int, int]]] = {}
-        for interval in intervals:
-            known.setdefault((interval.name, interval.sign), []).append((interval.start, interval.end))
+        known = {
+            literal_: Cells.union(intervals.starts[numbers], intervals.ends[numbers])
+            for literal_, numbers in intervals.numbers()
+        }
         signals = dict(self._fixed)
         for name, sign in self._literals:
             good = inf if self._demands.truth(sign) else -inf
-            cells = Cells.of(known.get((name, sign), ()))
+            cells = known.get((name, sign), NONE)
             signals[literal(name, sign)] = two_valued(cells, good, -good, self._end)
         return signals
 
-    def support(self, intervals: Iterable[Interval]) -> dict[Place, Cells]:
+    def support(self, intervals: Intervals) -> dict[Place, Cells]:
         """Return where each place has its required truth, by the intervals alone."""
         polar = self._structure.polar
         order = tuple(dict.fromkeys(polar.values()))
@@ -83,7 +126,7 @@ class Forcing:
             for (node, sign), formula in polar.items()
         }
 
-    def failures(self, intervals: Iterable[Interval]) -> Cells:
+    def failures(self, intervals: Intervals) -> Cells:
         """Return the cells at which something falls that the verdict cannot do without."""
         if self._run is None:
             return NONE
@@ -95,78 +138,58 @@ class Forcing:
         return failed
 
 
-def intervals_of(demands: Demands) -> list[Interval]:
-    """Return the required truth of the predicates as intervals, which force the verdict."""
-    return [
-        Interval(start, end, name, sign)
-        for (name, sign), asked in demands.leaves.items()
-        for start, end in asked.cells
-    ]
-
-
-def minimal(intervals: Sequence[Interval], needs: Demands, forcing: Forcing) -> list[Interval]:
+def minimal(intervals: Intervals, needs: Demands, forcing: Forcing) -> Intervals:
     """Return those of ``intervals`` that are left when as many as possible are taken away.
 
     Taken away on trial, where it is not plain from ``needs`` that they cannot be, are first large groups
     of neighbours, then smaller ones. Groups so far apart that nothing looks at two of them are tried in
     one run.
     """
-    kept: list[Interval] = []
-    open_: list[Interval] = []
-    for interval, plain in zip(intervals, _which_needed(intervals, needs), strict=True):
-        (kept if plain else open_).append(interval)
-    open_.sort(key=lambda interval: (interval.start, interval.end))
+    plain = _which_needed(intervals, needs)
+    kept, open_ = np.flatnonzero(plain), np.flatnonzero(~plain)
+    open_ = open_[np.lexsort((intervals.ends[open_], intervals.starts[open_]))]
     size = 1 << max(len(open_) - 1, 0).bit_length()
-    groups = [open_] if open_ else []
+    groups = [open_] if len(open_) else []
     while groups:
-        groups = _needed_groups(groups, kept, forcing)
+        groups = _needed_groups(groups, kept, intervals, forcing)
         if size == 1:
             break
         size //= 2
         groups = [group[i : i + size] for group in groups for i in range(0, len(group), size)]
-    return kept + [interval for group in groups for interval in group]
+    return intervals.take(np.concatenate((kept, *groups)))
 
 
-def _which_needed(intervals: Sequence[Interval], needs: Demands) -> NDArray[np.bool_]:
+def _which_needed(intervals: Intervals, needs: Demands) -> NDArray[np.bool_]:
     """Return for each interval whether it intersects ``needs``."""
     plain = np.zeros(len(intervals), bool)
-    starts, ends = (
-        np.array([getattr(each, name) for each in intervals], np.int64) for name in ("start", "end")
-    )
-    of: dict[tuple[str, int], list[int]] = {}
-    for number, interval in enumerate(intervals):
-        of.setdefault((interval.name, interval.sign), []).append(number)
-    for literal_, numbers in of.items():
+    for literal_, numbers in intervals.numbers():
         if (asked := needs.leaves.get(literal_)) is not None:
-            plain[numbers] = asked.cells.intersects(starts[numbers], ends[numbers])
+            plain[numbers] = asked.cells.intersects(intervals.starts[numbers], intervals.ends[numbers])
     return plain
 
 
-def _needed_groups(
-    groups: Sequence[list[Interval]], kept: Sequence[Interval], forcing: Forcing
-) -> list[list[Interval]]:
+def _needed_groups(groups: Sequence[Ints], kept: Ints, intervals: Intervals, forcing: Forcing) -> list[Ints]:
     """Return the groups that cannot be taken away, each tried when those before it have been decided."""
-    zones = {
-        id(group): (
-            min(interval.start for interval in group) - forcing.ahead,
-            max(interval.end for interval in group) + forcing.behind,
+    zones = [
+        (
+            int(intervals.starts[group].min()) - forcing.ahead,
+            int(intervals.ends[group].max()) + forcing.behind,
         )
         for group in groups
-    }
-    waiting = sorted(groups, key=lambda group: zones[id(group)][1])
-    staying = {id(group): group for group in groups}
+    ]
+    waiting = sorted(range(len(groups)), key=lambda number: zones[number][1])
+    staying = dict(enumerate(groups))
     while waiting:
-        trial: list[list[Interval]] = []
-        later: list[list[Interval]] = []
-        for group in waiting:
-            apart = not trial or zones[id(group)][0] >= zones[id(trial[-1])][1]
-            (trial if apart else later).append(group)
-        for group in trial:
-            del staying[id(group)]
-        rest = [interval for group in (*staying.values(),) for interval in group]
-        failed = forcing.failures([*kept, *rest])
-        for group in trial:
-            if len(failed & Cells.of([zones[id(group)]])):
-                staying[id(group)] = group
+        trial: list[int] = []
+        later: list[int] = []
+        for number in waiting:
+            apart = not trial or zones[number][0] >= zones[trial[-1]][1]
+            (trial if apart else later).append(number)
+        for number in trial:
+            del staying[number]
+        failed = forcing.failures(intervals.take(np.concatenate((kept, *staying.values()))))
+        for number in trial:
+            if len(failed & Cells.of([zones[number]])):
+                staying[number] = groups[number]
         waiting = later
-    return [group for group in groups if id(group) in staying]
+    return [group for number, group in enumerate(groups) if number in staying]

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
+from rtamt.language.formula import Apply, Formula, Var, folds
+from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
+from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.structure import settling
 from rtamt.signals.datetimes import nanoseconds_of
@@ -20,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from rtamt.engine.time_axis import Runner
-    from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
 
 
@@ -40,7 +42,9 @@ class DiscreteTimeAxis(TimeAxis):
 
     def runner(self, formulas: Sequence[Formula]) -> Runner:
         """See :class:`TimeAxis`."""
-        evaluator = self._evaluator(formulas)
+        # The engine computes operands of unbounded operators before all else; those asked for are inputs instead.
+        first, rest = _apart(formulas)
+        evaluators = self._evaluator(list(first.values())), self._evaluator(list(rest.values()))
         margin = settling(formulas, self.period)
 
         def run(signals: Mapping[str, StepFunction]) -> list[StepFunction]:
@@ -53,8 +57,11 @@ class DiscreteTimeAxis(TimeAxis):
 
         def over(signals: Mapping[str, StepFunction], end: int) -> list[StepFunction]:
             columns = {name: _samples(steps) for name, steps in signals.items()}
-            recording = DiscreteTrace(self._recording.times[:end], columns, self.period)
-            return [StepFunction.of_samples(values) for values in evaluator(recording)]
+            found: dict[str, FloatArray] = {}
+            for names, evaluator in zip((first, rest), evaluators, strict=True):
+                recording = DiscreteTrace(self._recording.times[:end], {**columns, **found}, self.period)
+                found.update(zip(names, evaluator(recording) if names else (), strict=True))
+            return [StepFunction.of_samples(found[_name(number)]) for number in range(len(formulas))]
 
         return run
 
@@ -93,6 +100,29 @@ class DiscreteTimeAxis(TimeAxis):
     def closes(self, end: int, formula: Formula, at: int) -> bool:  # noqa: ARG002 - samples are all there is
         """See :class:`TimeAxis`."""
         return True
+
+
+def _apart(formulas: Sequence[Formula]) -> tuple[dict[str, Formula], dict[str, Formula]]:
+    """Return the formulas of bounded future, and the others over variables for these; each with its name."""
+
+    def far(node: Formula, below: tuple[bool, ...]) -> bool:
+        return any(below) or (isinstance(node, Apply) and reads_unbounded_future(node))
+
+    later = folds(formulas, far)
+    first = {_name(number): formula for number, formula in enumerate(formulas) if not later[number]}
+    known = {formula: Var(name) for name, formula in first.items()} if any(later) else {}
+
+    def over_known(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if node in known or not isinstance(node, Apply):
+            return known.get(node, node)
+        return replace(node, args=args)
+
+    rest = folds(formulas, over_known)
+    return first, {_name(number): rest[number] for number in range(len(formulas)) if later[number]}
+
+
+def _name(number: int) -> str:
+    return f"={number}"
 
 
 def _samples(steps: StepFunction) -> np.ndarray[Any, Any]:
