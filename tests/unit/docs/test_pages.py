@@ -92,3 +92,9 @@ def test_the_exit_codes_in_the_readme(tmp_path, capsys):
         "The exit code is 0 if the requirement is satisfied, 1 if it is violated and 2 on an error" in readme
     )
     capsys.readouterr()
+
+
+def test_the_readme_links_every_page():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    pages = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md")}
+    assert pages - set(re.findall(r"\((docs/[^)#]+)", readme)) == set()
