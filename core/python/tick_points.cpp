@@ -1,10 +1,14 @@
 #include "tick_points.hpp"
 
+#include "../values/ticks.hpp"
 #include "cpython.hpp"
 #include "method_table.hpp"
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 namespace rtamt::python {
 
@@ -22,54 +26,66 @@ Names& names() noexcept {
     return names;
 }
 
-// Ticks and rates up to here are doubles, too.
-constexpr std::int64_t exact = 9'007'199'254'740'992; // 2^53
-
-// The time of a tick as Python divides integers: rounded once.
-[[nodiscard]] nb::object time_of(std::int64_t tick, nb::handle rate) noexcept {
-    if (-exact <= tick && tick <= exact) {
-        const long long divisor = PyLong_AsLongLong(rate.ptr());
-        if (0 < divisor && divisor <= exact) {
-            return nb::steal(
-                PyFloat_FromDouble(static_cast<double>(tick) / static_cast<double>(divisor)));
-        }
-        PyErr_Clear();
-    }
-    const auto number = nb::steal(PyLong_FromLongLong(tick));
-    if (!number.is_valid()) return {};
-    return nb::steal(PyNumber_TrueDivide(number.ptr(), rate.ptr()));
+// Whether `ticks::seconds_of` is what TimeScale.times() makes of a tick: numbers in a unit of the
+// caller may be larger than times in seconds.
+[[nodiscard]] bool in_seconds(std::int64_t tick, std::int64_t rate) noexcept {
+    const double size = std::fabs(static_cast<double>(tick));
+    return size < ticks::near || size < ticks::implausible * static_cast<double>(rate);
 }
 
+// The divisor from ticks to the times of a scale, or nothing: their times are not quotients of
+// doubles.
+[[nodiscard]] std::optional<std::int64_t> rate_of(nb::handle scale) noexcept {
+    const auto rate = nb::steal(PyObject_GetAttr(scale.ptr(), names().rate.ptr()));
+    if (!rate.is_valid() || !PyLong_CheckExact(rate.ptr())) return std::nullopt;
+    const long long divisor = PyLong_AsLongLong(rate.ptr());
+    if (divisor == -1 && PyErr_Occurred() != nullptr) PyErr_Clear(); // larger than that
+    if (divisor <= 0 || static_cast<double>(divisor) > ticks::exact) return std::nullopt;
+    return divisor;
+}
+
+[[nodiscard]] nb::object pair_of(double time, double value) noexcept {
+    const auto first = nb::steal(PyFloat_FromDouble(time));
+    const auto second = nb::steal(PyFloat_FromDouble(value));
+    if (!first.is_valid() || !second.is_valid()) return {};
+    return nb::steal(PyTuple_Pack(2, first.ptr(), second.ptr()));
+}
+
+template <class Item>
+[[nodiscard]] Item item_at(const char* memory, std::size_t i) noexcept {
+    Item item{};
+    std::memcpy(&item, memory + i * sizeof(Item), sizeof(Item));
+    return item;
+}
+
+// Points at times that are quotients of doubles; others are left to Python.
 PyObject* points(PyObject* self, PyObject* /*unused*/) noexcept {
-    constexpr Py_ssize_t one = sizeof(std::int64_t) + sizeof(double);
     const auto events = nb::steal(PyObject_GetAttr(self, names().events.ptr()));
     if (!events.is_valid()) return nullptr;
     if (!PyBytes_CheckExact(events.ptr())) {
         return PyErr_Format(PyExc_TypeError, "The events are not bytes.");
     }
-    const Py_ssize_t size = PyBytes_Size(events.ptr());
-    if (size == 0) return PyList_New(0);
+    const auto size = static_cast<std::size_t>(PyBytes_Size(events.ptr()));
+    const std::size_t count = size / (sizeof(std::int64_t) + sizeof(double));
+    if (count == 0) return PyList_New(0);
     const auto scale = nb::steal(PyObject_GetAttr(self, names().scale.ptr()));
     if (!scale.is_valid()) return nullptr;
-    const auto rate = nb::steal(PyObject_GetAttr(scale.ptr(), names().rate.ptr()));
-    if (!rate.is_valid()) return nullptr;
-    if (size != one || !PyLong_CheckExact(rate.ptr())) {
-        return PyObject_CallMethodObjArgs(self, names().many_points.ptr(), nullptr);
+    const auto rate = rate_of(scale);
+    if (PyErr_Occurred() != nullptr) return nullptr;
+    const char* times = bytes_memory(events.ptr());
+    const char* values = times + count * sizeof(std::int64_t);
+    nb::object list = nb::steal(PyList_New(static_cast<Py_ssize_t>(count)));
+    if (!list.is_valid()) return nullptr;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto tick = item_at<std::int64_t>(times, i);
+        if (!rate || !in_seconds(tick, *rate)) {
+            return PyObject_CallMethodObjArgs(self, names().many_points.ptr(), nullptr);
+        }
+        nb::object pair = pair_of(ticks::seconds_of(tick, *rate), item_at<double>(values, i));
+        if (!pair.is_valid()) return nullptr;
+        fill_list(list.ptr(), static_cast<Py_ssize_t>(i), pair.release().ptr());
     }
-    const char* memory = bytes_memory(events.ptr());
-    std::int64_t tick = 0;
-    double value = 0.0;
-    std::memcpy(&tick, memory, sizeof tick);
-    std::memcpy(&value, memory + sizeof tick, sizeof value);
-    const nb::object time = time_of(tick, rate);
-    if (!time.is_valid()) return nullptr;
-    const auto number = nb::steal(PyFloat_FromDouble(value));
-    if (!number.is_valid()) return nullptr;
-    auto pair = nb::steal(PyTuple_Pack(2, time.ptr(), number.ptr()));
-    if (!pair.is_valid()) return nullptr;
-    PyObject* list = PyList_New(1);
-    if (list != nullptr) fill_list(list, 0, pair.release().ptr());
-    return list;
+    return list.release().ptr();
 }
 
 PyMethodDef methods[] = {

@@ -1,4 +1,4 @@
-// The quick way to read what an online update in dense time made known: mostly one point, or none.
+// The quick way to read what an online update in dense time made known: a few points, or none.
 #pragma once
 
 #include <nanobind/nanobind.h>

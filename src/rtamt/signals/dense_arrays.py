@@ -48,7 +48,7 @@ class TickSignal(Signal):
         return len(self._events) // 16
 
     def _many_points(self) -> list[tuple[Any, float]]:
-        """Return what :meth:`points` returns, where that is not a single point at a plain number."""
+        """Return what :meth:`points` returns, where times are not quotients of doubles."""
         return Signal.points(self)
 
     @property

@@ -309,3 +309,33 @@ def test_points_are_the_pairs_of_times_and_values(later: Any, resolution: str) -
     for told in answers:
         assert told.points() == list(zip(told.times, told.values, strict=True))
     assert [len(told) for told in answers[:2]] == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("begin", "unit", "resolution"),
+    [
+        (0.0, None, "1ns"),
+        (1.7e9, None, "1ns"),  # doubles are further apart than ticks
+        (-1.7e9, None, "1ns"),
+        (1.7e9, None, "1us"),
+        (1.7e12, "ms", "1ns"),  # too large for seconds
+        (4.5e15, "us", "1ns"),
+        (1.7e9, None, "1/3s"),
+        (0.0, "ms", "1/7s"),
+    ],
+)
+def test_points_of_several_instants_are_the_pairs_of_times_and_values(
+    begin: float, unit: str | None, resolution: str
+) -> None:
+    window = "[0:10000000003ns]" if resolution == "1ns" else "[0:10]"
+    spec = rtamt.parse(f"always{window}(x >= 3)")
+    monitor = spec.monitor(time="dense", resolution=resolution, time_unit=unit)
+    random = np.random.default_rng(1)
+    in_1 = 1 if unit is None else {"ms": 1e3, "us": 1e6}[unit]
+    now, counts = begin, set()
+    for value in random.integers(0, 6, size=300).tolist():
+        now += float(random.uniform(0.5, 4)) * in_1
+        told = monitor.update(now, x=float(value))
+        assert told.points() == list(zip(told.times.tolist(), told.values.tolist(), strict=True))
+        counts.add(len(told))
+    assert {0, 1, 2, 3} <= counts
