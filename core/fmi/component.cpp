@@ -30,6 +30,11 @@ enum class Output : std::uint32_t { robustness, verdict, known, since, lower, up
     return early ? bounds[field] : static_cast<Output>(field);
 }
 
+// By how many seconds two computations of the same communication point may differ.
+[[nodiscard]] double rounding_of(double time) noexcept {
+    return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time);
+}
+
 [[noreturn]] void refuse(const std::string& sentence) {
     throw std::invalid_argument(sentence);
 }
@@ -141,10 +146,9 @@ void Component::advance(double time, double length) {
 std::int64_t Component::instant(double time) const {
     const double place = (time - now_.start) / step();
     const double nearest = std::round(place);
-    // Far from zero, time itself is not more exact.
-    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time) / step();
     constexpr double most = 9e15;
-    if (!(std::abs(place - nearest) <= tolerance + rounding) || std::abs(nearest) > most) {
+    if (!(std::abs(place - nearest) <= tolerance + rounding_of(time) / step()) ||
+        std::abs(nearest) > most) {
         refuse("The communication point " + shown(time) +
                " s is no sampling instant: points must be " + shown(now_.start) +
                " s plus a multiple of the period, " + shown(step()) + " s.");
@@ -183,7 +187,7 @@ void Component::report_bounds(std::span<const rtamt_value> known) noexcept {
 }
 
 void Component::advance_dense(double time) {
-    if (time != now_.reached && std::abs(time - now_.reached) > step()) {
+    if (std::abs(time - now_.reached) > step() + rounding_of(time)) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
     }

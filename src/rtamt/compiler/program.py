@@ -28,11 +28,12 @@ from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.rewrite.desugar import written
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
     from fractions import Fraction
 
     from rtamt.language.formula import Apply, Formula
@@ -181,16 +182,18 @@ class Program:
         origin = self.origins[place]
         return None if origin is None else with_values([origin], self.parameters)[0]
 
-    def for_worst_case(self) -> Program:
+    def for_worst_case(self, formulas: Iterable[Formula] = ()) -> Program:
         """Return the program whose windows take the same time at every sample.
 
-        Raises :class:`UsageError` if it has a sum over a window.
+        ``formulas``: as written, for the message. Raises :class:`UsageError` if it has a sum over a window.
         """
-        for instruction, origin in zip(self.instructions, self.origins, strict=True):
+        for place, (instruction, origin) in enumerate(zip(self.instructions, self.origins, strict=True)):
             if instruction.opcode == "slide_sum":
                 assert origin is not None
+                meanings = {} if self.metadata is None else self.metadata.meanings
+                window = meanings.get(place) or excerpt(written(origin, formulas))
                 raise UsageError(
-                    f"worst_case=True does not take '{excerpt(origin)}', a sum over a window: it is added in blocks, "
+                    f"worst_case=True does not take '{window}', a sum over a window: it is added in blocks, "
                     f"so that some samples take longer; leave worst_case out"
                 )
         return replace(self, worst_case=True)

@@ -70,7 +70,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     """Read a source whole."""
     channels: dict[str, Channel] = {}
     notes, losses = list(source.notes), list(source.losses)
-    for selection in select(source, choice):
+    for selection in _aligned(source, choice):
         raws = selection.table.load(selection.fields)
         losses += selection.table.losses
         timestamps = timestamps_of(source, selection, choice)
@@ -91,7 +91,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     """Read a source in chunks: consecutive traces; the notes of each refer to all so far."""
-    selections = select(source, choice)
+    selections = _aligned(source, choice)
     timestamps = [timestamps_of(source, selection, choice) for selection in selections]
     gaps = [_gaps(source, selection, choice) for selection in selections]
     before = [0] * len(selections)
@@ -127,10 +127,23 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
         )
 
 
+def _aligned(source: Source, choice: Choice) -> list[Selection]:
+    """Return the selection of each table, all with the same clock."""
+    selections = select(source, choice)
+    if source.align is not None:
+        source.align(_places(source, selections))
+    return selections
+
+
+def _places(source: Source, selections: Sequence[Selection]) -> list[int]:
+    of_table = {id(table): place for place, table in enumerate(source.tables)}
+    return [of_table[id(each.table)] for each in selections]
+
+
 def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[list[list[Raw]]]:
     if source.in_one_pass is not None:
-        places = {id(table): place for place, table in enumerate(source.tables)}
-        yield from source.in_one_pass([(places[id(each.table)], each.fields) for each in selections])
+        fields = [each.fields for each in selections]
+        yield from source.in_one_pass(list(zip(_places(source, selections), fields, strict=True)))
         return
     (selection,) = selections
     assert selection.table.chunks is not None

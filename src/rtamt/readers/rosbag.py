@@ -31,6 +31,8 @@ _ELEMENTS = 1000
 _SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
+#: How far the timestamp of a message may be from its recording, in nanoseconds, if both are from the same clock.
+_SAME_CLOCK = 60 * 10**9
 
 #: The steps from a message to a number in it.
 Steps = tuple["str | int", ...]
@@ -42,7 +44,8 @@ def open_bag(path: str, recover: bool = False) -> Source:
     A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
     message of the topic holds. A laser scan also has the column ``/topic.ranges.min``, its least valid range. The
     time of a message is the stamp in its header, in nanoseconds; where there is none, or it was left at 0, the time
-    at which it was recorded.
+    at which it was recorded. Stamps of another clock than that of the recording, such as simulated time, are replaced
+    by the times of recording if topics with the clock of the recording are read, too; a note reports this.
     """
     with ExitStack() as stack:
         reader, losses = stack.enter_context(open_reader(path, recover))
@@ -56,8 +59,12 @@ def open_bag(path: str, recover: bool = False) -> Source:
         def in_one_pass(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
             return _together(reader, [(found[place], fields) for place, fields in wanted])
 
+        def align(places: Sequence[int]) -> None:
+            _align([found[place] for place in places])
+
         tables = tuple(topic.table for topic in found)
-        return Source(path, tables, losses=losses, close=stack.pop_all().close, in_one_pass=in_one_pass)
+        close = stack.pop_all().close
+        return Source(path, tables, losses=losses, close=close, in_one_pass=in_one_pass, align=align)
 
 
 @contextmanager
@@ -122,13 +129,19 @@ def _existing(path: str) -> Path:
     return Path(path)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class _Topic:
-    """A topic: its table, and where the numbers of its columns are in a message."""
+    """A topic: its table, and where the numbers of its columns are in a message.
+
+    ``behind``: nanoseconds from the stamp in the header of its first message to its recording, 0 without a stamp.
+    ``by_recording``: a note on why stamps in headers are ignored; empty if they are used.
+    """
 
     table: Table
     connections: list[Any]
     steps: dict[str, Steps]
+    behind: int
+    by_recording: str = ""
 
     @property
     def name(self) -> str:
@@ -143,8 +156,10 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
         return None
     if len(kinds) > 1:
         raise TraceError(f"the topic {topic} carries several types of messages: {', '.join(sorted(kinds))}")
-    connection, _, raw = first
-    steps = {f"{topic}{_text(path)}": path for path in _numbers(_message(reader, connection, raw))}
+    connection, recorded, raw = first
+    message = _message(reader, connection, raw)
+    steps = {f"{topic}{_text(path)}": path for path in _numbers(message)}
+    stamp = _header_time(message) or recorded
     if connection.msgtype == _SCAN:
         steps[f"{topic}.{_NEAREST}"] = (_NEAREST,)
     time_field = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
@@ -157,8 +172,23 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
         return rows.columns()
 
     fields = [Field(column, column, "", "number") for column in steps]
-    made.append(_Topic(Table((time_field, *fields), load, time_field=time_field), connections, steps))
+    table = Table((time_field, *fields), load, time_field=time_field)
+    made.append(_Topic(table, connections, steps, recorded - stamp))
     return made[0]
+
+
+def _align(topics: Sequence[_Topic]) -> None:
+    """Use the times of recording on topics whose stamps are from another clock than those of the other topics."""
+    same = [topic for topic in topics if abs(topic.behind) <= _SAME_CLOCK]
+    for topic in topics:
+        topic.by_recording = ""
+        if same and abs(topic.behind) > _SAME_CLOCK:
+            side = "behind" if topic.behind > 0 else "ahead of"
+            topic.by_recording = (
+                f"the stamps in the headers on {printable(topic.name)} are {abs(topic.behind) / 1e9:.6g} s {side} the "
+                f"clock of the recording, which is that of {printable(same[0].name)}: its messages have the times of "
+                f"their recording"
+            )
 
 
 class _Rows:
@@ -175,7 +205,7 @@ class _Rows:
 
     def take(self, recorded: int, message: Any) -> None:
         """Add a message; of several with the same timestamp the first."""
-        stamp = _header_time(message) or recorded
+        stamp = (not self._topic.by_recording and _header_time(message)) or recorded
         row = [_at(message, path) for path in self._paths]
         if self._last is not None and stamp <= self._last[0]:
             if stamp == self._last[0]:  # a signal has one value at an instant: the first
@@ -204,7 +234,8 @@ class _Rows:
     def columns(self) -> list[Raw]:
         """Return the messages since the last call."""
         table = self._topic.table
-        table.losses[:] = [] if not self._others else [_repeated_note(self._topic.name, self._others)]
+        repeated = _repeated_note(self._topic.name, self._others) if self._others else ""
+        table.losses[:] = [note for note in (self._topic.by_recording, repeated) if note]
         assert table.time_field is not None
         rows = [list(row) for row in self._rows] if self._recodings else self._rows
         for place, recoding in self._recodings.items():

@@ -89,6 +89,8 @@ class Source:
     #: Places of tables, with fields of each, to the values of all of them, some at a time, in the order in which they
     #: were recorded; None where tables cannot be read side by side.
     in_one_pass: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
+    #: Gives the tables at some places the same clock, before they are read; None where they always have one.
+    align: Callable[[Sequence[int]], None] | None = None
 
     @property
     def signals(self) -> set[str]:

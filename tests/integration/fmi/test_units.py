@@ -165,6 +165,18 @@ def test_in_dense_time_communication_points_are_samples(unit, version):
 
 
 @BOTH
+def test_a_unit_in_dense_time_rejected_steps_at_unix_times(unit, version):
+    text, start = "once[0:30ms](x >= 1)", 1.7e9
+    monitor = rtamt.parse(text).monitor(time="dense")
+    there = unit(text, version, time="dense").begin(start=start)
+    for k in range(100):  # start + k * length is not what the steps add up to
+        there.set(x=k)
+        there.step(start + k * 0.01, 0.01)
+        known = monitor.update(start + k * 0.01, x=k)
+        assert there.get("robustness") == known.values[-1]
+
+
+@BOTH
 def test_fmpy_simulates_a_unit_from_a_recording(exported, version):
     path = exported("once[0:200ms](x >= 1)", version, period=PERIOD)
     n = 20

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,14 @@ def test_the_option_is_part_of_a_compiled_program():
 def test_what_has_no_worst_case_is_rejected(text, settings, message):
     with pytest.raises(UsageError, match=message):
         rtamt.parse(text).monitor(worst_case=True, **settings)
+
+
+@pytest.mark.parametrize("text", ["count[0:1](z < 2)", "duration[0:1](fall(z < 2))"])
+def test_the_rewritten_form_of_a_sum_was_shown(text):
+    spec = rtamt.parse(f"always[0:2]({text} <= 2)")
+    for make in (spec.monitor, spec.compile):
+        with pytest.raises(UsageError, match=rf"does not take '{re.escape(text)}', a sum over a window"):
+            make(worst_case=True)
 
 
 def test_the_definition_has_no_worst_case():

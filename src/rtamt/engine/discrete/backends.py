@@ -177,7 +177,7 @@ class SampleProgram(CompiledSession):
         without = frozenset(PASSES) if parts else frozenset()
         program = Shape.of(formulas).program(domain.period, inputs, without=without)
         if worst_case:
-            program = program.for_worst_case()
+            program = program.for_worst_case(formulas)
         super().__init__(formulas, program)
         self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
 
