@@ -13,7 +13,7 @@
 #include "online.hpp"
 #include "recording.hpp"
 #include "reorder_buffer.hpp"
-#include "tick_points.hpp"
+#include "update_signal.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -74,7 +74,7 @@ NB_MODULE(_core, m) {
     rtamt::python::add_fleet(m);
     rtamt::python::add_reorder_buffer(m);
     rtamt::python::add_recording(m);
-    rtamt::python::add_tick_points(m);
+    rtamt::python::add_update_signal(m);
 
     m.def("opcode_names", &opcode_names, "The names of the opcodes, in the order of their codes.");
 }

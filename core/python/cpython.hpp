@@ -6,9 +6,20 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstddef>
+
 namespace rtamt::python {
 
 #if defined(Py_LIMITED_API)
+
+// The memory of a class itself, behind that of its base, in an object of exactly this class.
+inline void* own_data(PyObject* object, std::size_t /*size*/) noexcept {
+    return PyObject_GetTypeData(object, Py_TYPE(object));
+}
+// The size in the specification of a class that adds so many bytes to its base.
+inline int basicsize_of(std::ptrdiff_t /*base*/, std::size_t size) noexcept {
+    return -static_cast<int>(size);
+}
 
 inline double float_value(PyObject* object) noexcept {
     return PyFloat_AsDouble(object);
@@ -40,6 +51,13 @@ inline void fill_list(PyObject* list, Py_ssize_t i, PyObject* item) noexcept {
 }
 
 #else
+
+inline void* own_data(PyObject* object, std::size_t size) noexcept {
+    return reinterpret_cast<char*>(object) + Py_TYPE(object)->tp_basicsize - size;
+}
+inline int basicsize_of(std::ptrdiff_t base, std::size_t size) noexcept {
+    return static_cast<int>(base) + static_cast<int>(size);
+}
 
 inline double float_value(PyObject* object) noexcept {
     return PyFloat_AS_DOUBLE(object);

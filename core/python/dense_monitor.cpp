@@ -84,11 +84,10 @@ DenseMonitor::DenseMonitor(Program program, const std::vector<nb::str>& names,
 void DenseMonitor::set_time_scale(const nb::type_object& signal, const nb::object& scale,
                                   double rate, bool whole) {
     usage_.require_idle();
-    signal_.emplace(signal, std::array{"_scale", "_events"});
-    scale_ = scale;
+    signals_.emplace(signal, scale);
     rate_ = rate;
     whole_ = whole;
-    nothing_ = signal_of({});
+    nothing_ = nb::steal(signals_->make({}));
     if (!nothing_.is_valid()) throw nb::python_error();
     has_time_scale_ = true;
 }
@@ -203,23 +202,7 @@ bool DenseMonitor::bind_buffers() noexcept {
 
 PyObject* DenseMonitor::result() const noexcept {
     const Events events = results_.front().view();
-    nb::object signal = events.count == 0 ? nothing_ : signal_of(events);
-    return signal.release().ptr();
-}
-
-// An object of the result class; invalid, with a Python exception set, if memory runs out.
-nb::object DenseMonitor::signal_of(const Events& events) const noexcept {
-    const std::size_t times = events.count * sizeof(*events.times);
-    const std::size_t values = events.count * sizeof(*events.values);
-    const auto bytes =
-        nb::steal(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(times + values)));
-    if (!bytes.is_valid()) return {};
-    if (events.count != 0) {
-        char* memory = bytes_memory(bytes.ptr());
-        std::memcpy(memory, events.times, times);
-        std::memcpy(memory + times, events.values, values);
-    }
-    return nb::steal(signal_->make({scale_, bytes}));
+    return events.count == 0 ? nb::borrow(nothing_).release().ptr() : signals_->make(events);
 }
 
 // ---- many samples -------------------------------------------------------------------------------

@@ -12,8 +12,8 @@
 #include "failures.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
-#include "result_class.hpp"
 #include "row.hpp"
+#include "update_signal.hpp"
 #include "usage_guard.hpp"
 
 #include <nanobind/nanobind.h>
@@ -47,8 +47,8 @@ class DenseMonitor {
                  const nb::dict& types, std::shared_ptr<Calls> calls, Exceptions exceptions);
 
     // The unit of times of update() until the next reset(), in ticks, a whole number below 2^53;
-    // `whole`: times are integers. Results are objects of this class, whose `_scale` is the given
-    // one and whose `_events` are bytes: the times, then the values.
+    // `whole`: times are integers. Results are objects of this class of
+    // update_signal_class(), of the given scale.
     void set_time_scale(const nb::type_object& signal, const nb::object& scale, double rate,
                         bool whole);
 
@@ -100,11 +100,10 @@ class DenseMonitor {
     std::vector<dense::EventList> spare_;            // of the next one, which may fail
     std::vector<std::optional<std::int64_t>> until_; // up to when each output was reported
     std::vector<std::int64_t> counts_;               // samples of each input
-    std::optional<ResultClass<2>> signal_;           // the class of the results
-    nb::object scale_;
-    nb::object nothing_;          // the result without events
-    bool has_time_scale_ = false; // whether the time scale has been set
-    double rate_ = 1.0;           // ticks in 1
+    std::optional<UpdateSignals> signals_;           // makes the results
+    nb::object nothing_;                             // the result without events
+    bool has_time_scale_ = false;                    // whether the time scale has been set
+    double rate_ = 1.0;                              // ticks in 1
     bool whole_ = false;
 
     void transfer(Snapshot& snapshot);
@@ -120,7 +119,6 @@ class DenseMonitor {
     [[nodiscard]] bool bind_buffers() noexcept;
     void close();
     [[nodiscard]] PyObject* result() const noexcept;
-    [[nodiscard]] nb::object signal_of(const dense::Events& events) const noexcept;
     [[nodiscard]] nb::tuple take(std::vector<dense::EventList>& results);
 };
 

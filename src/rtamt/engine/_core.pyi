@@ -640,13 +640,12 @@ class DenseDirectEvaluator:
         None for data that has to be converted, is wrong, or makes no value.
         """
 
-class TickPoints:
-    """The base of signals whose class has ``_events``, ticks and then values as bytes, and ``_scale``, their times."""
+def update_signal_class(base: type) -> type:
+    """Return the class of results of updates in dense time, which derives from a class that has slots alone.
 
-    __slots__ = ()
-
-    def points(self) -> list[tuple[Any, float]]:
-        """Return (time, value) pairs of Python's own numbers."""
+    Its objects hold the points; ``_events``, ticks and then values as bytes, and ``_scale``, the format of times, give
+    them to the base, whose ``_many_points()`` does what ``points()`` cannot.
+    """
 
 def read_columns(
     data: Any,

@@ -81,26 +81,31 @@ def _new_rows_by_python(rows: int, width: int) -> FloatArray:
     return np.empty((rows, width))
 
 
+def _class_itself(base: type) -> type:
+    """Stand in for :func:`rtamt.engine._core.update_signal_class`: the Python back ends make no such signals."""
+    return base
+
+
 if TYPE_CHECKING:
     MonitorBase = _core.MonitorBase
     DenseMonitorBase = _core.DenseMonitorBase
     EarlyMonitorBase = _core.EarlyMonitorBase
-    TickPoints = _core.TickPoints
     new_rows = _core.new_rows
     read_columns = _core.read_columns
+    update_signal_class = _core.update_signal_class
 else:
     try:
         from rtamt.engine._core import (
             DenseMonitorBase,
             EarlyMonitorBase,
             MonitorBase,
-            TickPoints,
             new_rows,
             read_columns,
+            update_signal_class,
         )
     except ImportError:
         MonitorBase = DenseMonitorBase = EarlyMonitorBase = _TakenByPython
-        TickPoints = object
+        update_signal_class = _class_itself
         new_rows = _new_rows_by_python
         read_columns = _read_by_python
 

@@ -32,20 +32,18 @@ if TYPE_CHECKING:
 class TickSignal(Signal):
     """A signal with lazily created arrays: most online updates report one point or none.
 
-    Created by the compiled monitor, which sets ``_events``: the ticks, int64, then the values, float64.
+    The base of the class of results of the compiled monitor, whose objects have ``_events``: the ticks, int64, then the
+    values, float64.
     """
 
-    __slots__ = ("_events", "_scale")
+    __slots__ = ()
 
-    _events: bytes
-    _scale: TimeScale
+    if TYPE_CHECKING:  # by the class of results
+        _events: bytes
+        _scale: TimeScale
 
-    def __init__(self, scale: TimeScale, ticks: TickArray, values: FloatArray) -> None:
-        self._scale = scale
-        self._events = ticks.tobytes() + values.tobytes()
-
-    def __len__(self) -> int:
-        return len(self._events) // 16
+    def __reduce__(self) -> tuple[type[Signal], tuple[NDArray[Any], FloatArray]]:
+        return Signal, (self.times, self.values)
 
     def _many_points(self) -> list[tuple[Any, float]]:
         """Return what :meth:`points` returns, where times are not quotients of doubles."""

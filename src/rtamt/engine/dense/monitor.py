@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
-from rtamt.engine.native import DenseMonitorBase, TickPoints
+from rtamt.engine.native import DenseMonitorBase, update_signal_class
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.engine.slow_path import SlowPath
 from rtamt.errors import TraceError, UsageError
@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     from rtamt.signals.dense_arrays import Samples
 
 
-class UpdateSignal(TickPoints, TickSignal):
-    """The result of an update, as the compiled monitor reports it."""
-
-    __slots__ = ()
+#: The class of the results of an update, as the compiled monitor reports them.
+UpdateSignal = update_signal_class(TickSignal)
 
 
 class DenseMonitor(DenseMonitorBase, OnlineMonitor):

@@ -6,6 +6,7 @@ import math
 import struct
 import zlib
 from numbers import Real
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -55,25 +56,31 @@ def lists(results: Any) -> list[tuple[list[int], list[float]]]:
     return [(times.tolist(), values.tolist()) for times, values in results]
 
 
-class Answer:
-    """What an update answers: its scale, and its events as bytes."""
+class Base:
+    """The base of what an update answers."""
 
-    __slots__ = ("_events", "_scale")
+    __slots__ = ("_times",)
 
-    _events: bytes
-    _scale: object
+    def _many_points(self) -> str:
+        return "many points"
+
+
+#: What an update answers: its scale, and its events.
+Answer = _core.update_signal_class(Base)
+#: Of times in seconds, a tick each.
+SCALE = SimpleNamespace(rate=1)
 
 
 def monitor(code: bytes, names: list[str], ignored: set[str] | None = None) -> Any:
     """Return a monitor that is told the time in seconds of one tick."""
     m = _core.DenseMonitor(code, names, ignored)
-    m.set_time_scale(Answer, "scale", 1.0)
+    m.set_time_scale(Answer, SCALE, 1.0)
     return m
 
 
-def decode(answer: Answer) -> tuple[list[int], list[float]]:
+def decode(answer: Any) -> tuple[list[int], list[float]]:
     assert type(answer) is Answer
-    assert answer._scale == "scale"
+    assert answer._scale is SCALE
     half = len(answer._events) // 2
     return np.frombuffer(answer._events[:half], np.int64).tolist(), np.frombuffer(
         answer._events[half:], np.float64
@@ -137,14 +144,14 @@ def test_seconds_are_rounded_to_the_nearest_tick_and_halves_to_the_even_one(
     rate: float, time: float, tick: int
 ) -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
-    m.set_time_scale(Answer, "scale", rate)
+    m.set_time_scale(Answer, SCALE, rate)
     m.update(time, {"a": 1.0})
     assert m.last_times == [tick] == [round(time * rate)]
 
 
 def test_integers_that_are_ticks() -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
-    m.set_time_scale(Answer, "scale", 1.0, True)
+    m.set_time_scale(Answer, SCALE, 1.0, True)
     m.update(np.int64(10**18 + 1), {"a": 1.0})
     assert m.last_times == [10**18 + 1]
     for time in (1e18, True, 2**62, np.int64(2**62), np.uint64(2**63), np.timedelta64(10**18 + 2), "1"):
@@ -156,7 +163,7 @@ def test_before_it_is_told_how_and_after_a_reset_no_time_is_plain() -> None:
     m = _core.DenseMonitor(ALWAYS, ["a"])
     with pytest.raises(_core.Refused, match=r"^time$"):
         m.update(1.0, {"a": 1.0})
-    m.set_time_scale(Answer, "scale", 1.0)
+    m.set_time_scale(Answer, SCALE, 1.0)
     m.reset()
     with pytest.raises(_core.Refused, match=r"^time$"):
         m.update(1.0, {"a": 1.0})
@@ -261,6 +268,16 @@ def test_whole_signals_at_once_and_beyond_their_end() -> None:
     assert lists([_core.dense_scan("until", a, events([1, 7], [0, 1]))]) == [([1], [1.0])]
 
 
+@pytest.mark.parametrize(
+    ("rate", "points"), [(2, [(0.0, 1.0)]), (None, "many points"), (2**53 + 1, "many points")]
+)
+def test_times_that_are_no_quotients_of_doubles_are_left_to_the_base(rate: int | None, points: Any) -> None:
+    m = _core.DenseMonitor(ALWAYS, ["a"])
+    m.set_time_scale(Answer, SimpleNamespace(rate=rate), 1.0)
+    m.update(0, {"a": 1.0})
+    assert m.update(3, {"a": 2.0}).points() == points
+
+
 def test_wrong_calls_say_what_is_wrong() -> None:
     m = monitor(ALWAYS, ["a"])
     with pytest.raises(TypeError, match=r"^DenseMonitor.update takes 2 arguments, got 1.$"):
@@ -275,6 +292,8 @@ def test_wrong_calls_say_what_is_wrong() -> None:
         _core.DenseMonitor(ALWAYS, ["a", "b"])
     with pytest.raises(ValueError, match=r"^Two inputs are called 'a'.$"):
         _core.DenseMonitor(TWO, ["a", "a"])
+    with pytest.raises(ValueError, match=r"^The class of the results is none of update_signal_class\(\).$"):
+        m.set_time_scale(Base, SCALE, 1.0)
     with pytest.raises(IndexError, match=r"^There is no output 1.$"):
         m.known(1)
     with pytest.raises(IndexError, match=r"^There is no output 1.$"):
