@@ -26,6 +26,15 @@ def nearest_file(path: str) -> str:
     return f"; did you mean '{os.path.join(folder, close[0])}'?" if close else ""
 
 
+def is_device(path: str) -> bool:
+    """Return whether a path leads to a device, such as ``/dev/zero``."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):  # texts that are no paths
+        return False
+    return stat.S_ISCHR(mode) or stat.S_ISBLK(mode)
+
+
 def same_file(first: str, second: str) -> bool:
     """Return whether two paths lead to one regular file, which need not exist yet."""
     try:

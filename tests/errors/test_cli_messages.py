@@ -71,6 +71,7 @@ def run(capsys, monkeypatch, tmp_path):
             "there is no file 'specs/nowhere' (if a formula is meant, put it in parentheses)",
         ),
         (["info", "folder"], "'folder' is a directory, expected a specification file or a formula"),
+        (["info", "/dev/zero"], "'/dev/zero' is a device, expected a specification file or a formula"),
         (
             ["info", " "],
             "the specification is empty; give a file or a formula, such as 'always(x >= 3)'",

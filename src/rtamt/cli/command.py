@@ -13,7 +13,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, choices, did_you_mean, readable
-from rtamt.files import nearest_file, write_bytes, write_text
+from rtamt.files import is_device, nearest_file, write_bytes, write_text
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.lazy_numpy import np
@@ -278,6 +278,8 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
             raise CommandError(f"{spec}: {error}") from error
     if os.path.isdir(spec):
         raise CommandError(f"'{spec}' is a directory, expected a specification file or a formula")
+    if is_device(spec):
+        raise CommandError(f"'{spec}' is a device, expected a specification file or a formula")
     called = spec.lower().endswith(_SPECIFICATION_SUFFIXES) or _is_called_like_a_trace(spec)
     if called or _LIKE_A_PATH.fullmatch(spec):
         raise CommandError(

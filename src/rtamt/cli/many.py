@@ -213,12 +213,19 @@ def _row_writer(path: str | None) -> Iterator[Callable[[VerdictTable], None]]:
                 with open(new, "w", newline="", encoding="utf-8") as file:
                     writer = csv.writer(file)
                     writer.writerow(VerdictTable([]).columns)
-                    yield writer.writerows
+                    yield lambda table: writer.writerows(map(_as_cells, table))
             else:
                 with _parquet(new) as write:
                     yield write
     except OSError as error:
         raise UsageError(f"cannot write '{path}': {error.strerror or error}") from None
+
+
+def _as_cells(row: Row) -> Row:
+    """Return a row that spreadsheets show: they would compute a path that begins like a formula."""
+    if not row.recording.startswith(("=", "+", "-", "@")):
+        return row
+    return row._replace(recording=os.path.join(".", row.recording))
 
 
 @contextmanager

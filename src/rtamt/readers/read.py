@@ -6,7 +6,8 @@ import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import UsageError
+from rtamt.errors import TraceError, UsageError
+from rtamt.files import is_device
 from rtamt.language.units.durations import check_unit, positive_period
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
@@ -167,7 +168,10 @@ def _open(source: Any, sheet: str | None, query: str | None, recover: bool) -> S
         raise UsageError("a query is for a database, whose address looks like sqlite:///log.db")
     if isinstance(source, (str, os.PathLike)):
         path = os.fspath(source)
-        return format_of(path).open(path, sheet, recover)
+        known = format_of(path)
+        if is_device(path):  # which has no end
+            raise TraceError(f"'{path}' is a device, expected a file")
+        return known.open(path, sheet, recover)
     found = frames.source_of(source)
     if found is None:
         kinds = ", ".join(known.name for known in FORMATS)

@@ -47,13 +47,25 @@ class Checkpoint(NamedTuple):
         Checkpoint(topic='cars', partition=3, offset=17, state=b'...')
         """
         body, digest = content[:-_DIGEST], content[-_DIGEST:]
-        if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != digest:
-            raise UsageError(
-                f"'{place}' is no checkpoint of rtamt, or a damaged one: delete it to read the partition from its start"
-            )
-        line, _, state = body[len(_MAGIC) :].partition(b"\n")
+        if body.startswith(_MAGIC) and hashlib.sha256(body).digest() == digest:
+            line, _, state = body[len(_MAGIC) :].partition(b"\n")
+            if (header := _header(line)) is not None:
+                return cls(*header, state)
+        raise UsageError(
+            f"'{place}' is no checkpoint of rtamt, or a damaged one: delete it to read the partition from its start"
+        )
+
+
+def _header(line: bytes) -> tuple[str, int, int] | None:
+    """Return the topic, the partition and the offset; None for a header that only its digest makes right."""
+    try:
         header = json.loads(line)
-        return cls(header["topic"], header["partition"], header["offset"], state)
+        topic, partition, offset = header["topic"], header["partition"], header["offset"]
+    except (KeyError, RecursionError, TypeError, ValueError):
+        return None
+    if not isinstance(topic, str) or not all(type(each) is int and each >= 0 for each in (partition, offset)):
+        return None
+    return topic, partition, offset
 
 
 class Checkpoints:

@@ -59,7 +59,7 @@ class Manifest:
                 entry = json.loads(line)
                 if entry["key"] == self._key:
                     self._places[_recording(entry)] = at
-            except (KeyError, ValueError):
+            except (KeyError, RecursionError, TypeError, ValueError):
                 raise UsageError(
                     f"the manifest '{path}' is damaged at byte {at}: delete it, and all is computed again"
                 ) from None

@@ -73,6 +73,8 @@ def load_search(path: str | os.PathLike[str]) -> Search:
         data = _toml().loads(place.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"cannot read '{path}': {error.strerror}") from error
+    except RecursionError:
+        raise UsageError(f"{path}: it is nested too deeply") from None
     except ValueError as error:
         raise UsageError(f"{path}: {error}") from error
     try:

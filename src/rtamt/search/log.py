@@ -93,9 +93,9 @@ def _read(path: Path, about: Mapping[str, Any]) -> list[Evaluation]:
         if not text.endswith("\n"):  # the run was killed while it wrote
             lines = lines[:-1]
             write_text(path, "\n".join((head, *lines)) + "\n")
-        before = json.loads(head)["search"]
+        before = dict(json.loads(head)["search"])
         known = [Evaluation.from_json(json.loads(line)) for line in lines]
-    except (ValueError, KeyError, TypeError, OSError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError, OSError) as error:
         raise UsageError(f"'{path}' is no record of a search; give the run a new file") from error
     now = json.loads(json.dumps(about))
     for key in now:

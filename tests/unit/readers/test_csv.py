@@ -261,6 +261,14 @@ def test_message_for_a_directory(tmp_path, monkeypatch):
     assert str(error.value) == "'log.csv' is a directory, expected a file"
 
 
+def test_message_for_a_device(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "log.csv").symlink_to("/dev/zero")
+    with pytest.raises(TraceError) as error:
+        read("log.csv", ["x"])
+    assert str(error.value) == "'log.csv' is a device, expected a file"
+
+
 def test_message_for_an_unreadable_file():
     with pytest.raises(TraceError) as error:
         read("x" * 300 + ".csv", ["x"])

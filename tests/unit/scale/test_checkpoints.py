@@ -1,5 +1,6 @@
 """Checkpoints: replaced as a whole, in folders and object stores; damaged ones are rejected."""
 
+import hashlib
 import os
 
 import pytest
@@ -63,4 +64,31 @@ def test_names_are_no_paths():
         Checkpoints("x", "../group", "cars")
     assert str(caught.value) == (
         "the group '../group' cannot name a file: use letters, digits, '.', '_' and '-' with checkpoints"
+    )
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        b"",
+        b"7",
+        b"{}",
+        b"[" * 100_000,
+        b'{"topic": 1, "partition": 0, "offset": 7}',
+        b'{"topic": "cars", "partition": true, "offset": 7}',
+        b'{"topic": "cars", "partition": 0, "offset": "7"}',
+        b'{"topic": "cars", "partition": 0, "offset": -7}',
+    ],
+)
+def test_a_checkpoint_with_a_forged_header_is_rejected(tmp_path, header):
+    found = Checkpoints(str(tmp_path), "group", "cars")
+    found.save(Checkpoint("cars", 0, 7, b"state"))
+    path = tmp_path / "group" / "cars" / "0.checkpoint"
+    magic = path.read_bytes().partition(b"{")[0]
+    body = magic + header + b"\nstate"
+    path.write_bytes(body + hashlib.sha256(body).digest())
+    with pytest.raises(rtamt.UsageError) as caught:
+        found.load(0)
+    assert str(caught.value) == (
+        f"'{path}' is no checkpoint of rtamt, or a damaged one: delete it to read the partition from its start"
     )

@@ -153,6 +153,14 @@ def test_a_damaged_line_of_a_manifest_is_reported(folder, tmp_path):
     assert manifest.read_bytes() == damaged
 
 
+@pytest.mark.parametrize("rest", [b"[" * 100_000, b"7}"])
+def test_a_forged_line_of_a_manifest_is_reported(folder, tmp_path, rest):
+    manifest = tmp_path / "done.jsonl"
+    manifest.write_bytes(b'{"rtamt":1,' + rest + b"\n")
+    with pytest.raises(rtamt.UsageError, match="is damaged at byte 0: delete it"):
+        list(check_recordings(Job(suite()), recordings_of([str(folder)]), manifest=str(manifest)))
+
+
 def test_a_file_that_is_no_manifest_is_not_touched(folder, tmp_path):
     other = tmp_path / "notes.txt"
     other.write_text("my notes\n")
@@ -252,6 +260,25 @@ def test_the_table_is_written_as_csv_and_parquet_with_equal_rows(folder, tmp_pat
     assert parquet.num_rows == 6
     _, out, _ = run(capsys, *arguments)
     assert "6 recordings, 6 of them from the manifest: " in out
+
+
+def test_a_path_that_begins_like_a_formula_is_no_formula_in_the_table(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_csv(tmp_path / "=1+1.csv", 1)
+    run(
+        capsys,
+        "always(x <= 4)",
+        "=*.csv",
+        "--engine",
+        "local",
+        "--period",
+        "500ms",
+        "--jobs",
+        1,
+        "-o",
+        "t.out.csv",
+    )
+    assert (tmp_path / "t.out.csv").read_text().splitlines()[1].startswith("./=1+1.csv,")
 
 
 def test_rows_as_json(folder, capsys):

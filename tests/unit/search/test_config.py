@@ -104,6 +104,13 @@ def test_a_file_with_a_mistake(problem, old, new, sentence):
     assert sentence in str(caught.value)
 
 
+def test_a_file_that_is_nested_too_deeply(problem):
+    problem.write_text("a = " + "[" * 100_000)
+    with pytest.raises(UsageError) as caught:
+        load_search(problem)
+    assert str(caught.value) == f"{problem}: it is nested too deeply"
+
+
 def test_a_file_that_is_not_there():
     with pytest.raises(UsageError, match=r"cannot read 'none.toml': No such file or directory"):
         load_search("none.toml")

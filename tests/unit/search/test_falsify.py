@@ -157,9 +157,10 @@ def test_a_record_of_another_search_is_refused(tmp_path):
         falsify(VALLEY, budget=2, seed=3, record=record)
 
 
-def test_a_record_that_is_none(tmp_path):
+@pytest.mark.parametrize("text", ["speed,height\n1,2\n", '{"search": 7}\n', "[" * 100_000 + "\n"])
+def test_a_record_that_is_none(tmp_path, text):
     record = tmp_path / "run.jsonl"
-    record.write_text("speed,height\n1,2\n")
+    record.write_text(text)
     with pytest.raises(UsageError, match="is no record of a search; give the run a new file"):
         falsify(VALLEY, record=record)
 
