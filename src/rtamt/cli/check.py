@@ -96,9 +96,9 @@ options have changed; after a crash, the same command continues. --manifest alon
 --json prints one object per line: {"requirement", "trace", "satisfied", "robustness", "first_violation",
 "samples", "period", "episodes"}, with "description" and "severity" for formulas after 'require'; or
 {"requirement", "trace", "error"}, or {"requirement", "trace", "unchecked"} with the reason.
-"episodes" is an object {"count", "worst", "first"}: the number of maximal runs of
-violation, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]. For 'always f' they are the runs in
-which f is violated. The key is absent if chunks or --early do not determine the episodes. "first_violation" is
+"episodes" is an object {"count", "worst", "first"}: the number of maximal runs in which the robustness is
+below 0, the worst, and the first 100 as [{"begin", "end", "worst", "at"}]. For 'always f' it is the robustness of
+f. The key is absent if chunks or --early do not determine the episodes. "first_violation" is
 the first instant at which f does not hold for 'always f', the earliest of the parts for a conjunction, and the
 first instant of the trace for all other formulas: in seconds, or a date if the trace has dates; null if there is
 none. In dense time, "period" is null. Infinities are the strings "inf" and "-inf", because JSON has none. With
