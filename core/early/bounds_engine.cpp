@@ -176,7 +176,7 @@ void BoundsEngine::settle(Tick closed, std::span<const Tick> wanted) {
 std::size_t BoundsEngine::bytes() const noexcept {
     std::size_t sum = 0;
     for (const State& state : nodes_)
-        sum += state.own[0].bytes() + state.own[1].bytes() + state.in_order.bytes();
+        sum += state.own[0].bytes() + state.own[1].bytes() + state.values.bytes();
     for (const auto& known : inputs_)
         sum += known.bytes();
     return sum;
@@ -207,8 +207,10 @@ void BoundsEngine::transfer(Snapshot& snapshot) {
     awaited_ = partial_;
     for (WindowSums& sums : sums_)
         sums.forget();
-    for (State& state : nodes_)
+    for (State& state : nodes_) {
         state.slid = unread;
+        state.wait = 0;
+    }
     clear();
 }
 

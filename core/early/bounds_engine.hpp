@@ -170,10 +170,12 @@ class BoundsEngine {
         };
         Undefined undefined;
         Undefined undefined_before; // the last change
-        // Of windows over an atom whose samples come in order, in the register that takes the
-        // least: the values of the atom up to a tick; `unread` where they are not known.
-        Sliding in_order{false};
+        // Of windows over an atom that learns from rows, in the register that takes the least: the
+        // values of the atom up to a tick; `unread` where they are not known, and how many pieces
+        // to wait until they are read.
+        Sliding values{false};
         Tick slid = -1;
+        Tick wait = 0;
     };
     static constexpr Tick unread = -2;
     struct Undo {
@@ -200,7 +202,7 @@ class BoundsEngine {
     std::vector<Undo> journal_;                       // of a change that may fail
     std::vector<UndoInput> input_journal_;            // the same of inputs
     bool journaling_ = false;
-    bool in_order_ = false; // what changes is a row
+    bool of_row_ = false; // what changes is a row
     bool keeps_undo_ = false;
     std::vector<double> exact_;                // results of steps
     std::vector<Bounds> bounds_;               // results of steps
@@ -257,6 +259,7 @@ class BoundsEngine {
     void change(State& state, int reg, Run run, double now);
     void lift(State& state, int reg, Tick l, Tick r, double now);
     void append(State& state, int reg, Tick t, double now);
+    void raise_end(State& state, int reg, Tick l, Tick r, double now);
     void pass(std::uint32_t index, int reg);
     void combine(std::uint32_t index, int reg, bool up);
     void slide(std::uint32_t index, int reg, bool up);
@@ -264,13 +267,21 @@ class BoundsEngine {
     void pulses(std::uint32_t index, int reg);
     void slide_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void run_least(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
-    void raise_in_order(State& state, int reg, const Node& node, Piece piece);
-    void slide_in_order(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     void slide_truth(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    void slide_piece(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
     template <bool up>
     void until(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);
     template <bool up, bool dense>
     void since(State& state, int reg, const Runs& hold, const Runs& goal, Tick l, Tick r);
+
+    // windows_of_rows.cpp: windows over atoms that learn from rows
+    [[nodiscard]] std::optional<Failure> propagate_row();
+    void raise_of_row(State& state, int reg, const Node& node, Piece piece);
+    void slide_of_row(State& state, int reg, const Node& node, const Runs& operand, Piece piece);
+    void add_value(State& state, int reg, const Node& node, Tick t, double value);
+    void add_values(State& state, int reg, const Node& node, const Runs& operand);
+    void read_values(State& state, const Node& node, const Runs& operand);
+    [[nodiscard]] Tick passed(const Node& node) const noexcept;
 };
 
 } // namespace rtamt::early

@@ -12,12 +12,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::take(Tick t, std::span<const 
     begin(t);
     journaling_ = fallible_ || awaited_;
     if (const auto failure = put(t, values, atoms_)) return attempt(failure);
-    in_order_ = true;
-    const auto failure = propagate(false);
-    in_order_ = false;
-    for (std::size_t i = 0; failure && i < nodes_.size(); ++i)
-        nodes_[i].slid = unread;
-    return attempt(failure);
+    return attempt(propagate_row());
 }
 
 // Every atom is computed before anything changes.
@@ -52,7 +47,7 @@ std::optional<BoundsEngine::Failure>
 BoundsEngine::late_row(Tick t, std::span<const Bounds> values,
                        std::span<const std::uint32_t> changed) {
     begin(t);
-    journaling_ = partial_;
+    journaling_ = fallible_ || awaited_;
     std::span<const std::uint32_t> atoms(atoms_);
     if (changed.size() < values.size()) {
         touched_.clear();
@@ -69,12 +64,13 @@ BoundsEngine::late_row(Tick t, std::span<const Bounds> values,
     }
     const auto failure = exact ? put<double>(t, numbers_, atoms) : put<Bounds>(t, values, atoms);
     if (failure) { // whether that is an error depends on what may still come
+        journaling_ = true;
         std::ranges::copy(values, row_.begin());
         for (const std::uint32_t i : atoms) {
             if (const auto error = assess(i, t, t, false)) return attempt(error);
         }
     }
-    return attempt(propagate(false));
+    return attempt(propagate_row());
 }
 
 std::optional<BoundsEngine::Failure> BoundsEngine::row(Tick t, std::span<const double> values) {

@@ -41,10 +41,20 @@ void BoundsEngine::append(State& state, int reg, Tick t, double now) {
     if (t < state.from || t > state.to) return;
     Runs& own = state.own[static_cast<std::size_t>(reg)];
     const Run rest = own.last_run();
-    if (rest.begin != t || journaling_) return lift(state, reg, t, t, now);
+    if (rest.begin != t || journaling_) return raise_end(state, reg, t, t, now);
     if (!(rest.value < now)) return;
     own.extend(now);
     state.out[static_cast<std::size_t>(reg)].push_back({t, t, rest.value, now});
+}
+
+// Raises what is below where values never rise from one tick to the next.
+void BoundsEngine::raise_end(State& state, int reg, Tick l, Tick r, double now) {
+    const auto raised = [&](const Run& run) {
+        state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
+    };
+    if (journaling_ || !state.own[static_cast<std::size_t>(reg)].raise_end(l, r, now, raised)) {
+        lift(state, reg, l, r, now);
+    }
 }
 
 void BoundsEngine::pass(std::uint32_t index, int reg) {
@@ -140,56 +150,23 @@ void BoundsEngine::slide(std::uint32_t index, int reg, bool up) {
     State& state = nodes_[index];
     const Runs& operand = runs(own.a, reg);
     for (const Piece& piece : new_data(own.a, reg)) {
-        if (in_order_ && node(own.a / 2).kind == Kind::atom && own.low > -forever) {
-            up ? raise_in_order(state, reg, own, piece)
-               : slide_in_order(state, reg, own, operand, piece);
+        if (of_row_ && node(own.a / 2).kind == Kind::atom && own.low > -forever) {
+            up ? raise_of_row(state, reg, own, piece)
+               : slide_of_row(state, reg, own, operand, piece);
         } else if (up) {
             lift(state, reg, plus(piece.l, -own.high), plus(piece.r, -own.low), piece.now);
         } else if (own.low <= -forever) { // where the run of the operand began may be forgotten
             run_least(state, reg, own, operand, piece);
-        } else if (truths_[own.a / 2]) {
-            slide_truth(state, reg, own, operand, piece);
         } else {
-            slide_least(state, reg, own, operand, piece);
+            slide_piece(state, reg, own, operand, piece);
         }
     }
 }
 
-// All windows that a sample is in end with it or later: their greatest values never rise from one
-// to the next.
-void BoundsEngine::raise_in_order(State& state, int reg, const Node& node, Piece piece) {
-    const Tick l = std::max(state.from, piece.l - node.high);
-    const Tick r = std::min(state.to, piece.r - node.low);
-    if (l > r) return;
-    const auto raise = [&](const Run& run) {
-        state.out[static_cast<std::size_t>(reg)].push_back(
-            {run.begin, run.end, run.value, piece.now});
-    };
-    if (!journaling_ &&
-        state.own[static_cast<std::size_t>(reg)].raise_end(l, r, piece.now, raise)) {
-        return;
-    }
-    lift(state, reg, l, r, piece.now);
-}
-
-// The least value of a window is what was known before any sample came, until it has all of them.
-void BoundsEngine::slide_in_order(State& state, int reg, const Node& node, const Runs& operand,
-                                  Piece piece) {
-    if (state.slid == unread) {
-        state.in_order.clear();
-        for (Tick t = std::max<Tick>(0, piece.l - (node.high - node.low)); t < piece.l;) {
-            const Run run = operand.at(t);
-            state.slid = std::min(run.end, piece.l - 1);
-            state.in_order.add(state.slid, run.value);
-            t = state.slid + 1;
-        }
-    } else if (state.slid + 1 < piece.l) { // samples without a change, or that never came
-        state.in_order.add(piece.l - 1, piece.old);
-    }
-    state.in_order.add(piece.r, piece.now);
-    state.slid = piece.r;
-    const Tick t = piece.r - node.high;
-    if (t >= 0) append(state, reg, t, state.in_order.from(t + node.low));
+void BoundsEngine::slide_piece(State& state, int reg, const Node& node, const Runs& operand,
+                               Piece piece) {
+    truths_[node.a / 2] ? slide_truth(state, reg, node, operand, piece)
+                        : slide_least(state, reg, node, operand, piece);
 }
 
 // What a piece of truth decides are the windows that lie in its run.

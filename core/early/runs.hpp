@@ -6,6 +6,7 @@
 
 #include "step_map.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -57,9 +58,9 @@ class Runs : public StepMap<double> {
     least(Tick l, Tick r, double floor = -std::numeric_limits<double>::infinity()) const noexcept;
     [[nodiscard]] double most(Tick l, Tick r) const noexcept;
 
-    // Raises all values in [l, r] that are below this one, where values from l on never rise; calls
-    // `raised` with each run as it was. Returns false, with nothing done, unless r lies in the last
-    // run, and all that is raised in the last chunk, which has room.
+    // Raises all values in [l, r] that are below this one, where values from l to r never rise;
+    // calls `raised` with each run as it was. Returns false, with nothing done, unless r and all
+    // that is raised lie in the last chunk, which has room.
     template <class Raised>
     [[nodiscard]] bool raise_end(Tick l, Tick r, double value, Raised&& raised);
 
@@ -78,28 +79,50 @@ bool Runs::raise_end(Tick l, Tick r, double value, Raised&& raised) {
     Entry& entry = directory_.back();
     Chunk& chunk = *entry.chunk;
     const int last = chunk.end - 1;
-    const double rest = chunk.value[last];
-    if (chunk.start[last] > r) return false;
+    int place = last;
+    while (chunk.start[place] > r) {
+        if (place == chunk.begin) return false;
+        --place;
+    }
+    const double rest = chunk.value[place];
     if (!(rest < value)) return true;
-    int place = last; // the first run that is raised
-    while (place > chunk.begin && chunk.start[place] > l && chunk.value[place - 1] < value)
+    int right = place + 1;                               // the first run behind those raised
+    while (place > chunk.begin && chunk.start[place] > l // the first run that is raised
+           && chunk.value[place - 1] < value)
         --place;
     if ((place == chunk.begin && directory_.size() > head_ + 1) || last + 2 >= capacity)
         return false;
     const Tick begin = chunk.start[place] < l ? l : chunk.start[place];
-    for (int i = place; i <= last; ++i) {
-        raised(Run{i == place ? begin : chunk.start[i], i < last ? chunk.start[i + 1] - 1 : r,
+    for (int i = place; i < right; ++i) {
+        raised(Run{i == place ? begin : chunk.start[i], i < right - 1 ? chunk.start[i + 1] - 1 : r,
                    chunk.value[i]});
     }
     const bool splits = chunk.start[place] < begin;
     if (splits) ++place;
-    if (splits || place == chunk.begin || chunk.value[place - 1] != value) {
+    const bool joins = !splits && place > chunk.begin && chunk.value[place - 1] == value;
+    const bool leaves = right > last || chunk.start[right] > r + 1; // a rest of the last one
+    const int next = place + (joins ? 0 : 1) + (leaves ? 1 : 0);
+    if (right <= last) {
+        if (!leaves && chunk.value[right] == value) ++right; // which continues with this value
+        if (next > right) {
+            std::copy_backward(chunk.start + right, chunk.start + chunk.end,
+                               chunk.start + chunk.end + (next - right));
+            std::copy_backward(chunk.value + right, chunk.value + chunk.end,
+                               chunk.value + chunk.end + (next - right));
+        } else if (next < right) {
+            std::copy(chunk.start + right, chunk.start + chunk.end, chunk.start + next);
+            std::copy(chunk.value + right, chunk.value + chunk.end, chunk.value + next);
+        }
+    }
+    chunk.end += next - right;
+    if (!joins) {
         chunk.start[place] = begin;
         chunk.value[place++] = value;
     }
-    chunk.start[place] = r + 1;
-    chunk.value[place] = rest;
-    chunk.end = place + 1;
+    if (leaves) {
+        chunk.start[place] = r + 1;
+        chunk.value[place] = rest;
+    }
     changed(directory_.size() - 1);
     return true;
 }

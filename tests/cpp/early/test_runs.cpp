@@ -164,7 +164,60 @@ void check_order(std::uint32_t seed, int values, Tick span) {
     CHECK(2 * in_place > static_cast<std::size_t>(ticks));
 }
 
+// Values raised before the last run too, wherever those before them never rise.
+void check_raised(std::uint32_t seed, int values) {
+    CAPTURE(seed);
+    constexpr Tick ticks = 300;
+    Random random(seed);
+    Runs runs;
+    std::vector<double> model(ticks + 1, -rtamt::infinity);
+    std::size_t in_place = 0;
+    std::size_t calls = 0;
+    for (Tick newest = 0; newest < ticks; newest += random.between(0, 2)) {
+        const Tick r = std::max<Tick>(0, newest - random.between(0, 8));
+        Tick l = r; // values do not rise from here on
+        while (l > 0 && r - l < 40 && random.chance(95) &&
+               model[static_cast<std::size_t>(l - 1)] >= model[static_cast<std::size_t>(l)])
+            --l;
+        const auto value = static_cast<double>(random.between(0, values));
+        const std::vector<double> before = model;
+        Tick next = l;
+        const bool done = runs.raise_end(l, r, value, [&](const Run& run) {
+            REQUIRE(next <= run.begin);
+            REQUIRE(run.end <= r);
+            for (Tick k = run.begin; k <= run.end; ++k) {
+                REQUIRE(model[static_cast<std::size_t>(k)] == run.value);
+                REQUIRE(run.value < value);
+                model[static_cast<std::size_t>(k)] = value;
+            }
+            next = run.end + 1;
+        });
+        REQUIRE((done || model == before));
+        while (const auto run = runs.first<Below>(l, r, value)) {
+            REQUIRE(!done);
+            runs.set(run->begin, run->end, value);
+            for (Tick k = run->begin; k <= run->end; ++k)
+                model[static_cast<std::size_t>(k)] = value;
+        }
+        for (Tick k = 0; k <= newest + 1; ++k) {
+            const Run run = runs.at(k);
+            REQUIRE(run.value == model[static_cast<std::size_t>(k)]);
+            if (run.begin > 0) REQUIRE(runs.at(run.begin - 1).value != run.value); // maximal
+        }
+        REQUIRE(runs.least(l, r) == *std::min_element(model.begin() + l, model.begin() + r + 1));
+        REQUIRE(runs.most(l, r) == *std::max_element(model.begin() + l, model.begin() + r + 1));
+        in_place += done ? 1 : 0;
+        ++calls;
+    }
+    CHECK(4 * in_place > 3 * calls);
+}
+
 } // namespace
+
+TEST_CASE("what is raised near the end is that of an array") {
+    for (std::uint32_t seed = 0; seed < 40; ++seed)
+        check_raised(seed, seed % 2 == 0 ? 3 : 1'000'000);
+}
 
 TEST_CASE("what comes in the order of time is that of an array") {
     for (std::uint32_t seed = 0; seed < 20; ++seed)
