@@ -103,7 +103,9 @@ class Episode:
             self._rates: Any = spec.monitor(verdict="interval", at="start", ranges=settings.ranges)
         else:
             self._rates = settings.rated.monitor()
-        self._judge: Any = spec.monitor(verdict="eager") if settings.terminate else None
+        # Where ``ranges`` replaces a declared range, a sample may lie outside the latter.
+        replaced = {name: each for name, each in (settings.ranges or {}).items() if name in spec.ranges}
+        self._judge: Any = spec.monitor(verdict="eager", ranges=replaced) if settings.terminate else None
         self.input_names: tuple[str, ...] = spec.input_names
         self.running = False
         #: Whether the reward of a step contains that of the environment.

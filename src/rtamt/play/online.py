@@ -104,7 +104,7 @@ def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | Non
     horizon = watched.horizon
     if not isfinite(horizon):
         return None
-    monitor = watched.monitor(verdict="interval", at="every", time=result.trace.domain)
+    monitor = _monitor(watched, result, verdict="interval", at="every")
     instants = []
     for position, seconds, row in _rows(result, monitor.input_names, x_axis):
         if position > now:
@@ -120,6 +120,11 @@ def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | Non
         if known.lower != known.upper:
             pending.append([position, number(known.lower), number(known.upper)])
     return pending
+
+
+def _monitor(watched: Specification, result: Result, **settings: Any) -> Any:
+    # Evaluations do not check declared ranges, so that a sample may lie outside.
+    return watched.monitor(time=result.trace.domain, ranges=watched._unlimited, **settings)
 
 
 def _result(request: Request, sources: Sources) -> Result:
@@ -166,10 +171,10 @@ def _rows(
 
 def _runs(watched: Specification, result: Result, x_axis: XAxis) -> list[Run]:
     """Return intervals with their verdict and the position of the sample that decided it; None: the end did."""
-    domain: Any = result.trace.domain
-    monitor: Any = watched.monitor(verdict="eager", time=domain)
+    domain = result.trace.domain
+    monitor = _monitor(watched, result, verdict="eager")
     found: list[Run] = []
-    start, dense = x_axis.start, result.trace.domain.continuous
+    start, dense = x_axis.start, domain.continuous
     period = float(domain.period or 0)
 
     def take(verdicts: list[Any], now: float | None) -> None:

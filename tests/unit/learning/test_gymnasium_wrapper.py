@@ -134,6 +134,17 @@ def test_an_episode_terminates_with_the_earliest_verdict(formula, around, rows):
         assert steps[-1][4]["satisfied"] == verdict.satisfied
 
 
+def test_a_sample_outside_a_declared_range_that_ranges_replaces_was_an_error():
+    spec = rtamt.parse("input float x in [0, 6]  always(x >= 3)")
+    env = RobustnessReward(
+        Replay([(5, 0), (9, 0), (2, 0), (4, 0)]), spec, SIGNALS, reward="interval", ranges={"x": (0, 10)}
+    )
+    steps = play(env)
+    assert len(steps) == 2
+    assert steps[-1][2]
+    assert steps[-1][4]["satisfied"] is False
+
+
 def test_of_always_each_step_is_rated_and_a_violation_terminates():
     env = RobustnessReward(
         Replay([(5, 0), (4, 0), (2, 0), (9, 0)]), rtamt.parse("always(x >= 3) and always(y <= 8)"), SIGNALS

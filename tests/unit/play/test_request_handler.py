@@ -239,6 +239,14 @@ def test_in_discrete_time_each_verdict_is_that_of_the_eager_monitor(handler):
     assert {begin: (good, at) for begin, _, good, at in runs if at is not None} == expected
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_sample_outside_its_declared_range_ended_the_replay(handler, time):
+    message = {**MESSAGE, "time": time}
+    declared = {**message, "text": f"input float req in [0, 5]  input float gnt in [0, 3.5]  {TEXT}"}
+    for kind, at in (("replay", {}), ("cursor", {"at": 20})):
+        assert handler.answer(kind, {**declared, **at}) == handler.answer(kind, {**message, **at})
+
+
 def test_pending_instants_have_intervals_that_contain_their_value(handler):
     final = rtamt.parse("req >= 3 -> eventually[0:5](gnt >= 3)").evaluate(
         {"req": held(REQ, 31), "gnt": held(GNT, 31)}, period=1
