@@ -252,7 +252,7 @@ class DenseTrace(DomainTrace):
     def position(self, at: Any) -> int:
         """See :class:`DomainTrace`."""
         try:
-            found = int(self.scale.widened([[at]]).ticks([at], "at")[0]) - self.start
+            found = self.later(at)
         except (StlError, TypeError, ValueError):
             found = -1
         if 0 <= found <= self.last:
@@ -261,6 +261,10 @@ class DenseTrace(DomainTrace):
             f"{shown(at)} is no instant of the recording, "
             f"which lasts from {self.show(0)} to {self.show(self.last)}"
         )
+
+    def later(self, at: Any) -> int:
+        """See :class:`DomainTrace`."""
+        return int(self.scale.widened([[at]]).ticks([at], "at")[0]) - self.start
 
     @property
     def origin(self) -> Fraction | np.datetime64:

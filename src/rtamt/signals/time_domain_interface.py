@@ -259,6 +259,10 @@ class DomainTrace(ABC):
     def position(self, at: Any) -> int:
         """Return the position of a time in the caller's format; raise :class:`UsageError` outside the trace."""
 
+    def later(self, at: Any) -> int:
+        """Return the position of a time at which signals may hold their last values, after the end of the trace."""
+        return self.position(at)
+
     @abstractmethod
     def values(self, name: str) -> FloatArray:
         """Return the values of the samples of a variable."""

@@ -202,7 +202,7 @@ def _finding(name: str, key: str, result: Result, variable_keys: Mapping[str, st
         verdicts,
         _known(result) if bounds else None,
         {SATISFIED: True, VIOLATED: False}.get(verdicts[0][1]) if trace.bounds else result.satisfied,
-        None if violated is None else _nanoseconds(result, trace.position(violated)),
+        None if violated is None else _nanoseconds(result, trace.later(violated)),
         tuple(
             episode.with_times(lambda position: _nanoseconds(result, position))
             for episode in episodes_in_steps(result, certain=True)

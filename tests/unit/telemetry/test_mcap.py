@@ -9,7 +9,7 @@ import pytest
 from mcap.reader import NonSeekingReader, make_reader
 
 import rtamt
-from rtamt.telemetry import write_mcap
+from rtamt.telemetry import metrics, write_mcap
 from rtamt.telemetry.content import content_of
 from tests.unit.telemetry.results import EPOCH, drive, messages, topics
 
@@ -284,3 +284,12 @@ def test_messages_are_plain_json(path):
     with path.open("rb") as file:
         for _, _, message in make_reader(file).iter_messages():
             json.loads(message.data, parse_constant=refuse)
+
+
+def test_a_violation_after_the_last_sample_was_an_error(tmp_path):
+    spec = rtamt.parse("always(minimum[1:1](x) >= 1)", time="dense")
+    result = spec.evaluate({"x": ([1, 5, 7], [4, 4, -1])})  # at 8 s, where the last value holds
+    write_mcap(result, tmp_path / "late.mcap")
+    ((_, summary),) = messages(tmp_path / "late.mcap")["/rtamt/summary"]
+    assert summary["requirements"][0]["first_violation"] == {"sec": 8, "nsec": 0}
+    assert metrics(result)["requirement_1/first_violation"] == 7

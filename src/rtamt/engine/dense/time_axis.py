@@ -79,7 +79,7 @@ class DenseTimeAxis(TimeAxis):
 
     def later(self, time: Any) -> int:
         """See :class:`TimeAxis`."""
-        return int(self._recording.scale.widened([[time]]).ticks([time], "at")[0]) - self._start
+        return self._recording.later(time)
 
     def time(self, cell: int) -> Any:
         """See :class:`TimeAxis`."""
