@@ -1,9 +1,10 @@
 """The part of :mod:`dataclasses` that this package uses, with methods generated on first use.
 
 The standard library compiles five methods for each class when it is defined, which took a third of the time of every
-command; most classes are not instantiated by most commands. Here ``__init__`` is compiled by the first call, and the
-other methods are closures over the fields. A frozen class with slots stores through the descriptors of its slots,
-in half the time of ``object.__setattr__``. The functions of :mod:`dataclasses` accept instances of these classes.
+command; most classes are not instantiated by most commands, and many of the others only once. Here ``__init__`` is
+interpreted until a class has some instances, then compiled, and the other methods are closures over the fields. A
+frozen class with slots stores through the descriptors of its slots, in half the time of ``object.__setattr__``. The
+functions of :mod:`dataclasses` accept instances of these classes.
 
 >>> from dataclasses import asdict
 >>> @dataclass(frozen=True, slots=True)
@@ -46,6 +47,8 @@ else:
 __all__ = ["dataclass", "field", "fields", "replace"]
 
 _MISSING: Any = object()
+#: To compile an ``__init__`` takes as long as to interpret about twenty calls.
+_INTERPRETED = 8
 
 
 class Field:
@@ -166,14 +169,43 @@ def _own_fields(cls: Any) -> dict[str, Field]:
 
 
 def _first_init(*, frozen: bool) -> Callable[..., None]:
-    """Return a method that replaces itself by the ``__init__`` that it compiles."""
+    """Return a method that interprets its first calls, and then replaces itself by one that it compiles."""
+    store = object.__setattr__ if frozen else setattr
+    owner: Any = None
+    calls = 0
 
     def first(self: Any, *args: Any, **given: Any) -> None:
-        owner: Any = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
-        owner.__init__ = made = _compile_init(owner, frozen=frozen)
-        made(self, *args, **given)
+        nonlocal owner, calls
+        if owner is None:
+            owner = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
+        calls += 1
+        if calls <= _INTERPRETED and _stored(self, owner, store, args, given):
+            if hasattr(owner, "__post_init__"):
+                self.__post_init__()
+        else:
+            owner.__init__ = made = _compile_init(owner, frozen=frozen)
+            made(self, *args, **given)
 
     return first
+
+
+def _stored(self: Any, owner: Any, store: Any, args: tuple[Any, ...], given: dict[str, Any]) -> bool:
+    """Store the values of the fields; return whether the arguments were valid. The compiled method reports an error."""
+    names = owner.__match_args__
+    values = dict(zip(names, args))  # noqa: B905 - more arguments than fields are found below
+    if len(args) > len(names) or not values.keys().isdisjoint(given):
+        return False
+    values.update(given)
+    for name, each in owner._record_fields.items():
+        if each.init and name in values:
+            store(self, name, values.pop(name))
+        elif each.default_factory is not _MISSING:
+            store(self, name, each.default_factory())
+        elif each.default is not _MISSING:
+            store(self, name, each.default)
+        elif each.init:
+            return False
+    return not values
 
 
 def _compile_init(cls: Any, *, frozen: bool) -> Any:

@@ -1,8 +1,9 @@
-"""``NamedTuple`` of :mod:`typing`, with a constructor compiled at its first call.
+"""``NamedTuple`` of :mod:`typing`, with a constructor that is compiled once a class has some instances.
 
 The standard library compiles it, and the annotation of each field, where a class is defined: 0.1 ms for each of our
-classes, of which most are not instantiated by most programs. These classes have no ``__orig_bases__`` and no
-documentation of their fields; otherwise they are those of the standard library, also for pickle and pattern matching.
+classes, of which most programs do not instantiate most, and many of the others only once. These classes have no
+``__orig_bases__`` and no documentation of their fields; otherwise they are those of the standard library, also for
+pickle and pattern matching.
 
 >>> class Point(NamedTuple):
 ...     x: float
@@ -43,8 +44,10 @@ else:
                 "_fields": fields,
                 "_field_defaults": defaults,
             }
-            body.setdefault("__new__", _first_new)
-            return type(name, (_Methods, *bases[1:]), body)
+            made: Any = type(name, (_Methods, *bases[1:]), body)
+            if "__new__" not in body:
+                made.__new__ = _first_new(made)
+            return made
 
     class _Made(metaclass=_Maker):
         """The base whose metaclass makes the class; it is no base of that."""
@@ -77,24 +80,38 @@ else:
             values = [f"{field}={value!r}" for field, value in zip(self._fields, self, strict=True)]
             return f"{type(self).__name__}({', '.join(values)})"
 
-    def _first_new(cls: type, /, *args: Any, **given: Any) -> Any:
-        """Replace itself by the constructor that it compiles."""
-        (owner,) = (
-            base for base in cls.__mro__ if vars(base).get("__new__") is not None and "_fields" in vars(base)
-        )
-        names = {
-            "_new": tuple.__new__,
-            **{f"_default_{name}": v for name, v in owner._field_defaults.items()},
-        }
-        head = [
-            f"{name}=_default_{name}" if name in owner._field_defaults else name for name in owner._fields
-        ]
-        text = f"def __new__(_cls, {', '.join(head)}): return _new(_cls, ({''.join(f'{n}, ' for n in owner._fields)}))"
-        exec(text, names)  # noqa: S102 - our own text
+    #: To compile a constructor takes as long as to interpret many calls.
+    _INTERPRETED = 8
+
+    def _first_new(owner: Any) -> Any:
+        """Return a constructor that interprets its first calls, and then replaces itself by one that it compiles."""
+        calls = 0
+
+        def first(cls: type, /, *args: Any, **given: Any) -> Any:
+            nonlocal calls
+            calls += 1
+            fields = owner._fields
+            if calls <= _INTERPRETED and len(args) <= len(fields):
+                values = dict(zip(fields, args))  # noqa: B905 - the rest is named or has defaults
+                if values.keys().isdisjoint(given):
+                    values = {**owner._field_defaults, **values, **given}
+                    if values.keys() == {*fields}:
+                        return tuple.__new__(cls, [values[field] for field in fields])
+            owner.__new__ = made = _compile_new(owner)  # which reports wrong arguments, too
+            return made(cls, *args, **given)
+
+        return first
+
+    def _compile_new(owner: Any) -> Any:
+        """Return the constructor of a class."""
+        defaults, fields = owner._field_defaults, owner._fields
+        names = {"_new": tuple.__new__, **{f"_default_{name}": value for name, value in defaults.items()}}
+        head = [f"{name}=_default_{name}" if name in defaults else name for name in fields]
+        values = "".join(f"{name}, " for name in fields)
+        exec(f"def __new__(_cls, {', '.join(head)}): return _new(_cls, ({values}))", names)  # noqa: S102 - our own text
         made = names["__new__"]
         made.__qualname__ = f"{owner.__qualname__}.__new__"
-        owner.__new__ = made
-        return made(cls, *args, **given)
+        return made
 
     NamedTuple = _Bases()
 

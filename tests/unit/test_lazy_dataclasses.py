@@ -8,6 +8,7 @@ import pickle
 import subprocess
 import sys
 from itertools import product
+from operator import attrgetter
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -81,6 +82,34 @@ def test_a_class_behaves_as_one_of_the_standard_library(options, derived):
         ]
         seen.append([_comparable(each) for each in observed])
     assert seen[0] == seen[1]
+
+
+@pytest.mark.parametrize("derived", [False, True])
+@pytest.mark.parametrize("options", OPTIONS, ids=str)
+def test_the_first_instances_are_made_as_later_ones(options, derived):
+    calls = [((1,), {}), ((), {"a": 2, "c": [1]}), ((1, 2, 3), {"d": "x"}), ((), {"b": 3})]
+    calls += [((1,), {"a": 2}), ((1,), {"e": 2}), ((1,), {"g": 2}), ((1, 2, 3, 4, 5, 6), {})]
+
+    def values(cls, args, given):
+        return str(outcome(lambda: attrgetter("a", "b", "c", "d", "e")(cls(*args, **given))))
+
+    standard = made(dataclasses, **options)[derived]
+    expected = [values(standard, *call) for call in calls]
+    assert [each.count("TypeError") for each in expected] == [0] * 3 + [1] * 5
+    assert [values(made(lazy_dataclasses, **options)[derived], *call) for call in calls] == expected
+    ours = made(lazy_dataclasses, **options)[derived]
+    for _ in range(3):
+        assert [values(ours, *call) for call in calls] == expected
+
+
+def test_valid_calls_are_interpreted_before_the_method_is_compiled():
+    cls = made(lazy_dataclasses)[0]
+    first = cls.__init__
+    lists = [cls(i).c for i in range(8)]
+    assert cls.__init__ is first
+    assert cls(8, (3,)).b == (3,)
+    assert cls.__init__ is not first
+    assert len({id(each) for each in lists}) == 8
 
 
 def _comparable(value):

@@ -72,17 +72,34 @@ def test_classes_are_those_of_the_standard_library(of):
     ids=["too few", "too many", "unknown", "made of too few", "replaced unknown"],
 )
 def test_wrong_arguments_are_rejected_as_by_the_standard_library(which, call, kind):
-    for row in ROWS[which]:
+    for row in (*ROWS[which], made({"ours": lazy_tuples, "theirs": typing}[which].NamedTuple)[0]):
         with pytest.raises(kind):
             call(row)
 
 
+def test_wrong_arguments_have_the_same_message_in_the_first_call_and_in_later_ones():
+    row, _ = made(lazy_tuples.NamedTuple)
+    messages = []
+    for _ in range(2):
+        with pytest.raises(TypeError) as error:
+            row(1, a=2)
+        messages.append(str(error.value).rpartition(".")[2])
+        with pytest.raises(TypeError) as error:
+            row(1, d=2)
+        messages.append(str(error.value).rpartition(".")[2])
+    assert messages == 2 * [
+        "__new__() got multiple values for argument 'a'",
+        "__new__() got an unexpected keyword argument 'd'",
+    ]
+
+
 def test_the_constructor_is_compiled_once_for_a_class_and_those_derived_from_it():
     row, derived = made(lazy_tuples.NamedTuple)
-    assert type(derived(1, "x")) is derived
-    constructor = row.__new__
-    assert type(row(1, "x")) is row
-    assert row.__new__ is constructor is derived.__new__
+    first = row.__new__
+    rows = [kind(1, b="x") for _ in range(10) for kind in (derived, row)]
+    assert {type(each) for each in rows} == {row, derived}
+    assert {*rows} == {(1, "x", 0.5)}
+    assert first is not row.__new__ is derived.__new__
 
 
 class Pair(lazy_tuples.NamedTuple):
