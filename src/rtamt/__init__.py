@@ -1,7 +1,8 @@
 """Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
 from importlib import import_module
-from typing import Any
+
+from rtamt.lazy_typing import Any
 
 __version__ = "1.0.0.dev0"
 

@@ -20,11 +20,10 @@ the line with a caret under the position.
 
 from __future__ import annotations
 
-import copy
 import reprlib
-from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import re
@@ -191,7 +190,9 @@ def placed(error: StlError, where: str) -> StlError:
     Traceback (most recent call last):
     rtamt.errors.TraceError: trace 7: 'x' has no samples: give at least one
     """
-    again = copy.copy(error)
+    from copy import copy
+
+    again = copy(error)
     message, *rest = error.args
     again.args = (f"{where}: {message}", *rest)
     if isinstance(again, SpecificationError):

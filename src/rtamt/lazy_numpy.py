@@ -9,7 +9,7 @@ Every module takes ``np`` from here. A module that uses it where it is defined w
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np

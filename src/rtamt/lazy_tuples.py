@@ -14,7 +14,7 @@ pickle and pattern matching.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from enum import Enum
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.engine import BACKENDS, engine_of
 from rtamt.errors import UsageError, choices, did_you_mean, shown
@@ -14,6 +13,7 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Formula
 from rtamt.language.operators import Language
 from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number, is_truth
 

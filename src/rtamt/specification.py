@@ -6,7 +6,6 @@ Results, and what few recordings need, are imported on use: monitors do not wait
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Evaluators, Query, engine_of
 from rtamt.errors import EvaluationError, TraceError, UsageError
@@ -15,6 +14,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals.data_errors import nan_of_members
 from rtamt.signals.sampling import sampled
 from rtamt.signals.trace import Trace

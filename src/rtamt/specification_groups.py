@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.document import Declaration
 from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.presence import channel_of
 from rtamt.specification_recorded import RecordedSpecification
 

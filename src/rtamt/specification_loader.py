@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.language.operators import STL, Language
@@ -11,6 +10,7 @@ from rtamt.language.parsing.imports import PACKAGED, Library
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import (
     check_backend,

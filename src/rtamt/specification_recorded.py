@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import cached_property
 from math import inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from rtamt.language.quantifiers import Declared
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.signals.binding import Binding
 from rtamt.signals.sampling import without_values
 from rtamt.signals.trace import Trace

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Watched
 from rtamt.errors import UsageError
@@ -22,6 +21,7 @@ from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import positive_period
 from rtamt.language.value_types import WHOLE
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from _thread import allocate_lock
 from functools import wraps
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
 
 from rtamt.errors import UsageError
+from rtamt.lazy_typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,11 +16,11 @@ from __future__ import annotations
 
 from collections import Counter
 from math import isfinite, isinf
-from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Parameter
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,10 +8,10 @@ from __future__ import annotations
 import struct
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

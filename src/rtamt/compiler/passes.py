@@ -15,10 +15,10 @@ program: the header of the program contains those that it leaves out, one bit ea
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from rtamt.compiler.hoist import hoist
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

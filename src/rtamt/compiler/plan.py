@@ -7,7 +7,6 @@ first over the whole trace and scanned backwards, and the result becomes an addi
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from rtamt.compiler.passes import passed
 from rtamt.compiler.time_lowering import lowering_of
@@ -16,6 +15,7 @@ from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, p
 from rtamt.language.operators import STL, Until, Window
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete

@@ -18,7 +18,6 @@ from functools import cached_property, partial
 from itertools import repeat
 from math import isnan
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.passes import bits_of, without_of
@@ -28,6 +27,7 @@ from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.rewrite.desugar import written
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DOMAINS

@@ -6,13 +6,13 @@ Formulas that differ in these values alone have the same instructions, apart fro
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.contents import leaves_of
 from rtamt.language.formula import Formula, Parameter
 from rtamt.language.parameters import with_values
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 

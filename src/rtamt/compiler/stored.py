@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.plan import DEFINED, Plan, Scan, Stage
@@ -13,6 +12,7 @@ from rtamt.language.formula import Apply
 from rtamt.language.records import Blocks, Compiled
 from rtamt.language.undefined_value import meaning_of
 from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import as_written
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from rtamt.engine.engine import BACKENDS, engine_of
 from rtamt.engine.native import core, culprit
@@ -12,6 +11,7 @@ from rtamt.language.contents import types_of
 from rtamt.language.formula import postorder
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.coding import codes_of
 

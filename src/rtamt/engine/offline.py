@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.engine import engine_of
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:

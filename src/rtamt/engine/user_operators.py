@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import copy
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps
 from rtamt.language.operators import Blocks, Bounds, Compiled
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
     DefinedSamples,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property, reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

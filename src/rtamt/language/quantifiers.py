@@ -21,7 +21,6 @@ from functools import lru_cache
 from math import inf
 from operator import add
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Literal
 
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.contents import leaves_of, operators_of
@@ -32,6 +31,7 @@ from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, ClassVar, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -8,11 +8,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, Interval
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
 from rtamt.language.definitions import enclosures as e
 from rtamt.language.definitions import function_enclosures as fe
@@ -14,6 +13,7 @@ from rtamt.language.records import (
     Pointwise,
     Sort,
 )
+from rtamt.lazy_typing import Any
 
 #: The sorts of operands and results.
 N, F, C = Sort.NUMBER, Sort.FORMULA, Sort.CONDITION

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from enum import Enum
 from math import ceil, inf
-from typing import TYPE_CHECKING
 
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Interval, Span
 from rtamt.language.units.durations import UNITS, decimal, exact, why_not_exact
 from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

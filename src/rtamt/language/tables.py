@@ -14,7 +14,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from functools import lru_cache
 from math import isinf
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.expansions import choice
 from rtamt.language.formula import Const, Formula, Span
@@ -24,6 +23,7 @@ from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.unwritten import reaches
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Compiled
 from rtamt.language.printing.printer import excerpt
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any
 
 from rtamt.language.definitions import dense
 from rtamt.language.definitions import discrete as d
@@ -22,6 +21,7 @@ from rtamt.language.records import (
     Tense,
 )
 from rtamt.language.rows import C, F, N, function, infix, operator, prefix
+from rtamt.lazy_typing import Any
 
 
 def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:

@@ -6,10 +6,10 @@ A Boolean is 1 or 0 in data, a member of an enumeration is its code; recordings 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import did_you_mean
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import copy
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged
@@ -17,6 +16,7 @@ from rtamt.language.operators import Bounds, Tense
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_arguments
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,6 @@ no NaN.
 from __future__ import annotations
 
 from math import isnan
-from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.errors import UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
@@ -21,6 +20,7 @@ from rtamt.language.operators import Bounds, Tense
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import spelled_out

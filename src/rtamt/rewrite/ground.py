@@ -7,13 +7,12 @@ nodes of the formula with other intervals; it is printed, and its spans point, a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.language.contents import contents
 from rtamt.language.formula import Apply, Formula, Interval, folds
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:

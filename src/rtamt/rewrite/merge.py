@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import cache
 from math import copysign
-from typing import TYPE_CHECKING, Any
 
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, builtin
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import expand, spelled_out
 from rtamt.rewrite.truth import rebuilt
 

@@ -6,11 +6,10 @@ that is 1 where x has a sample and 0 where it has none; recordings and monitors 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.language.formula import Apply, Var, fold, postorder
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
+from rtamt.lazy_typing import TYPE_CHECKING
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:

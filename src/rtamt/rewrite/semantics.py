@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import Enum
 from types import MappingProxyType
-from typing import TypeAlias
 
 from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
 from rtamt.language.contents import variables
@@ -25,6 +24,7 @@ from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
 from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_typing import TypeAlias
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.truth import replaced, truth
 

@@ -6,13 +6,12 @@ a predicate belongs to it. ``true`` and ``false`` are not predicates.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.language.contents import operators_of
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.unwritten import holds, is_truth
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

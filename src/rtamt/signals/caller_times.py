@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

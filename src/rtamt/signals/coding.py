@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from fractions import Fraction
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING
 
 from rtamt.language.units.durations import decimal
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil, floor
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, format_duration
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals.listing import show_time
 from rtamt.signals.sampling_period import merged
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:

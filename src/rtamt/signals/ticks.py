@@ -23,12 +23,12 @@ from datetime import datetime, timedelta
 from fractions import Fraction
 from numbers import Rational
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,

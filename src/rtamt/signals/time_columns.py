@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

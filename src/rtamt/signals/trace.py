@@ -11,12 +11,12 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, overload
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, replace
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing

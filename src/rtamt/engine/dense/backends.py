@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from rtamt.compiler.shared import Shape
 from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
@@ -13,6 +11,7 @@ from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import calls_of, core, creation_error
 from rtamt.language.undefined_value import UndefinedAtTickError, undefined
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.reference import dense_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense

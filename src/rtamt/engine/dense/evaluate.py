@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from rtamt.compiler.plan import DEFINED, Stage
 from rtamt.compiler.shared import Shape
 from rtamt.engine.direct import Direct
@@ -13,6 +11,7 @@ from rtamt.engine.user_operators import defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.arrays import TIME
 from rtamt.signals.dense import Dense, DenseTrace

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from rtamt.engine.dense.backends import BACKENDS
 from rtamt.engine.dense.groups import GroupSession
 from rtamt.engine.native import DenseMonitorBase, update_signal_class
@@ -14,6 +12,7 @@ from rtamt.language.contents import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

@@ -6,13 +6,13 @@ What evaluates recordings, and what evaluates by definition, is imported on use:
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
 from rtamt.engine.native import calls_of, core, core_monitor
 from rtamt.errors import UsageError
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.checked_samples import CheckedSamples
 from rtamt.engine.native import MonitorBase
@@ -12,6 +10,7 @@ from rtamt.engine.slow_path import SlowPath, inner_of
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy_dataclasses import replace
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.native import read_columns
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
 from rtamt.signals.sampling_period import RegularTimes

@@ -22,11 +22,11 @@ Enclosure(lower=array([-3.,  4.]), upper=array([9., 4.]))
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.definitions import pointwise as p
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

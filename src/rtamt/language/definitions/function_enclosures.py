@@ -15,10 +15,10 @@ Enclosure(lower=array([1.]), upper=array([2.]))
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.definitions import functions as f
 from rtamt.language.definitions.enclosures import Enclosure, each, hull, one, widened
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -19,9 +19,9 @@ array([-1.,  4.])
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.lazy_numpy import np
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

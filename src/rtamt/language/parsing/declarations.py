@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 from math import inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.document import Declaration
@@ -20,6 +19,7 @@ from rtamt.language.parsing.scope import Scope
 from rtamt.language.quantifiers import begins_quantifier
 from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, WHOLE, Enumeration
+from rtamt.lazy_typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

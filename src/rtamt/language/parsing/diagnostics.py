@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.errors import choices, did_you_mean
 from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
 from rtamt.language.parsing.lexer import NO_ARROW, is_word, quoted
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

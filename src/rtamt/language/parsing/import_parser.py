@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, line_and_column
 from rtamt.language.document import Declaration, Import, constant_units
@@ -21,6 +20,7 @@ from rtamt.language.parsing.imports import (
 )
 from rtamt.language.parsing.requirements import RequirementParser
 from rtamt.language.parsing.scope import Scope
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

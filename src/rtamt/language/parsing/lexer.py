@@ -19,13 +19,13 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate, compress
-from typing import TYPE_CHECKING, overload
 
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import NUMBER
 from rtamt.lazy_patterns import lazy_pattern
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
     from rtamt.language.operators import Language

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
 from rtamt.language.formula import Const, Formula, Parameter, Span, Var, span_of
@@ -18,6 +17,7 @@ from rtamt.language.parsing.templates import Use, Uses
 from rtamt.language.quantifiers import field_of
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing_extensions import Self

@@ -24,7 +24,6 @@ is ``1 <= x and x < 3``; so ``x in {1, 2}`` is ``x == 1 or x == 2``, and ``in`` 
 from __future__ import annotations
 
 from math import inf, isinf
-from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
@@ -49,6 +48,7 @@ from rtamt.language.parsing.type_rules import takes_number
 from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

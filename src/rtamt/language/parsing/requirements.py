@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.errors import ParseError
 from rtamt.language.contents import variables
 from rtamt.language.document import SEVERITIES, Requirement
@@ -15,6 +13,7 @@ from rtamt.language.parsing.templates import begins_template
 from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

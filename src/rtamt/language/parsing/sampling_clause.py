@@ -11,12 +11,11 @@ instant, whenever its samples arrived; with ``skip nan`` samples that are NaN ar
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import UNITS, format_duration, positive_period
 from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fractions import Fraction

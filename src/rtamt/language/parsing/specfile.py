@@ -35,7 +35,6 @@ from __future__ import annotations
 
 from itertools import accumulate, repeat
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from rtamt.errors import NameInFormulaError
 from rtamt.language.document import Assertion, Document
@@ -53,6 +52,7 @@ from rtamt.language.parsing.templates import begins_template, parse_template
 from rtamt.language.quantifiers import begins_group
 from rtamt.language.tables import begins_table
 from rtamt.language.value_types import UNKNOWN
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping

@@ -15,7 +15,6 @@ shared, not copied, and so are equal uses. The formula itself has no reference t
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
@@ -24,6 +23,7 @@ from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy_dataclasses import dataclass, field, replace
 from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

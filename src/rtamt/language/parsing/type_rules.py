@@ -6,13 +6,13 @@ Numbers and formulas have no type here (None): an operator takes one for the oth
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var
 from rtamt.language.operators import STL, Sort, Tense
 from rtamt.language.parsing.grammar import is_literal, is_number
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN, LITERALS, UNKNOWN, Ambiguous, Enumeration
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

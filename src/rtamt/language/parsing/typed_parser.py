@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
@@ -21,6 +20,7 @@ from rtamt.language.parsing.type_rules import (
     typed,
 )
 from rtamt.language.value_types import Ambiguous, Enumeration
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import isinf
-from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Interval, Parameter, Var
 from rtamt.language.operators import STL, Bounds, Fixity, Language
@@ -25,6 +24,7 @@ from rtamt.language.printing.writing import EXCERPT, LONGEST, text_of
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -21,11 +21,11 @@ from functools import lru_cache
 from math import isfinite
 from numbers import Rational, Real
 from types import MappingProxyType
-from typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.lazy_numpy import np
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

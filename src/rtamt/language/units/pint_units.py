@@ -8,12 +8,12 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import lru_cache
 from math import inf
-from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.errors import StlError
 from rtamt.extras import library
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,6 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import partial
 from math import isclose, isfinite, pi
-from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.units.dimensions import (
     DIMENSION,
@@ -27,6 +26,7 @@ from rtamt.language.units.dimensions import (
     times,
 )
 from rtamt.lazy_dataclasses import replace
+from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -1,0 +1,37 @@
+"""Monitors start without :mod:`typing`, whose names are those of the standard library to a type checker."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import typing
+
+import pytest
+
+from rtamt import lazy_typing
+
+MONITOR = "assert rtamt.parse('always[0:1](x >= 3)').monitor().update(0, x=1.0) is None"
+
+
+@pytest.mark.parametrize("module", ["typing", "numpy", "dataclasses", "copy", "inspect"])
+def test_a_monitor_is_parsed_made_and_updated_without(module):
+    code = f"import sys; sys.modules[{module!r}] = None; import rtamt; {MONITOR}"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_every_name_is_one_of_the_standard_library():
+    assert all(hasattr(typing, name) for name in lazy_typing.__all__)
+    assert all(hasattr(lazy_typing, name) for name in lazy_typing.__all__)
+
+
+@pytest.mark.parametrize("names", [typing, lazy_typing], ids=lambda names: names.__name__)
+def test_what_runs_behaves_as_in_the_standard_library(names):
+    class Sized(names.Protocol):
+        kind: names.ClassVar[str] = "row"
+
+    class Row(Sized):
+        pass
+
+    assert Row.kind == "row"
+    assert names.cast("int", "a") == "a"
+    assert names.TYPE_CHECKING is False
