@@ -3,10 +3,13 @@
 #include "arrays.hpp"
 #include "offline.hpp"
 #include "recording.hpp"
+#include "result_class.hpp"
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -140,7 +143,20 @@ bool DirectEvaluator::evaluate(std::vector<const double*>& columns, std::size_t 
     return true;
 }
 
-void add_direct_evaluator(const nb::module_& m) {
+void add_direct_evaluator(nb::module_& m) {
+    m.def(
+        "instance_maker",
+        [](const nb::type_object& type, const std::array<std::string, 3>& slots) {
+            const ResultClass<3> made(type, {slots[0].c_str(), slots[1].c_str(), slots[2].c_str()});
+            return nb::cpp_function([made](nb::handle a, nb::handle b, nb::handle c) {
+                nb::object instance = nb::steal(made.make({a, b, c}));
+                if (!instance.is_valid()) throw nb::python_error();
+                return instance;
+            });
+        },
+        nb::arg("kind"), nb::arg("slots"),
+        "Return a function that makes an instance of a class from the values of three slots, "
+        "without __init__.");
     nb::class_<DirectEvaluator>(m, "DirectEvaluator",
                                 "Reads, checks and evaluates a recording in one call.")
         .def(

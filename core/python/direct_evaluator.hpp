@@ -66,6 +66,6 @@ class DirectEvaluator {
                                 double* values) const;
 };
 
-void add_direct_evaluator(const nb::module_& module);
+void add_direct_evaluator(nb::module_& module);
 
 } // namespace rtamt::python

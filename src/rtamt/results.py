@@ -11,7 +11,7 @@ from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.contents import variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy_dataclasses import dataclass, field
 from rtamt.lazy_numpy import np
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
@@ -20,7 +20,7 @@ from rtamt.verdicts.offline import Findings, findings_of
 from rtamt.violations import episodes_in_steps, first_violation, signals_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from matplotlib.figure import Figure
 
@@ -33,8 +33,14 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 
+class _Slots:
+    """The attributes that every result has; with them alone, a result needs no dict."""
+
+    __slots__ = ("_found", "semantics", "specification")
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Result:
+class Result(_Slots):
     """The result of an evaluation: robustness and verdict at the first instant, and the whole signal.
 
     >>> import rtamt
@@ -47,6 +53,8 @@ class Result:
     semantics: str | PredicateSemantics
     #: What is known already: of a requirement what its program has found, of several with different starts each.
     known: Findings | Mapping[str, Result] | None = None
+    #: Of a direct evaluation what it has found, from which the trace and the signal are created on first use.
+    _found: tuple[Reading, Any] | None = field(init=False)
 
     def __init__(
         self,
@@ -57,11 +65,12 @@ class Result:
         known: Findings | Mapping[str, Result] | None = None,
     ) -> None:
         # The __init__ of a frozen dataclass takes as long as the evaluation of a short trace.
+        _set_specification(self, specification)
+        _set_semantics(self, semantics)
+        _set_found(self, None)
         fields = self.__dict__
-        fields["specification"] = specification
         fields["_trace"] = trace
         fields["_signal"] = signal
-        fields["semantics"] = semantics
         fields["known"] = known
 
     # No cached_property: its lock takes longer than the rest.
@@ -70,7 +79,8 @@ class Result:
         """The recording."""
         fields = self.__dict__
         if "_trace" not in fields:
-            reading, found = fields["_found"]
+            assert self._found is not None
+            reading, found = self._found
             fields["_trace"] = self.specification._with_units(reading.trace(found))
         trace: DomainTrace = fields["_trace"]
         return trace
@@ -80,7 +90,8 @@ class Result:
         """ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``."""
         fields = self.__dict__
         if "_signal" not in fields:
-            reading, found = fields["_found"]
+            assert self._found is not None
+            reading, found = self._found
             fields["_signal"] = reading.signal(found)
         signal: Signal = fields["_signal"]
         return signal
@@ -88,8 +99,8 @@ class Result:
     @property
     def _size(self) -> int:
         """The number of evaluated samples, without making a signal of them."""
-        if "_found" in self.__dict__:
-            reading, found = self.__dict__["_found"]
+        if self._found is not None:
+            reading, found = self._found
             return int(reading.samples(found))
         return len(self.signal)
 
@@ -383,17 +394,9 @@ class Result:
             )
 
 
-def found_directly(specification: Specification, reading: Reading, found: Any) -> Result:
-    """Return the result of a direct evaluation, whose trace and signal are created on first use."""
-    result = _new_result(Result)
-    fields = result.__dict__
-    fields["specification"] = specification
-    fields["semantics"] = specification.__dict__["_own_query"].semantics
-    fields["_found"] = reading, found
-    return result
-
-
-_new_result: Callable[[type[Result]], Result] = object.__new__
+#: Of the result of a direct evaluation these attributes alone are set; the others are created on first use.
+DIRECT_SLOTS = ("specification", "semantics", "_found")
+_set_specification, _set_semantics, _set_found = (getattr(_Slots, name).__set__ for name in DIRECT_SLOTS)
 
 
 def requirements_of(

@@ -106,7 +106,7 @@ def evaluate_twice(text: str, data: dict[str, Any]) -> rtamt.Result:
     """Return the result of the second evaluation, which is direct."""
     spec = rtamt.parse(text, time="dense")
     spec.evaluate(data)
-    assert spec.__dict__["_direct"].run(data) is not None
+    assert spec.__dict__["_direct"][0](data) is not None
     return spec.evaluate(data)
 
 

@@ -88,7 +88,7 @@ def evaluate_twice(text: str, data: Any) -> rtamt.Result:
     spec = rtamt.parse(text)
     spec.evaluate(data)
     direct = spec.__dict__["_direct"]
-    assert direct.run(data if isinstance(data, dict) else direct.columns(data, spec.input_names)) is not None
+    assert direct[0](data if isinstance(data, dict) else direct[1](data, spec.input_names)) is not None
     return spec.evaluate(data)
 
 

@@ -592,6 +592,9 @@ class Batch:
 def new_rows(rows: int, width: int) -> NDArray[np.float64]:
     """Return a new array of this shape, of any numbers, in memory that is used again."""
 
+def instance_maker(kind: type, slots: Sequence[str]) -> Callable[[Any, Any, Any], Any]:
+    """Return a function that makes an instance of a class from the values of three slots, without ``__init__``."""
+
 class DirectEvaluator:
     """Reads, checks and evaluates a recording in one call.
 

@@ -35,3 +35,11 @@ class Direct(NamedTuple):
     run: Callable[[Any], Any]
     columns: Callable[[Any, Sequence[str]], dict[str, Any] | None]
     reading: Reading
+
+    @staticmethod
+    def maker_of(kind: type, slots: Sequence[str]) -> Callable[..., Any]:
+        """Return a function that makes an instance of a class from the values of three slots, without ``__init__``."""
+        from rtamt.engine.native import core
+
+        made: Callable[..., Any] = core().instance_maker(kind, slots)
+        return made
