@@ -48,15 +48,17 @@ DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
             last[output / 2] = forever;
         if (at_start_) at_start_->limit(last);
         engine_->limit(last);
-        // What is late may need any tick, and verdicts cost little as they are.
-        if (!late() && !decides_ && !outputs_.empty()) {
+        // What is late may need any tick.
+        if (!late() && decides_ && !at_start_) {
+            eager_ = EagerEngine::of(graph, ranges_);
+        } else if (!late() && !decides_ && !outputs_.empty()) {
             zone_ = ZoneEngine::of(graph, outputs_, settings.at_start, ranges_, settings.zone);
         }
     }
     // Facts known before any sample, such as the truth of constants, are reported with the first.
     for (std::size_t i = 0; i < outputs_.size(); ++i)
-        waiting_[i].begin(*engine_, outputs_[i]);
-    if (zone_) engine_.reset();
+        eager_ ? waiting_[i].begin(*eager_, outputs_[i]) : waiting_[i].begin(*engine_, outputs_[i]);
+    if (zone_ || eager_) engine_.reset();
 }
 
 // ---- samples ------------------------------------------------------------------------------------
@@ -69,7 +71,10 @@ bool DiscreteMonitor::in_order(Tick index) const noexcept {
 template <class Value>
 std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
                                                              std::span<const Value> row) {
-    if (auto failure = zone_ ? zone_->row(index, row) : engine_->row(index, row)) return failure;
+    auto failure = eager_  ? eager_->row(index, row)
+                   : zone_ ? zone_->row(index, row)
+                           : engine_->row(index, row);
+    if (failure) return failure;
     advance(index, time);
     return std::nullopt;
 }
@@ -129,7 +134,11 @@ void DiscreteMonitor::note(Tick before) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         if (decides_) {
             news_[i].clear();
-            waiting_[i].collect(*engine_, outputs_[i], newest, newest, news_[i]);
+            if (eager_) {
+                waiting_[i].collect(*eager_, outputs_[i], newest, newest, news_[i]);
+            } else {
+                waiting_[i].collect(*engine_, outputs_[i], newest, newest, news_[i]);
+            }
             if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
             continue;
         }
@@ -156,7 +165,8 @@ void DiscreteMonitor::settle() {
         Tick& wanted = wanted_[outputs_[i] / 2];
         Tick from = 0;
         if (decides_) {
-            open_[i] = EagerVerdicts::open(*engine_, outputs_[i], open_[i]);
+            open_[i] = eager_ ? EagerVerdicts::open(*eager_, outputs_[i], open_[i])
+                              : EagerVerdicts::open(*engine_, outputs_[i], open_[i]);
             from = std::max(plus(closed + 1, -lag(i)), open_[i]);
             oldest = std::min({oldest, waiting_[i].oldest(), oldest_of(news_[i])});
         } else {
@@ -169,7 +179,8 @@ void DiscreteMonitor::settle() {
     }
     times_.drop_before(oldest);
     if (late_rows_) late_rows_->drop_before(closed_ + 1);
-    if (zone_) return;
+    if (eager_) eager_->settle(closed, wanted_);
+    if (!engine_) return;
     if (at_start_) at_start_->settle(*engine_, closed, wanted_);
     if (causes_) causes_->settle(*engine_, closed, wanted_);
     engine_->settle(closed, wanted_);
@@ -180,7 +191,11 @@ std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::fi
     std::optional<Failure> failure;
     const auto zone = zone_ ? std::optional(zone_->ended()) : std::nullopt;
     std::vector<BoundsEngine::Rest> rests;
-    if (!zone) rests = engine_->ended(outputs_, end, &failure);
+    if (eager_) {
+        rests = eager_->ended(outputs_, end);
+    } else if (!zone) {
+        rests = engine_->ended(outputs_, end, &failure);
+    }
     if (failure) return *failure;
     End last;
     finished_ = true;
@@ -210,7 +225,7 @@ void DiscreteMonitor::decide_rest(std::span<const BoundsEngine::Rest> rests, Tic
         news_[i].clear();
         const BoundsEngine::Rest& rest = rests[i];
         for (Tick t = std::max(rest.first, open_[i]); t < end; ++t) {
-            const Bounds was = engine_->at(outputs_[i], t);
+            const Bounds was = followed(i, t);
             const Bounds now = rest.bounds[static_cast<std::size_t>(t - rest.first)];
             if (was.lower > 0 || was.upper < 0) continue;
             if (now.lower > 0) news_[i].push_back({t, t, end - 1, true});
@@ -228,8 +243,12 @@ std::optional<Bounds> DiscreteMonitor::at_start() const noexcept {
 
 std::optional<Bounds> DiscreteMonitor::bounds(std::size_t output, Tick sample) const noexcept {
     if (sample < held(output)) return std::nullopt;
-    return unsigned_zeros(zone_ ? zone_->at(output, sample)
-                                : engine_->at(outputs_[output], sample));
+    return unsigned_zeros(zone_ ? zone_->at(output, sample) : followed(output, sample));
+}
+
+Bounds DiscreteMonitor::followed(std::size_t output, Tick sample) const noexcept {
+    return eager_ ? eager_->bounds(outputs_[output], sample)
+                  : engine_->at(outputs_[output], sample);
 }
 
 Tick DiscreteMonitor::held(std::size_t output) const noexcept {
@@ -237,6 +256,7 @@ Tick DiscreteMonitor::held(std::size_t output) const noexcept {
 }
 
 std::vector<BoundChange> DiscreteMonitor::changes(std::size_t output) const {
+    if (decides_) return {};
     auto found = zone_ ? zone_->changes(output) : changes_[output].runs(*engine_, outputs_[output]);
     for (BoundChange& run : found)
         run.bounds = unsigned_zeros(run.bounds);
@@ -267,6 +287,7 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
         const ZoneEngine zone = zone_->supposed(suppositions);
         return unsigned_zeros(output ? zone.at(*output, sample) : zone.at_start());
     }
+    if (eager_) throw std::invalid_argument("A monitor of verdicts supposes nothing.");
     if (const auto failure = engine_->suppose(suppositions)) return *failure;
     Bounds value{};
     if (output) {
@@ -281,7 +302,10 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
 }
 
 std::size_t DiscreteMonitor::bytes() const noexcept {
-    std::size_t sum = (zone_ ? zone_->bytes() : engine_->bytes()) + times_.bytes();
+    std::size_t sum = times_.bytes();
+    if (zone_) sum += zone_->bytes();
+    if (eager_) sum += eager_->bytes();
+    if (engine_) sum += engine_->bytes();
     if (late_rows_) sum += late_rows_->bytes();
     for (const EagerVerdicts& waiting : waiting_)
         sum += waiting.bytes();
@@ -293,6 +317,8 @@ std::size_t DiscreteMonitor::bytes() const noexcept {
 void DiscreteMonitor::transfer(Snapshot& snapshot) {
     if (zone_) {
         zone_->transfer(snapshot);
+    } else if (eager_) {
+        eager_->transfer(snapshot);
     } else {
         engine_->transfer(snapshot);
         if (at_start_) at_start_->transfer(snapshot);

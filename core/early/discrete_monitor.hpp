@@ -2,7 +2,8 @@
 // out.
 //
 // Ticks are indices of samples, of which the first is 0. Where windows are short, bounds at all
-// open ticks are recomputed after each sample (zone_engine.hpp); else changes are propagated.
+// open ticks are recomputed after each sample (zone_engine.hpp); else changes are propagated, for
+// verdicts those of truth values (eager_engine.hpp).
 //
 // Cost: that of the engine. Memory: its runs, and times as SampleTimes keeps them.
 #pragma once
@@ -11,6 +12,7 @@
 #include "bounds_at_start.hpp"
 #include "bounds_engine.hpp"
 #include "causation.hpp"
+#include "eager_engine.hpp"
 #include "eager_verdicts.hpp"
 #include "late_rows.hpp"
 #include "sample_times.hpp"
@@ -116,6 +118,7 @@ class DiscreteMonitor {
     [[nodiscard]] bool late() const noexcept { return lateness_.has_value(); }
     [[nodiscard]] bool finished() const noexcept { return finished_; }
     [[nodiscard]] bool computes_zone() const noexcept { return zone_.has_value(); }
+    [[nodiscard]] bool follows_truth() const noexcept { return eager_.has_value(); }
     [[nodiscard]] const std::vector<Bounds>& ranges() const noexcept { return ranges_; }
 
     [[nodiscard]] std::size_t bytes() const noexcept;
@@ -127,7 +130,8 @@ class DiscreteMonitor {
 
   private:
     std::optional<BoundsEngine> engine_;
-    std::optional<ZoneEngine> zone_; // in its place where windows are short
+    std::optional<ZoneEngine> zone_;   // in its place where windows are short
+    std::optional<EagerEngine> eager_; // in its place for verdicts of truth values
     std::vector<std::uint32_t> outputs_;
     std::vector<Tick> lags_;             // by output, until its values are final
     std::vector<EagerVerdicts> waiting_; // by output
@@ -152,6 +156,7 @@ class DiscreteMonitor {
     [[nodiscard]] Tick closed_after(Tick index) const noexcept;
     [[nodiscard]] Tick final_up_to() const noexcept;
     [[nodiscard]] Tick lag(std::size_t output) const noexcept;
+    [[nodiscard]] Bounds followed(std::size_t output, Tick sample) const noexcept;
     void advance(Tick index, double time);
     void note(Tick before);
     void decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end);

@@ -4,6 +4,7 @@
 
 #include "../program/snapshot.hpp"
 #include "bounds_engine.hpp"
+#include "eager_engine.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -42,16 +43,15 @@ inline void transfer(Snapshot& snapshot, std::vector<Decision>& decisions) {
 class EagerVerdicts {
   public:
     // The verdicts decided before any sample; they get the time of the first.
-    void begin(const BoundsEngine& engine, std::uint32_t ref) {
+    template <class Engine>
+    void begin(const Engine& engine, std::uint32_t ref) {
         for (Tick t = 0; t < forever;) {
-            const Run lower = engine.runs(ref, 0).at(t);
-            const Run upper = engine.runs(ref, 1).at(t);
-            const Tick end = std::min(lower.end, upper.end);
-            if (lower.value > 0 || upper.value > 0) {
-                waiting_.push_back({t, end, 0, lower.value > 0});
+            const KleeneRuns::Run run = decided_at(engine, ref, t);
+            if (run.value != Kleene::open) {
+                waiting_.push_back({t, run.end, 0, run.value == Kleene::holds});
             }
-            if (end >= forever) break;
-            t = end + 1;
+            if (run.end >= forever) break;
+            t = run.end + 1;
         }
     }
 
@@ -67,15 +67,16 @@ class EagerVerdicts {
         for (const bool satisfied : {true, false}) {
             for (const Piece& piece : engine.new_data(ref, satisfied ? 0 : 1)) {
                 if (piece.old > 0 || !(piece.now > 0)) continue;
-                const Decision decision{piece.l, piece.r, at, satisfied};
-                if (piece.r <= newest) {
-                    out.push_back(decision);
-                } else {
-                    waiting_.insert(std::ranges::upper_bound(waiting_, piece.l, {}, &Decision::l),
-                                    decision);
-                }
+                take({piece.l, piece.r, at, satisfied}, newest, out);
             }
         }
+        reach(newest, out);
+    }
+    void collect(const EagerEngine& engine, std::uint32_t ref, Tick newest, Tick at,
+                 std::vector<Decision>& out) {
+        const Kleene satisfies = (ref & 1U) == 0 ? Kleene::holds : Kleene::fails;
+        for (const Decided& piece : engine.decided(ref))
+            take({piece.l, piece.r, at, piece.value == satisfies}, newest, out);
         reach(newest, out);
     }
 
@@ -94,15 +95,13 @@ class EagerVerdicts {
     }
 
     // The first tick that is not decided.
-    [[nodiscard]] static Tick open(const BoundsEngine& engine, std::uint32_t ref,
-                                   Tick from) noexcept {
+    template <class Engine>
+    [[nodiscard]] static Tick open(const Engine& engine, std::uint32_t ref, Tick from) noexcept {
         for (;;) {
-            const Run lower = engine.runs(ref, 0).at(from);
-            const Run upper = engine.runs(ref, 1).at(from);
-            if (!(lower.value > 0) && !(upper.value > 0)) return from;
-            const Tick end = lower.value > 0 ? lower.end : upper.end;
-            if (end >= forever) return forever;
-            from = end + 1;
+            const KleeneRuns::Run run = decided_at(engine, ref, from);
+            if (run.value == Kleene::open) return from;
+            if (run.end >= forever) return forever;
+            from = run.end + 1;
         }
     }
 
@@ -115,6 +114,30 @@ class EagerVerdicts {
 
   private:
     std::vector<Decision> waiting_; // by their first ticks, which they share with no other
+
+    void take(const Decision& decision, Tick newest, std::vector<Decision>& out) {
+        if (decision.r <= newest) {
+            out.push_back(decision);
+        } else {
+            waiting_.insert(std::ranges::upper_bound(waiting_, decision.l, {}, &Decision::l),
+                            decision);
+        }
+    }
+
+    // What is decided around a tick.
+    [[nodiscard]] static KleeneRuns::Run decided_at(const EagerEngine& engine, std::uint32_t ref,
+                                                    Tick t) noexcept {
+        return engine.at(ref, t);
+    }
+    [[nodiscard]] static KleeneRuns::Run decided_at(const BoundsEngine& engine, std::uint32_t ref,
+                                                    Tick t) noexcept {
+        const Run lower = engine.runs(ref, 0).at(t);
+        const Run upper = engine.runs(ref, 1).at(t);
+        Kleene value = Kleene::open;
+        if (lower.value > 0) value = Kleene::holds;
+        if (upper.value > 0) value = Kleene::fails;
+        return {std::max(lower.begin, upper.begin), std::min(lower.end, upper.end), value};
+    }
 };
 
 } // namespace rtamt::early

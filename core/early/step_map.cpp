@@ -2,8 +2,10 @@
 
 #include "../program/snapshot.hpp"
 #include "../values/bounds.hpp"
+#include "kleene_runs.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace rtamt::early {
@@ -214,7 +216,11 @@ void StepMap<Value>::transfer(Snapshot& snapshot) {
     head_ = 0;
     for (std::size_t i = 0; i < size; ++i) {
         snapshot.require(starts[i] < forever && (i == 0 || starts[i - 1] < starts[i]));
-        snapshot.require(values[i] == values[i]); // no NaN
+        if constexpr (std::is_enum_v<Value>) {
+            snapshot.require(values[i] <= Kleene::fails);
+        } else {
+            snapshot.require(values[i] == values[i]); // no NaN
+        }
         if (i % capacity == 0) directory_.emplace_back();
         append(starts[i], values[i]);
     }
@@ -223,5 +229,6 @@ void StepMap<Value>::transfer(Snapshot& snapshot) {
 
 template class StepMap<double>;
 template class StepMap<Bounds>;
+template class StepMap<Kleene>;
 
 } // namespace rtamt::early

@@ -1,6 +1,5 @@
-// Bounds at the end of a trace: the expected samples do not arrive, so windows are cut there. That
-// may widen bounds, so they are recomputed, tick by tick, wherever they were not final.
-#include "bounds_engine.hpp"
+#include "trace_end.hpp"
+
 #include "sliding.hpp"
 
 #include <algorithm>
@@ -37,16 +36,18 @@ struct Column {
 
 } // namespace
 
-std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_t> refs, Tick end,
-                                                    std::optional<Failure>* failure) const {
-    std::vector<Column> columns(nodes_.size());
+std::vector<BoundsEngine::Rest> bounds_at_end(const Graph& graph, std::span<const HeldNode> held,
+                                              const std::function<Bounds(std::uint32_t, Tick)>& at,
+                                              std::span<const std::uint32_t> refs, Tick end,
+                                              std::optional<BoundsEngine::Failure>* failure) {
+    std::vector<Column> columns(graph.nodes.size());
     const auto wrong = [&](std::size_t index, std::uint32_t step, Tick t) {
         if (failure != nullptr && !*failure && t < end)
-            *failure = Failure{static_cast<std::uint32_t>(index), step, t};
+            *failure = BoundsEngine::Failure{static_cast<std::uint32_t>(index), step, t};
     };
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        const Node& own = node(i);
-        const State& state = nodes_[i];
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+        const Node& own = graph.nodes[i];
+        const HeldNode& state = held[i];
         Column& column = columns[i];
         column.first = std::clamp<Tick>(state.keep, 0, end);
         column.values.resize(static_cast<std::size_t>(end - column.first));
@@ -56,7 +57,7 @@ std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_
         for (Tick t = column.first; t < end; ++t)
             place(t) = at(static_cast<std::uint32_t>(2 * i), t);
         const Tick from = std::max(state.from, column.first);
-        if (own.kind == Kind::atom) wrong(i, state.undefined.step, state.undefined.any);
+        if (own.kind == Kind::atom) wrong(i, state.step, state.undefined);
         if (own.kind == Kind::atom || from >= end) continue;
         const auto a = [&](Tick t) { return columns[own.a / 2].at(t, (own.a & 1U) != 0); };
         const auto b = [&](Tick t) { return columns[own.b / 2].at(t, (own.b & 1U) != 0); };
@@ -146,15 +147,25 @@ std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_
         }
         }
     }
-    std::vector<Rest> result;
+    std::vector<BoundsEngine::Rest> result;
     for (const std::uint32_t ref : refs) {
         const Column& column = columns[ref / 2];
-        Rest rest{column.first, {}};
+        BoundsEngine::Rest rest{column.first, {}};
         for (Tick t = column.first; t < end; ++t)
             rest.bounds.push_back(column.at(t, (ref & 1U) != 0));
         result.push_back(std::move(rest));
     }
     return result;
+}
+
+std::vector<BoundsEngine::Rest> BoundsEngine::ended(std::span<const std::uint32_t> refs, Tick end,
+                                                    std::optional<Failure>* failure) const {
+    std::vector<HeldNode> held;
+    held.reserve(nodes_.size());
+    for (const State& state : nodes_)
+        held.push_back({state.keep, state.from, state.undefined.any, state.undefined.step});
+    const auto value = [this](std::uint32_t ref, Tick t) { return at(ref, t); };
+    return bounds_at_end(graph_, held, value, refs, end, failure);
 }
 
 } // namespace rtamt::early

@@ -87,7 +87,7 @@ class Snapshot {
   private:
     // To be raised whenever a part holds something else than before. Of another order of bytes, or
     // length of an address, it is another number.
-    static constexpr std::uint32_t layout = 7U | (sizeof(void*) == 8 ? 0U : 0x10000U);
+    static constexpr std::uint32_t layout = 8U | (sizeof(void*) == 8 ? 0U : 0x10000U);
 
     std::vector<std::uint8_t> written_;
     std::span<const std::uint8_t> rest_;

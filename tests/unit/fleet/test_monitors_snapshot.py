@@ -68,8 +68,8 @@ def test_each_flipped_bit_is_refused(spec: Any) -> None:
             "this is not the state of a fleet: it has other keys than a fleet",
         ),
         (
-            lambda state: packed(unpacked(state)._replace(version=8)),
-            "the state has monitors of version 8, and this version of rtamt has version 7: replay the samples that "
+            lambda state: packed(unpacked(state)._replace(version=9)),
+            "the state has monitors of version 9, and this version of rtamt has version 8: replay the samples that "
             "verdicts still depend on",
         ),
         (
