@@ -19,7 +19,7 @@ from rtamt.cli.reading_options import add_reading_options, recording
 from rtamt.cli.terminal import printed, say
 from rtamt.errors import UsageError, choices
 from rtamt.language.parsing.lexer import quoted
-from rtamt.language.printing.printer import excerpt
+from rtamt.language.printing.printer import excerpts
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import BOOLEAN, value_text
 from rtamt.requirement_info import RequirementInfo, cut_operator, depth, info_of, loose_variable
@@ -247,9 +247,9 @@ def _lines(facts: RequirementInfo) -> Iterator[str]:
         yield f"name       {spec.name}"
     yield f"formula    {printed(spec.formula)}"
     required = {requirement.span for requirement in spec.document.requirements}
-    for assertion in spec.document.assertions:
-        if assertion.name and assertion.span not in required:
-            yield f"           {assertion.name} = {excerpt(assertion.formula)}"
+    named = [each for each in spec.document.assertions if each.name and each.span not in required]
+    for assertion, text in zip(named, excerpts([each.formula for each in named]), strict=True):
+        yield f"           {assertion.name} = {text}"
     for i, requirement in enumerate(_requirements(facts)):
         if requirement["explicit"] or len(required) > 1:
             about = [requirement["severity"], requirement["ahead"], requirement["description"]]

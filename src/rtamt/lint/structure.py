@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -143,7 +144,9 @@ def same_window_twice(text: Text) -> Iterator[Found]:
             assert node.span is not None
             end = without_prefix(text, node).span.end
             tokens = text.tokens
-            last = max(at for at, stop in enumerate(tokens.ends) if stop <= end and tokens.starts[at] < end)
+            last = bisect_left(tokens.starts, end) - 1
+            while tokens.ends[last] > end:
+                last -= 1
             edits = (
                 Edit(Span(node.span.start, tokens.ends[last]), _spell(text, node) + interval_text(interval)),
                 without_prefix(text, inner),

@@ -8,7 +8,7 @@ from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.rewrite.truth import read_conditions, rebuilt, with_truths
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
 
 class SourceSpan(Span):
@@ -92,6 +92,14 @@ def spelled_out(formula: Formula) -> Formula:
         return _rebuild_above(expanded, {id(arg) for arg in args}, step)
 
     return with_truths(fold(formula, step))
+
+
+def spelled_out_each(formulas: Sequence[Formula]) -> Sequence[Formula]:
+    """Return several formulas as :func:`spelled_out` does, visiting shared parts once if there is nothing to expand."""
+    operators = operators_of(*formulas)
+    if all(op.definition is not None for op in operators) and not read_conditions(operators):
+        return formulas
+    return [spelled_out(formula) for formula in formulas]
 
 
 def expand(node: Formula, args: tuple[Formula, ...]) -> Formula:

@@ -9,7 +9,7 @@ from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, builtin
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.lazy_typing import TYPE_CHECKING, Any
-from rtamt.rewrite.desugar import expand, spelled_out
+from rtamt.rewrite.desugar import expand, spelled_out_each
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def merged(formulas: Sequence[Formula]) -> tuple[Formula, ...]:
     >>> print(one, one.args[0].args[0] is one.args[1].args[0])
     always(x - 3) and eventually(x - 3) True
     """
-    sources = [spelled_out(formula) for formula in formulas]
+    sources = spelled_out_each(formulas)
     nodes = _Nodes()
     found: dict[int, Formula] = {}
     for node in postorder(*sources):

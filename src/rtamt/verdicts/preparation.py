@@ -69,11 +69,11 @@ def _prepared(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomai
     if not domain.held_at_end:
         together = tuple(dict.fromkeys((*robustness, *formulas)))
         first = second = backend.stored(together, step, inputs) if together else None
-        places, needed = (list(map(together.index, each)) for each in (robustness, formulas))
+        places, needed = (_places(each, together) for each in (robustness, formulas))
     else:
         once = tuple(dict.fromkeys(robustness)), tuple(dict.fromkeys(formulas))
         first, second = (backend.stored(each, step, inputs) if each else None for each in once)
-        places, needed = list(map(once[0].index, robustness)), list(map(once[1].index, formulas))
+        places, needed = _places(robustness, once[0]), _places(formulas, once[1])
     windows = {
         number: Window(
             place,
@@ -86,6 +86,12 @@ def _prepared(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomai
     }
     joining, joined = _joining(truths, found) if truths else (None, ())
     return Prepared(domain, inputs, first, second, joining, windows, tuple(places), joined)
+
+
+def _places(formulas: Sequence[Formula], among: Sequence[Formula]) -> list[int]:
+    """Return the index of each formula among others that are all different."""
+    places = {formula: place for place, formula in enumerate(among)}
+    return [places[formula] for formula in formulas]
 
 
 def _joining(truths: Sequence[Anchored], found: Mapping[Leaf, int]) -> tuple[StoredPlan, tuple[Joined, ...]]:

@@ -11,6 +11,8 @@ from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.episodes import place_in
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.episodes import Positions
@@ -91,7 +93,7 @@ class Trackers:
 
     def value(self, evaluate: Evaluate) -> float:
         """Return the value of the formula at the first instant."""
-        return self._value(self._anchored.skeleton, evaluate)
+        return self._values([self._anchored.skeleton], evaluate)[0]
 
     def violation(self, evaluate: Evaluate) -> int | None:
         """Return the first position at which the formula, a truth, is violated; None where it holds.
@@ -101,18 +103,32 @@ class Trackers:
         """
         if self.value(evaluate) > 0:
             return None
-        found = []
+        found: list[int] = []
+        others: list[Formula] = []
         for part in self._anchored.conjuncts():
-            leaf = self._anchored.leaf(part)
-            if leaf is not None and leaf.reduce == "min":
-                found += [t.violated for t in self.leaves if t.leaf == leaf and t.violated is not None]
-            elif not self._value(part, evaluate) > 0:
-                found.append(0)
+            tracker = self._tracker(part)
+            if tracker is None or tracker.leaf.reduce != "min":
+                others.append(part)
+            elif tracker.violated is not None:
+                found.append(tracker.violated)
+        if not all(value > 0 for value in self._values(others, evaluate)):
+            found.append(0)
         return min(found)
 
-    def _value(self, skeleton: Formula, evaluate: Evaluate) -> float:
-        if isinstance(skeleton, Var):
-            return self.leaves[int(skeleton.name[1:])].value
-        columns = {f"#{i}": np.array([tracker.value]) for i, tracker in enumerate(self.leaves)}
-        (signal,) = evaluate((skeleton,), DiscreteTrace(np.zeros(1), columns, Fraction(1)))
-        return float(signal.values[0])
+    def _tracker(self, part: Formula) -> Tracker | None:
+        """Return the tracker of the leaf that a part of the skeleton is, if it is one."""
+        return self.leaves[int(part.name[1:])] if isinstance(part, Var) else None
+
+    def _values(self, parts: Sequence[Formula], evaluate: Evaluate) -> list[float]:
+        """Return the values of parts of the skeleton; what is no leaf is evaluated in one program."""
+        asked = tuple(dict.fromkeys(part for part in parts if not isinstance(part, Var)))
+        known: dict[Formula, float] = {}
+        if asked:
+            columns = {f"#{i}": np.array([tracker.value]) for i, tracker in enumerate(self.leaves)}
+            signals = evaluate(asked, DiscreteTrace(np.zeros(1), columns, Fraction(1)))
+            known = {part: float(signal.values[0]) for part, signal in zip(asked, signals, strict=True)}
+        trackers = map(self._tracker, parts)
+        return [
+            known[part] if tracker is None else tracker.value
+            for part, tracker in zip(parts, trackers, strict=True)
+        ]

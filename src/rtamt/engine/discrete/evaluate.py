@@ -161,11 +161,10 @@ class BoundsEvaluator(Evaluator):
 def longest_bound(formulas: Sequence[Formula], period: Fraction) -> int:
     """Return the largest finite bound of any interval, in samples."""
     longest = 0
-    for formula in formulas:
-        for node in postorder(formula):
-            if isinstance(node, Apply) and node.interval is not None:
-                last = node.interval.end if node.interval.end is not None else node.interval.begin
-                longest = max(longest, int(last / period))
+    for node in postorder(*formulas):
+        if isinstance(node, Apply) and node.interval is not None:
+            last = node.interval.end if node.interval.end is not None else node.interval.begin
+            longest = max(longest, int(last / period))
     return longest
 
 

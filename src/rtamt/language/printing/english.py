@@ -38,7 +38,8 @@ def to_english(
 ) -> str:
     """Return a formula in English, without a capital letter and a full stop.
 
-    ``names``: from the ID of a part to the name that stands for it. ``units``: of variables, constants and parameters.
+    ``names``: from the ID of a part to the name that stands for it; the whole is written out. ``units``: of
+    variables, constants and parameters.
 
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> to_english(parse_formula("always(req >= 3 -> eventually[0:500ms](gnt >= 3))"))
@@ -46,15 +47,15 @@ def to_english(
     >>> to_english(parse_formula("(a > 1 or b > 1) and c > abs(a - b)"))
     '(a is more than 1 or b is more than 1) and c is more than |a minus b|'
     """
-    english = _English(names or {}, units or {})
+    english = _English(formula, names or {}, units or {})
     return text_of(formula, english.pieces, limit)
 
 
 def begins_with_name(formula: Formula, names: Mapping[int, str]) -> bool:
     """Return whether a formula in English begins with a name or a number instead of a word; ``names`` as above."""
-    english = _English(names, {})
+    english = _English(formula, names, {})
     first = formula
-    while isinstance(first, Apply) and id(first) not in names:
+    while isinstance(first, Apply) and english.name(first) is None:
         if first.op is WHERE_PRESENT:
             first = first.args[0]
             continue
@@ -68,13 +69,18 @@ def begins_with_name(formula: Formula, names: Mapping[int, str]) -> bool:
 class _English:
     """The printer of the nodes of a formula."""
 
-    def __init__(self, names: Mapping[int, str], units: Mapping[str, str]) -> None:
+    def __init__(self, whole: Formula, names: Mapping[int, str], units: Mapping[str, str]) -> None:
+        self._whole = whole
         self._names = names
         self._units = units
 
+    def name(self, part: Formula) -> str | None:
+        """Return the name that stands for a part, if there is one; the whole has none."""
+        return None if part is self._whole else self._names.get(id(part))
+
     def pieces(self, node: Formula) -> tuple[Piece, ...]:
         """Return a node as text and operands."""
-        name = self._names.get(id(node))
+        name = self.name(node)
         if name is not None:
             return (name,)
         if isinstance(node, Const):
@@ -128,7 +134,7 @@ class _English:
         return (
             chain
             and node.op.fixity is Fixity.LEFT
-            and id(operand) not in self._names
+            and self.name(operand) is None
             and not self._is_open(operand)
         )
 
@@ -144,7 +150,7 @@ class _English:
 
     def _is_simple(self, formula: Formula) -> bool:
         """Return whether nothing can be attached to a part: a name, a number, a comparison, notation with brackets."""
-        if not isinstance(formula, Apply) or id(formula) in self._names or not formula.args:
+        if not isinstance(formula, Apply) or self.name(formula) is not None or not formula.args:
             return True
         if formula.op in (TRUTH, WHERE_PRESENT) or _is_false(formula):
             return self._is_simple(formula.args[0])
@@ -157,7 +163,7 @@ class _English:
 
     def _is_open(self, formula: Formula) -> bool:
         """Return whether what follows a part could be read as the end of it."""
-        while isinstance(formula, Apply) and id(formula) not in self._names:
+        while isinstance(formula, Apply) and self.name(formula) is None:
             phrase = phrase_of(formula)
             places = _PLACE.findall(phrase)
             if self._is_simple(formula) or not phrase.endswith("}") or not places[-1].isdigit():

@@ -20,14 +20,14 @@ from rtamt.language.printing.parentheses import (
     truth_of,
     written_operand,
 )
-from rtamt.language.printing.writing import EXCERPT, LONGEST, text_of
+from rtamt.language.printing.writing import EXCERPT, LONGEST, excerpts_of, text_of
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.lazy_patterns import lazy_pattern
 from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
     from fractions import Fraction
 
     from rtamt.language.printing.writing import Piece
@@ -51,6 +51,37 @@ def to_text(
     >>> to_text(parse_formula("a - (b - c)"))
     'a - (b - c)'
     """
+    return text_of(formula, _writer(language, parameters=parameters), limit)
+
+
+def excerpt(formula: Formula) -> str:
+    """Return the text of a formula for a message, at most about 200 characters.
+
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> excerpt(parse_formula("x >= 3"))
+    'x >= 3'
+    >>> doubled = parse_formula("x + y")
+    >>> for _ in range(40):
+    ...     doubled = parse_formula("a + a", definitions={"a": doubled})
+    >>> excerpt(doubled)[-61:]
+    '… (abbreviated: 4.39805e+12 operators, variables and numbers)'
+    """
+    return to_text(formula, limit=EXCERPT)
+
+
+def excerpts(formulas: Sequence[Formula]) -> tuple[str, ...]:
+    """Return the excerpts of several formulas, which may contain each other, in time proportional to their nodes.
+
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> formula = parse_formula("x >= 3 and y < 2")
+    >>> excerpts([formula, formula.args[0]])
+    ('x >= 3 and y < 2', 'x >= 3')
+    """
+    return excerpts_of(formulas, _writer(STL))
+
+
+def _writer(language: Language, *, parameters: bool = False) -> Callable[[Formula], Iterable[Piece]]:
+    """Return what writes one node: text, and formulas below it."""
     minus = sign(language)
 
     def group(child: Formula, needed: bool) -> tuple[Piece, ...]:
@@ -100,22 +131,7 @@ def to_text(
             *group(right, falls_apart(right, op, Fixity.RIGHT, minus) or reads_on(right, op, language)),
         )
 
-    return text_of(formula, pieces, limit)
-
-
-def excerpt(formula: Formula) -> str:
-    """Return the text of a formula for a message, at most about 200 characters.
-
-    >>> from rtamt.language.parsing.parser import parse_formula
-    >>> excerpt(parse_formula("x >= 3"))
-    'x >= 3'
-    >>> doubled = parse_formula("x + y")
-    >>> for _ in range(40):
-    ...     doubled = parse_formula("a + a", definitions={"a": doubled})
-    >>> excerpt(doubled)[-61:]
-    '… (abbreviated: 4.39805e+12 operators, variables and numbers)'
-    """
-    return to_text(formula, limit=EXCERPT)
+    return pieces
 
 
 def canonical(formula: Formula, language: Language = STL, *, limit: int = LONGEST) -> str:

@@ -34,19 +34,14 @@ def sentences_of(document: Document) -> dict[str, Sentence]:
     for requirement in document.requirements:
         formula = requirement.formula
         found[requirement.name] = Sentence(
-            _sentence(formula, _others(named, formula), units),
+            _sentence(formula, named, units),
             {
-                named[id(part)]: _sentence(part, _others(named, part), units)
+                named[id(part)]: _sentence(part, named, units)
                 for part in reversed(postorder(formula))
                 if id(part) in named and part is not formula
             },
         )
     return found
-
-
-def _others(named: Mapping[int, str], formula: Formula) -> dict[int, str]:
-    """Return the names of parts, but for that of a whole formula, which is written out."""
-    return {key: name for key, name in named.items() if key != id(formula)}
 
 
 def _sentence(formula: Formula, names: Mapping[int, str], units: Mapping[str, str]) -> str:

@@ -7,11 +7,11 @@ a text beyond a limit is abbreviated: its beginning, followed by the size of the
 
 from __future__ import annotations
 
-from rtamt.language.formula import COUNTLESS, Formula, size
+from rtamt.language.formula import COUNTLESS, Formula, postorder, size
 from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     #: Text, or a formula that is still to be written.
     Piece = str | Formula
@@ -34,6 +34,26 @@ def text_of(formula: Formula, pieces: Callable[[Formula], Iterable[Piece]], limi
         begin += more
         if len(begin) >= EXCERPT:
             break
+    return _abbreviated(begin, formula)
+
+
+def excerpts_of(formulas: Sequence[Formula], pieces: Callable[[Formula], Iterable[Piece]]) -> tuple[str, ...]:
+    """Write several formulas as :func:`text_of` does with a limit of :data:`EXCERPT`, visiting shared nodes once."""
+    begins: dict[int, str] = {}
+    for node in postorder(*formulas):
+        begin = ""
+        for piece in pieces(node):  # text, or a formula below this one
+            begin += piece if isinstance(piece, str) else begins[id(piece)]
+            if len(begin) > EXCERPT:
+                break
+        begins[id(node)] = begin[: EXCERPT + 1]
+    return tuple(
+        begin if size(formula) <= EXCERPT >= len(begin) else _abbreviated(begin, formula)
+        for formula, begin in ((formula, begins[id(formula)]) for formula in formulas)
+    )
+
+
+def _abbreviated(begin: str, formula: Formula) -> str:
     return f"{begin[:EXCERPT]}… (abbreviated: {extent_of(formula)})"
 
 
