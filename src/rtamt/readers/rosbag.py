@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 #: The longest array whose elements become columns; longer ones are images and point clouds.
 _ELEMENTS = 1000
-#: Scans have a column for the nearest obstacle: the least valid range, inf if there is none.
+#: Scans have a column for the nearest obstacle: the least valid range, inf if there is none, and -inf where a ray hit
+#: something that is too close to measure (REP 117).
 _SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
@@ -42,10 +43,11 @@ def open_bag(path: str, recover: bool = False) -> Source:
     """Open a bag. ``recover``: read a damaged MCAP file as far as possible.
 
     A column is called ``/topic.field.path``, elements of arrays ``/topic.ranges[0]``: what the first
-    message of the topic holds. A laser scan also has the column ``/topic.ranges.min``, its least valid range. The
-    time of a message is the stamp in its header, in nanoseconds; where there is none, or it was left at 0, the time
-    at which it was recorded. Stamps of another clock than that of the recording, such as simulated time, are replaced
-    by the times of recording if topics with the clock of the recording are read, too; a note reports this.
+    message of the topic holds. A laser scan also has the column ``/topic.ranges.min``, its least valid range: -inf if
+    something is too close to measure, inf if no range is valid. The time of a message is the stamp in its header, in
+    nanoseconds; where there is none, or it was left at 0, the time at which it was recorded. Stamps of another clock
+    than that of the recording, such as simulated time, are replaced by the times of recording if topics with the clock
+    of the recording are read, too; a note reports this.
     """
     with ExitStack() as stack:
         reader, losses = stack.enter_context(open_reader(path, recover))
@@ -161,7 +163,7 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
     steps = {f"{topic}{_text(path)}": path for path in _numbers(message)}
     stamp = _header_time(message) or recorded
     if connection.msgtype == _SCAN:
-        steps[f"{topic}.{_NEAREST}"] = (_NEAREST,)
+        steps[f"{topic}.{_NEAREST}"] = (_NEAREST, topic)
     time_field = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
     made: list[_Topic] = []
 
@@ -325,8 +327,7 @@ def _at(message: Any, path: Steps) -> Any:
     """Return a number in a message; None where its array is shorter."""
     for step in path:
         if step == _NEAREST:
-            ranges = np.asarray(message.ranges)
-            return ranges[(ranges >= message.range_min) & (ranges <= message.range_max)].min(initial=np.inf)
+            return _nearest(message, path[-1])
         if isinstance(step, int):
             if step >= len(message):
                 return None
@@ -334,6 +335,17 @@ def _at(message: Any, path: Steps) -> Any:
         else:
             message = getattr(message, step)
     return message
+
+
+def _nearest(scan: Any, topic: str | int) -> Any:
+    if not scan.range_min < scan.range_max:
+        raise TraceError(
+            f"a laser scan on {topic} has no valid range, because its range_min is {scan.range_min:g} and its "
+            f"range_max {scan.range_max:g}: read single ranges, such as {topic}.ranges[0], or correct the driver"
+        )
+    ranges = np.asarray(scan.ranges)
+    measured = (ranges >= scan.range_min) & (ranges <= scan.range_max)
+    return ranges[measured | (ranges == -np.inf)].min(initial=np.inf)
 
 
 def _header_time(message: Any) -> int:

@@ -62,22 +62,15 @@ class Bag:
         """Write a number without a header."""
         self.write(topic, FLOAT, round(at * SECOND), self.store.types[FLOAT](data=value))
 
-    def scan(self, topic, at, ranges):
+    def scan(self, topic, at, ranges, limits=(0.05, 8.0)):
         zero = dict.fromkeys(
-            (
-                "angle_min",
-                "angle_max",
-                "angle_increment",
-                "time_increment",
-                "scan_time",
-                "range_min",
-                "range_max",
-            ),
-            0.0,
+            ("angle_min", "angle_max", "angle_increment", "time_increment", "scan_time"), 0.0
         )
         message = self.store.types[LASER](
             header=self.header(round(at * SECOND)),
             **zero,
+            range_min=limits[0],
+            range_max=limits[1],
             ranges=np.array(ranges, np.float32),
             intensities=np.zeros(0, np.float32),
         )

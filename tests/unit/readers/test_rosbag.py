@@ -130,29 +130,6 @@ def test_a_violation_with_the_stamp_of_the_message_before_was_left_out_silently(
     assert note in rtamt.read(bag.path).losses
 
 
-@pytest.mark.parametrize("kind", ["ros1", "mcap"])
-@pytest.mark.parametrize("options", [["--time", "dense"], ["--time", "dense", "--early"], ["--period", "1s"]])
-def test_a_violation_in_simulated_time_was_missed_beside_a_topic_with_times_of_recording(
-    tmp_path, capsys, kind, options
-):
-    with Bag(tmp_path, kind) as bag:
-        for i in range(5):
-            bag.stamped("/x", 1 + i, -1.0 if i == 2 else 1.0, late=START)
-            bag.plain("/y", START + 1 + i, 1.0)
-    both = 'always("/x.value" >= 0 and "/y.data" >= 0)'
-    assert main(["check", both, str(bag.path), "--json", *options]) == 1
-    row = json.loads(capsys.readouterr().out)
-    assert row["first_violation"] == START + 3
-    note = (
-        "the stamps in the headers on /x are 1.7e+09 s behind the clock of the recording, which is that of /y: "
-        "its messages have the times of their recording"
-    )
-    assert note in row["notes"]
-    assert rtamt.read(bag.path, columns=["/x.value", "/y.data"]).losses == (note,)
-    alone = rtamt.read(bag.path, columns=["/x.value"])
-    assert (alone["/x.value"].times.tolist(), alone.losses) == ([1, 2, 3, 4, 5], ())
-
-
 def test_topics_with_the_same_regular_stamps_imply_their_period_and_every_message_is_a_sample(
     spike, tmp_path, capsys
 ):

@@ -133,6 +133,7 @@ def test_a_bag_of_a_mobile_base(run, tmp_path, kind):
     checked = {name for name, row in rows.items() if "unchecked" not in row}
     assert checked == {"LIMIT-1", "LIMIT-2", "OBST-1"}
     assert rows["LIMIT-1"]["robustness"] == pytest.approx(0.06)
+    assert rows["OBST-1"]["robustness"] == pytest.approx(0.1 - 0.2)
     run("check", "mobile_base", path, "--set", "radius=0.2", "-o", "out.mcap")
     written = {
         name.split("/")[2].split(".")[0] for name in rtamt.read("out.mcap").names if name[:7] == "/rtamt/"
