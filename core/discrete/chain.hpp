@@ -1,8 +1,9 @@
 // A chain of pointwise instructions (program/fusion.hpp) as one kernel: the steps of a strip.
 //
 // Members are computed in the order of the program. What the next member takes stays in the
-// accumulator, everything else is stored for a strip. A value that may be NaN is checked unless NaN
-// reaches a member that is; only when one was seen is every member looked at.
+// accumulator, everything else is stored for a strip. The commonest groups of members are one step:
+// the terms of step.hpp. A value that may be NaN is checked unless NaN reaches a member that is;
+// only when one was seen is every member looked at, in a step of its own.
 //
 // Lanes are computed as so many doubles more at a slot.
 //
@@ -22,10 +23,12 @@
 
 namespace rtamt::discrete {
 
-// The steps of a chain, the operands that they number, and the member that each step computes.
+// The steps of a chain, and the operands that they number. If members may fail, the same without
+// terms, with the member that each step computes.
 struct ChainCode {
     std::vector<Step> steps;
-    std::vector<std::uint32_t> computes; // by step: an instruction that may fail, or no_operand
+    std::vector<Step> single_steps;
+    std::vector<std::uint32_t> computes; // by single step: a member that may fail, or no_operand
     std::vector<std::uint32_t> columns;  // operands that are registers: their instructions
     std::vector<double> constants;       // operands after these
     std::size_t stored = 0;              // operands after these
@@ -50,7 +53,7 @@ class Chain final : public Kernel {
 
     // The instructions whose registers are read, and where the addresses of these belong.
     [[nodiscard]] std::span<const std::uint32_t> columns() const noexcept { return code_.columns; }
-    [[nodiscard]] const void** column(std::size_t i) noexcept { return &operands_[i].values; }
+    [[nodiscard]] const void** column(std::size_t i) noexcept { return &operands_[i]; }
 
     // For blocks of a number of slots.
     void make_room(std::size_t slots);
@@ -61,8 +64,9 @@ class Chain final : public Kernel {
 
   private:
     ChainCode code_;
-    std::vector<Operand> operands_;
-    std::vector<double> memory_; // constants, and what steps store
+    std::vector<const void*> operands_; // their values
+    std::vector<std::size_t> moves_;    // and whether these are columns
+    std::vector<double> memory_;        // constants, and what steps store
     std::size_t width_;
     std::size_t stride_ = 0; // of strips in memory
     std::uint32_t culprit_ = 0;

@@ -22,6 +22,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -131,8 +132,10 @@ class BasicExecutor {
     Failure failure_{};
 
     [[nodiscard]] std::size_t longest_block() const noexcept {
-        // Without registers long ones cost less, as long as the columns stay in the second cache.
-        return zero_copy_ && zero_copy_->complete() ? 4096 : wiring_.capacity();
+        if (!zero_copy_ || !zero_copy_->complete()) return wiring_.capacity();
+        // Without registers long ones cost less, as long as columns that are read again stay in the
+        // second cache.
+        return zero_copy_->single() ? std::numeric_limits<std::size_t>::max() : 4096;
     }
     void begin_trace(std::size_t count);
     [[nodiscard]] bool end_trace(std::size_t count, Outputs outputs);

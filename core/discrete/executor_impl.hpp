@@ -312,6 +312,7 @@ void BasicExecutor<D>::begin_trace(std::size_t count) {
 template <ValueDomain D>
 bool BasicExecutor<D>::end_trace(std::size_t count, Outputs outputs) {
     samples_ = slot_;
+    if (program().latest() == 0) return true;
     std::vector<Formula*> tails;
     tails.reserve(outputs.size());
     for (std::size_t output = 0; output < outputs.size(); ++output) {

@@ -1,6 +1,6 @@
 // The steps that a chain of operations on doubles consists of, and what they work on.
 //
-// Memory: twelve bytes a step.
+// Memory: sixteen bytes a step.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,11 @@
 namespace rtamt::discrete {
 
 // What a step does to the accumulator x and its operand y; `_back`: with both exchanged; `_both`:
-// to two operands; `_difference`: to x and the difference of two operands.
+// to two operands; `min_` and `max_`: to x and a term of two operands.
+//
+// The terms are the difference of two operands, and how far the sum or the difference of two
+// columns lies over or under a limit. Where a term of a limit is joined to x, both are looked at
+// for NaN.
 enum class Action : std::uint8_t {
     load,
     store,
@@ -39,6 +43,18 @@ enum class Action : std::uint8_t {
     mul_both,
     min_difference,
     max_difference,
+    sum_over,
+    min_sum_over,
+    max_sum_over,
+    sum_under,
+    min_sum_under,
+    max_sum_under,
+    difference_over,
+    min_difference_over,
+    max_difference_over,
+    difference_under,
+    min_difference_under,
+    max_difference_under,
 };
 
 struct Step {
@@ -46,18 +62,16 @@ struct Step {
     bool checked = false; // remembers whether a value is NaN
     std::uint32_t operand = 0;
     std::uint32_t other = 0; // the second one
-};
-
-// Values in memory: of a column from `values` on, or the same ones for each strip.
-struct Operand {
-    const void* values = nullptr;
-    std::size_t moves = 0; // all bits set or none
+    std::uint32_t limit = 0; // a constant
 };
 
 // What the steps of a chain work on.
 struct Memory {
     std::span<const Step> steps;
-    const Operand* operands;
+    // By operand: its values, and whether these are those of a column, of which the strip's begin
+    // at its place (all bits set), or the same ones for each strip (none).
+    const void* const* values;
+    const std::size_t* moves;
     double* stored;     // what steps have stored
     std::size_t stride; // doubles from one stored strip to the next
 };

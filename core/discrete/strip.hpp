@@ -24,21 +24,24 @@ namespace rtamt::discrete {
 
 namespace detail {
 
-// Operations that differ between a number and a vector; `seen`: whether any was NaN.
+// Operations that differ between a number and a vector; `seen`: whether x or y was ever NaN.
 RTAMT_INLINE void set_abs(double& x) noexcept {
     x = std::fabs(x);
 }
 RTAMT_INLINE void set_sqrt(double& x) noexcept {
     x = std::sqrt(x);
 }
-RTAMT_INLINE void look_for_nan(double x, bool& seen) noexcept {
-    seen = seen || std::isnan(x);
+RTAMT_INLINE void look_for_nan(double x, double y, bool& seen) noexcept {
+    seen = seen || std::isunordered(x, y);
 }
 RTAMT_INLINE bool any(bool seen) noexcept {
     return seen;
 }
 
 #if defined(__GNUC__)
+[[noreturn]] RTAMT_INLINE void unreachable() noexcept {
+    __builtin_unreachable();
+}
 inline constexpr std::size_t vector_lanes = 4;
 using Vector [[gnu::vector_size(32)]] = double;
 using Bits [[gnu::vector_size(32)]] = std::uint64_t;
@@ -50,13 +53,17 @@ RTAMT_INLINE void set_abs(Vector& x) noexcept {
 RTAMT_INLINE void set_sqrt(Vector& x) noexcept {
     x = Vector{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
-RTAMT_INLINE void look_for_nan(const Vector& x, Bits& seen) noexcept {
-    seen |= reinterpret_cast<Bits>(x != x);
+RTAMT_INLINE void look_for_nan(const Vector& x, const Vector& y, Bits& seen) noexcept {
+    const auto bits = [&](int i) { return std::isunordered(x[i], y[i]) ? ~std::uint64_t{0} : 0; };
+    seen |= Bits{bits(0), bits(1), bits(2), bits(3)}; // one comparison of vectors
 }
 RTAMT_INLINE bool any(const Bits& seen) noexcept {
     return ((seen[0] | seen[1]) | (seen[2] | seen[3])) != 0;
 }
 #else
+[[noreturn]] inline void unreachable() noexcept {
+    __assume(0);
+}
 inline constexpr std::size_t vector_lanes = 1;
 using Vector = double;
 using Bits = bool;
@@ -85,6 +92,11 @@ class Strip {
     template <class Act>
     RTAMT_INLINE void with(const double* operand, const double* other, const Act& act) noexcept {
         with(operand, other, act, std::make_index_sequence<n>{});
+    }
+    // Notes in `seen` whether a value is NaN.
+    template <class Seen>
+    RTAMT_INLINE void check(Seen& seen) const noexcept {
+        check(seen, std::make_index_sequence<(n + 1) / 2>{});
     }
     RTAMT_INLINE void store(double* memory) const noexcept {
         store(memory, std::make_index_sequence<n>{});
@@ -125,6 +137,10 @@ class Strip {
                            std::index_sequence<i...> /*all*/) noexcept {
         (at(values_[i], operand + i * lanes, other + i * lanes, act), ...);
     }
+    template <class Seen, std::size_t... i>
+    RTAMT_INLINE void check(Seen& seen, std::index_sequence<i...> /*half*/) const noexcept {
+        (look_for_nan(values_[i], values_[n - 1 - i], seen), ...);
+    }
     RTAMT_INLINE static void put(const V& x, double* memory) noexcept {
         const V value = x; // whose address is taken, so that the accumulator stays in registers
         std::memcpy(memory, &value, sizeof(V));
@@ -135,6 +151,32 @@ class Strip {
     }
 };
 
+// How far the sum or the difference of two operands lies over or under a limit.
+struct SumOver {
+    template <class V>
+    RTAMT_INLINE static void set(V& term, const V& b, const V& c, const V& limit) noexcept {
+        term = (b + c) - limit;
+    }
+};
+struct SumUnder {
+    template <class V>
+    RTAMT_INLINE static void set(V& term, const V& b, const V& c, const V& limit) noexcept {
+        term = limit - (b + c);
+    }
+};
+struct DifferenceOver {
+    template <class V>
+    RTAMT_INLINE static void set(V& term, const V& b, const V& c, const V& limit) noexcept {
+        term = (b - c) - limit;
+    }
+};
+struct DifferenceUnder {
+    template <class V>
+    RTAMT_INLINE static void set(V& term, const V& b, const V& c, const V& limit) noexcept {
+        term = limit - (b - c);
+    }
+};
+
 // Runs the steps for the strip at `place`; notes in `seen` where a value that is to be checked is
 // NaN.
 template <class Strip, class Seen>
@@ -142,15 +184,36 @@ RTAMT_INLINE void run_steps(const Memory& memory, std::size_t place, Strip& stri
                             Seen& seen) noexcept {
     using V = Strip::Value;
     const auto values = [&](std::uint32_t operand) {
-        const Operand& found = memory.operands[operand];
-        return static_cast<const double*>(found.values) + (place & found.moves);
+        return static_cast<const double*>(memory.values[operand]) + (place & memory.moves[operand]);
+    };
+    const auto column = [&](std::uint32_t operand) {
+        return static_cast<const double*>(memory.values[operand]) + place;
+    };
+    // Does act(x, term) for each value and the term of its operands.
+    const auto with_term = [&]<class Term>(const Step& step, Term /*term*/, const auto& act) {
+        V limit;
+        std::memcpy(&limit, memory.values[step.limit], sizeof(V));
+        strip.with(column(step.operand), column(step.other), [&](V& a, const V& b, const V& c) {
+            V term;
+            Term::set(term, b, c, limit);
+            act(a, term);
+        });
+    };
+    const auto take = [](V& a, const V& term) { a = term; };
+    const auto least = [&](V& a, const V& term) {
+        look_for_nan(a, term, seen);
+        a = a < term ? a : term;
+    };
+    const auto most = [&](V& a, const V& term) {
+        look_for_nan(a, term, seen);
+        a = a > term ? a : term;
     };
     const Step* const end = memory.steps.data() + memory.steps.size();
     for (const Step* step = memory.steps.data(); step != end; ++step) {
-        const double* y = values(step->operand);
+        const auto y = [&] { return values(step->operand); };
         switch (step->action) {
         case Action::load:
-            strip.with(y, [](V& a, const V& b) { a = b; });
+            strip.with(y(), [](V& a, const V& b) { a = b; });
             break;
         case Action::store:
             strip.store(memory.stored + step->operand * memory.stride);
@@ -165,79 +228,117 @@ RTAMT_INLINE void run_steps(const Memory& memory, std::size_t place, Strip& stri
             strip.each([](V& a) { set_sqrt(a); });
             break;
         case Action::add:
-            strip.with(y, [](V& a, const V& b) { a = a + b; });
+            strip.with(y(), [](V& a, const V& b) { a = a + b; });
             break;
         case Action::sub:
-            strip.with(y, [](V& a, const V& b) { a = a - b; });
+            strip.with(y(), [](V& a, const V& b) { a = a - b; });
             break;
         case Action::sub_back:
-            strip.with(y, [](V& a, const V& b) { a = b - a; });
+            strip.with(y(), [](V& a, const V& b) { a = b - a; });
             break;
         case Action::mul:
-            strip.with(y, [](V& a, const V& b) { a = a * b; });
+            strip.with(y(), [](V& a, const V& b) { a = a * b; });
             break;
         case Action::div:
-            strip.with(y, [](V& a, const V& b) { a = a / (b + 0.0); });
+            strip.with(y(), [](V& a, const V& b) { a = a / (b + 0.0); });
             break;
         case Action::div_back:
-            strip.with(y, [](V& a, const V& b) { a = b / (a + 0.0); });
+            strip.with(y(), [](V& a, const V& b) { a = b / (a + 0.0); });
             break;
         case Action::min:
-            strip.with(y, [](V& a, const V& b) { a = a < b ? a : b; });
+            strip.with(y(), [](V& a, const V& b) { a = a < b ? a : b; });
             break;
         case Action::min_back:
-            strip.with(y, [](V& a, const V& b) { a = b < a ? b : a; });
+            strip.with(y(), [](V& a, const V& b) { a = b < a ? b : a; });
             break;
         case Action::max:
-            strip.with(y, [](V& a, const V& b) { a = a > b ? a : b; });
+            strip.with(y(), [](V& a, const V& b) { a = a > b ? a : b; });
             break;
         case Action::max_back:
-            strip.with(y, [](V& a, const V& b) { a = b > a ? b : a; });
+            strip.with(y(), [](V& a, const V& b) { a = b > a ? b : a; });
             break;
         case Action::holds_gt:
-            strip.with(y, [](V& a, const V& b) { a = a > b ? V{} + infinity : V{} - infinity; });
+            strip.with(y(), [](V& a, const V& b) { a = a > b ? V{} + infinity : V{} - infinity; });
             break;
         case Action::holds_gt_back:
-            strip.with(y, [](V& a, const V& b) { a = b > a ? V{} + infinity : V{} - infinity; });
+            strip.with(y(), [](V& a, const V& b) { a = b > a ? V{} + infinity : V{} - infinity; });
             break;
         case Action::holds_ge:
-            strip.with(y, [](V& a, const V& b) { a = a >= b ? V{} + infinity : V{} - infinity; });
+            strip.with(y(), [](V& a, const V& b) { a = a >= b ? V{} + infinity : V{} - infinity; });
             break;
         case Action::holds_ge_back:
-            strip.with(y, [](V& a, const V& b) { a = b >= a ? V{} + infinity : V{} - infinity; });
+            strip.with(y(), [](V& a, const V& b) { a = b >= a ? V{} + infinity : V{} - infinity; });
             break;
         case Action::holds_eq:
-            strip.with(y, [](V& a, const V& b) { a = a == b ? V{} + infinity : V{} - infinity; });
+            strip.with(y(), [](V& a, const V& b) { a = a == b ? V{} + infinity : V{} - infinity; });
             break;
         case Action::at_least:
-            strip.with(y, [](V& a, const V& b) { a = a >= b ? a : V{} + functions::undefined; });
+            strip.with(y(), [](V& a, const V& b) { a = a >= b ? a : V{} + functions::undefined; });
             break;
         case Action::at_least_back:
-            strip.with(y, [](V& a, const V& b) { a = b >= a ? b : V{} + functions::undefined; });
+            strip.with(y(), [](V& a, const V& b) { a = b >= a ? b : V{} + functions::undefined; });
             break;
         case Action::add_both:
-            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) { a = b + c; });
+            strip.with(y(), values(step->other), [](V& a, const V& b, const V& c) { a = b + c; });
             break;
         case Action::sub_both:
-            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) { a = b - c; });
+            strip.with(y(), values(step->other), [](V& a, const V& b, const V& c) { a = b - c; });
             break;
         case Action::mul_both:
-            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) { a = b * c; });
+            strip.with(y(), values(step->other), [](V& a, const V& b, const V& c) { a = b * c; });
             break;
         case Action::min_difference:
-            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) {
+            strip.with(y(), values(step->other), [](V& a, const V& b, const V& c) {
                 const V d = b - c;
                 a = a < d ? a : d;
             });
             break;
         case Action::max_difference:
-            strip.with(y, values(step->other), [](V& a, const V& b, const V& c) {
+            strip.with(y(), values(step->other), [](V& a, const V& b, const V& c) {
                 const V d = b - c;
                 a = a > d ? a : d;
             });
             break;
+        case Action::sum_over:
+            with_term(*step, SumOver{}, take);
+            break;
+        case Action::min_sum_over:
+            with_term(*step, SumOver{}, least);
+            continue;
+        case Action::max_sum_over:
+            with_term(*step, SumOver{}, most);
+            continue;
+        case Action::sum_under:
+            with_term(*step, SumUnder{}, take);
+            break;
+        case Action::min_sum_under:
+            with_term(*step, SumUnder{}, least);
+            continue;
+        case Action::max_sum_under:
+            with_term(*step, SumUnder{}, most);
+            continue;
+        case Action::difference_over:
+            with_term(*step, DifferenceOver{}, take);
+            break;
+        case Action::min_difference_over:
+            with_term(*step, DifferenceOver{}, least);
+            continue;
+        case Action::max_difference_over:
+            with_term(*step, DifferenceOver{}, most);
+            continue;
+        case Action::difference_under:
+            with_term(*step, DifferenceUnder{}, take);
+            break;
+        case Action::min_difference_under:
+            with_term(*step, DifferenceUnder{}, least);
+            continue;
+        case Action::max_difference_under:
+            with_term(*step, DifferenceUnder{}, most);
+            continue;
+        default: // which GCC would look for
+            unreachable();
         }
-        if (step->checked) strip.each([&](const V& a) { look_for_nan(a, seen); });
+        if (step->checked) strip.check(seen);
     }
 }
 
@@ -252,12 +353,18 @@ struct Strips {
     [[nodiscard]] RTAMT_INLINE static bool over(Memory memory, std::size_t place, std::size_t count,
                                                 double* out) noexcept {
         detail::Bits seen{};
-        const std::size_t end = place + count;
-        for (; place != end; place += strip_width) {
-            place = std::min(place, end - strip_width);
-            detail::Wide strip;
+        constexpr std::size_t line = 64 / sizeof(double);
+        const std::size_t last = place + count - strip_width;
+        // The second strip begins with a cache line of the results, which columns often share.
+        std::size_t stride =
+            strip_width - reinterpret_cast<std::uintptr_t>(out + place) / sizeof(double) % line;
+        detail::Wide strip;
+        while (true) {
             detail::run_steps(memory, place, strip, seen);
             strip.store(out + place);
+            if (place == last) break;
+            place = std::min(place + stride, last);
+            stride = strip_width;
         }
         return detail::any(seen);
     }

@@ -74,6 +74,9 @@ class ZeroCopy {
     // Whether no register is looked at: blocks may be longer than these.
     [[nodiscard]] bool complete() const noexcept { return complete_; }
 
+    // Whether, besides, only one kernel reads the columns: longer blocks read nothing again.
+    [[nodiscard]] bool single() const noexcept { return complete_ && writers_.size() == 1; }
+
     // Whether an input's register is not looked at.
     [[nodiscard]] bool skips(std::uint32_t input) const noexcept {
         return !readers_.empty() && reads_input_[input];

@@ -103,6 +103,94 @@ TEST_CASE("a chain names the member that is undefined, wherever NaN would end") 
     }
 }
 
+TEST_CASE("sums and differences are compared with limits in one step, and joined in the next") {
+    Builder builder;
+    const auto a = builder.input();
+    const auto b = builder.input();
+    const auto three = builder.constant(3);
+    std::vector<std::uint32_t> members;
+    const auto member = [&](Opcode opcode, std::uint32_t x, std::uint32_t y) {
+        members.push_back(builder.pointwise(opcode, x, y));
+        return members.back();
+    };
+    std::uint32_t found = 0;
+    for (const Opcode join : {Opcode::neg, Opcode::min, Opcode::max}) {
+        for (const Opcode inner : {Opcode::add, Opcode::sub}) {
+            for (const bool under : {false, true}) {
+                const auto value = member(inner, a, b);
+                const auto term =
+                    under ? member(Opcode::sub, three, value) : member(Opcode::sub, value, three);
+                if (join == Opcode::neg) {
+                    found = members.size() == 2 ? term : member(Opcode::min, term, found);
+                } else {
+                    found = member(join, found, term);
+                }
+            }
+        }
+    }
+    const Program program = builder.output(found).program();
+    std::vector<rtamt::discrete::Action> actions;
+    const auto code = rtamt::discrete::chain_code(program, rtamt::fused(program), members);
+    for (const auto& step : code.steps)
+        actions.push_back(step.action);
+    using enum rtamt::discrete::Action;
+    CHECK(actions == std::vector{sum_over, store, sum_under, min, store, difference_over, min,
+                                 store, difference_under, min, min_sum_over, min_sum_under,
+                                 min_difference_over, min_difference_under, max_sum_over,
+                                 max_sum_under, max_difference_over, max_difference_under});
+    CHECK((code.single_steps.size() > code.steps.size()));
+}
+
+TEST_CASE("terms of limits give the bits, and the failures, of instructions one by one") {
+    Random random(33);
+    int failed = 0;
+    for (int round = 0; round < 400; ++round) {
+        Builder builder;
+        const std::uint32_t inputs[] = {builder.input(), builder.input()};
+        std::uint32_t found = rtamt::no_operand;
+        for (auto terms = random.between(1, 4); terms-- > 0;) {
+            const auto limit = builder.constant(random.chance(10) ? inf : random.number(3));
+            const auto value =
+                builder.pointwise(random.chance(50) ? Opcode::add : Opcode::sub,
+                                  inputs[random.between(0, 1)], inputs[random.between(0, 1)]);
+            const auto term = random.chance(50) ? builder.pointwise(Opcode::sub, value, limit)
+                                                : builder.pointwise(Opcode::sub, limit, value);
+            const Opcode join = random.chance(50) ? Opcode::min : Opcode::max;
+            if (found == rtamt::no_operand) {
+                found = random.chance(30) ? builder.pointwise(Opcode::neg, term) : term;
+            } else if (random.chance(80)) {
+                found = builder.pointwise(join, found, term);
+            } else {
+                found = builder.pointwise(join, term, found);
+            }
+        }
+        Program program = builder.output(found).program();
+        const auto count = static_cast<std::size_t>(random.between(1, 150));
+        std::vector<Signal> columns(2);
+        for (Signal& column : columns) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const double near[] = {1.0, -1.0, 0.0, -0.0, 2.0, random.number(5)};
+                column.push_back(near[random.between(0, std::size(near) - 1)]);
+                if (random.chance(1)) column.back() = random.chance(50) ? inf : -inf;
+            }
+        }
+        std::vector<Signal> outputs;
+        std::vector<Signal> expected;
+        const auto failure = ways::offline(program, columns, count, outputs);
+        program.without = 3;
+        const auto wanted = ways::offline(program, columns, count, expected);
+        CHECK(failure.has_value() == wanted.has_value());
+        if (failure && wanted) {
+            ++failed;
+            CHECK((failure->instruction == wanted->instruction));
+            CHECK(failure->sample == wanted->sample);
+        } else {
+            CHECK(bits(outputs) == bits(expected));
+        }
+    }
+    CHECK((failed > 40 && failed < 360));
+}
+
 TEST_CASE("differences from constants are joined in one step, with the bits of two") {
     Builder builder;
     const auto x = builder.input();

@@ -27,3 +27,25 @@ TEST_CASE("offline gives the same whoever reads inputs and outputs") {
                              "count " + std::to_string(count));
     }
 }
+
+TEST_CASE("one kernel over a whole trace gives what it gives block by block") {
+    Random random(12);
+    constexpr std::size_t count = 10'000;
+    const std::vector<Signal> columns{random.signal(count), random.signal(count)};
+    for (const Opcode opcode : {Opcode::min, Opcode::run_max, Opcode::slide_max, Opcode::since}) {
+        Builder builder;
+        const auto a = builder.input();
+        const auto b = builder.input();
+        if (opcode == Opcode::min) {
+            builder.output(builder.pointwise(opcode, a, b));
+        } else if (opcode == Opcode::since) {
+            builder.output(builder.binary(opcode, a, b, 50, 0));
+        } else {
+            builder.output(builder.unary(opcode, a, 50, 0));
+        }
+        ways::Executor executor(builder.program());
+        std::vector<Signal> outputs;
+        CHECK(!ways::offline(executor.program(), columns, count, outputs));
+        CHECK(outputs == ways::online(executor, columns, count, random, 2000));
+    }
+}
