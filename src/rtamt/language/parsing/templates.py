@@ -17,7 +17,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
-from rtamt.language.formula import Apply, Const, Formula, Span, Var, located, postorder
+from rtamt.language.formula import Apply, Const, Formula, Span, Var, children, located
 from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
@@ -108,12 +108,21 @@ class Uses:
         formula = argument.formula
         if formula is None:
             return argument
-        if id(formula) not in self._classes:
-            for node in postorder(formula):
-                if id(node) not in self._classes:
-                    number = self._known.setdefault(self._shape(node), len(self._known))
-                    self._classes[id(node)] = (number, node)
-        return self._classes[id(formula)][0], argument.unit, argument.unknown
+        return self._class_of(formula), argument.unit, argument.unknown
+
+    def _class_of(self, formula: Formula) -> int:
+        """Return the number of the class of a formula; parts that have one are not searched again."""
+        classes, stack = self._classes, [formula]
+        while stack:
+            node = stack[-1]
+            if id(node) not in classes:
+                missing = [operand for operand in children(node) if id(operand) not in classes]
+                if missing:
+                    stack += missing
+                    continue
+                classes[id(node)] = (self._known.setdefault(self._shape(node), len(self._known)), node)
+            stack.pop()
+        return classes[id(formula)][0]
 
     def _shape(self, node: Formula) -> Any:
         if isinstance(node, Apply):

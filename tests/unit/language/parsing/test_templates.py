@@ -8,7 +8,8 @@ from hypothesis import example, given
 
 import rtamt
 from rtamt.errors import BoundError, NameInFormulaError, ParseError
-from rtamt.language.formula import postorder
+from rtamt.language.formula import children, postorder
+from rtamt.language.parsing import templates
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
@@ -159,6 +160,19 @@ def test_a_parameter_that_bounds_an_interval_is_no_parameter_of_a_program():
         "const int wait = 2; const int limit = 3\ndef f(x, w, l) = historically[0:w](x <= l)\nf(v, wait, limit)"
     )
     assert list(spec.compile().metadata.parameters) == ["limit"]
+
+
+def test_nested_uses_search_a_long_argument_once(monkeypatch):
+    searched = []
+    monkeypatch.setattr(templates, "children", lambda node: searched.append(node) or children(node))
+    nested = "".join(f"def f{i}(a) = f{i - 1}(a + {i})\n" for i in range(1, 20))
+    argument = " + ".join(f"x{i}" for i in range(1000))
+    uses = " and ".join(f"f19(b + {i})" for i in range(5))
+    document = parse_document(f"def f0(a) = a >= 1\n{nested}def u(b) = {uses}\nu({argument})")
+    assert len(postorder(document.formula)) > 1999
+    assert (
+        len(searched) < 5000
+    )  # each use searched it, in the definition and here: 20 000 for each of the five
 
 
 @given(formulas(variables=("x", "y"), max_depth=3), formulas(variables=("v", "w"), max_depth=2))
