@@ -59,7 +59,9 @@ PyObject* EarlyMonitor::update(PyObject* time, const Named& values) noexcept {
     try {
         const auto failure = late ? monitor_.learn(*index, t, observations_)
                                   : monitor_.row(*index, t, std::span<const double>(row_));
-        return failure ? fail(*failure, *index, t) : result();
+        if (failure) return fail(*failure, *index, t);
+        const bool latest = *index == newest() && PyFloat_CheckExact(time) != 0;
+        return result(latest && t != 0.0 ? time : nullptr); // zero is reported without a sign
     } catch (const std::bad_alloc&) {
         return PyErr_NoMemory();
     }

@@ -103,8 +103,9 @@ class EarlyMonitor : public EarlyBackend {
 
     [[nodiscard]] PyObject* fail(const Failure& failure, early::Tick index, double time) noexcept;
     void require_output(std::size_t output) const;
-    [[nodiscard]] PyObject* decided(std::size_t output) const noexcept;
-    [[nodiscard]] PyObject* result() const noexcept;
+    // `now`: the time of the newest sample as it is reported, if there is such an object.
+    [[nodiscard]] PyObject* decided(std::size_t output, PyObject* now = nullptr) const noexcept;
+    [[nodiscard]] PyObject* result(PyObject* now = nullptr) const noexcept;
     nb::object checked(PyObject* result) const;
     void require(std::int64_t after);
 };

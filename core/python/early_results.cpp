@@ -30,28 +30,35 @@ pair_of(const std::optional<Bounds>& bounds) {
 
 // ---- results ------------------------------------------------------------------------------------
 
-PyObject* EarlyMonitor::result() const noexcept {
-    if (settings_.verdict) return decided(0);
+PyObject* EarlyMonitor::result(PyObject* now) const noexcept {
+    if (settings_.verdict) return decided(0, now);
     if (settings_.causation && !finished()) {
         return made_of(*settings_.causation, monitor_.caused_at_start());
     }
     Py_RETURN_NONE;
 }
 
-PyObject* EarlyMonitor::decided(std::size_t output) const noexcept {
+// Verdicts share the time of the newest sample, which nearly all of one call have.
+PyObject* EarlyMonitor::decided(std::size_t output, PyObject* now) const noexcept {
     Py_ssize_t count = 0;
     const std::vector<Decision>& decisions = monitor_.decisions(output);
     for (const Decision& decision : decisions)
         count += decision.r - decision.l + 1;
     auto list = nb::steal(PyList_New(count));
     if (!list.is_valid()) return nullptr;
+    const Tick newest = monitor_.newest();
+    nb::object latest = nb::borrow(now);
+    const auto moment = [&](Tick t) -> nb::object {
+        if (t != newest) return nb::steal(PyFloat_FromDouble(monitor_.time(t)));
+        if (!latest.is_valid()) latest = nb::steal(PyFloat_FromDouble(monitor_.time(t)));
+        return latest;
+    };
     Py_ssize_t place = 0;
     for (const Decision& decision : decisions) {
+        const nb::object at = moment(decision.at);
         for (Tick t = decision.l; t <= decision.r; ++t) {
             PyObject* one = settings_.verdict->make(
-                {nb::steal(PyFloat_FromDouble(monitor_.time(t))),
-                 nb::borrow(decision.satisfied ? Py_True : Py_False),
-                 nb::steal(PyFloat_FromDouble(monitor_.time(decision.at)))});
+                {moment(t), nb::borrow(decision.satisfied ? Py_True : Py_False), at});
             if (one == nullptr) return nullptr;
             fill_list(list.ptr(), place++, one);
         }

@@ -27,6 +27,17 @@ def test_whether_a_formula_holds_is_the_same_under_every_semantics(semantics, ba
     assert sorted((v.time, v.satisfied) for v in found) == [(0, False), (1, False), (2, False), (3, True)]
 
 
+class Stamp(float):
+    """A time that is no plain float."""
+
+
+@pytest.mark.parametrize("given", [-0.0, 0, Stamp(7.5), 7.5, True])
+def test_times_are_reported_as_plain_floats_without_the_sign_of_zero(given):
+    [verdict] = rtamt.parse("x >= 3").monitor(verdict="eager").update(given, x=4)
+    for time in (verdict.time, verdict.decided_at):
+        assert (type(time), str(time)) == (float, str(float(given) + 0.0))
+
+
 def test_what_is_settled_before_it_is_reached_waits():
     monitor = rtamt.parse("once(x >= 3)").monitor(verdict="eager")
     assert monitor.update(0, x=4) == [Verdict(0.0, True, 0.0)]
