@@ -12,6 +12,7 @@ numbers     the values of a column
 timestamps  the time column, its unit and its values
 dates       dates as text or objects to numpy dates
 gaps        missing samples: skipped or held
+silence     signals that end long before the recording does
 rows        rows of Python objects to columns
 frames      pandas, polars, xarray, arrow and numpy objects
 csv         CSV files

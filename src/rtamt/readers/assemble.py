@@ -10,6 +10,7 @@ from rtamt.errors import TraceError, choices, did_you_mean
 from rtamt.lazy_numpy import np
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.numbers import numbers_of
+from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_sample
@@ -70,7 +71,8 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     """Read a source whole."""
     channels: dict[str, Channel] = {}
     notes, losses = list(source.notes), list(source.losses)
-    for selection in _aligned(source, choice):
+    silences = Silences()
+    for place, selection in enumerate(_aligned(source, choice)):
         raws = selection.table.load(selection.fields)
         losses += selection.table.losses
         timestamps = timestamps_of(source, selection, choice)
@@ -78,6 +80,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
         made, left_out = _channels(source, selection, timestamps, raws, choice, gaps)
         notes += [] if timestamps is None else [note for note in timestamps.notes if note not in notes]
         channels.update(made)
+        silences.take(place, made)
         if choice.columns is None:
             taken = {timestamps.field if timestamps else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
@@ -86,6 +89,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     if choice.columns is not None:  # in the caller's order, whatever the tables'
         channels = {name: channels[name] for name in choice.columns if name in channels}
     channels = _one_kind(channels, source.name)
+    losses += silences.losses()
     return Trace(channels, source=source.name, notes=notes, losses=losses, origin=source.origin)
 
 
@@ -95,6 +99,7 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     timestamps = [timestamps_of(source, selection, choice) for selection in selections]
     gaps = [_gaps(source, selection, choice) for selection in selections]
     before = [0] * len(selections)
+    silences = Silences()
     for chunk in _raw_chunks(source, selections):
         channels: dict[str, Channel] = {}
         for i, (selection, raws) in enumerate(zip(selections, chunk, strict=True)):
@@ -111,13 +116,15 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
                 copy=not selection.table.fresh,
             )
             channels.update(made)
+            silences.take(i, made)
             before[i] += len(raws[0]) if raws else 0
         notes = (
             *source.notes,
             *dict.fromkeys(note for column in timestamps if column for note in column.notes),
         )
         lost = (loss for each in gaps for gap in each.values() for loss in gap.losses())
-        losses = (*source.losses, *(loss for each in selections for loss in each.table.losses), *lost)
+        left_out = (loss for each in selections for loss in each.table.losses)
+        losses = (*source.losses, *left_out, *lost, *silences.losses())
         yield Trace(
             _one_kind(channels, source.name),
             source=source.name,
