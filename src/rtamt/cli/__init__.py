@@ -130,6 +130,12 @@ def _exit_code(argv: list[str]) -> int:
     except MemoryError:
         complain("not enough memory: are the bounds of a window as large as they should be?")
         code = ERROR
+    except UnicodeEncodeError as error:
+        complain(
+            f"the output contains {error.object[error.start]!a}, which its encoding, {error.encoding}, lacks; "
+            "set PYTHONIOENCODING=utf-8"
+        )
+        code = ERROR
     except Exception as error:  # noqa: BLE001 - a mistake of ours; the user gets a sentence all the same
         complain(f"internal error, please report it: {type(error).__name__}: {error}")
         code = ERROR

@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     if args.output is None:
         for note in found.notes:
             complain(f"{args.spec}: note: {note}")
-        say(found.text.rstrip("\n"))
+        say(found.text.rstrip("\n"), exact=True)
     else:
         write_output(args.output, found.text)
         count, left = len(found.converted), len(found.rejected)

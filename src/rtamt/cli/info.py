@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
         return OK
     spec = read_specification(args, args.time)
     if args.latex:
-        say(spec.formula.latex())
+        say(spec.formula.latex(), exact=True)
         return OK
     facts = info_of(spec)
     if args.program:

@@ -24,7 +24,7 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.language import read_language
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
-from rtamt.cli.terminal import say
+from rtamt.cli.terminal import encodable, say
 from rtamt.errors import BoundError, SpecificationError, StlError, line_and_column
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.specfile import parse_document
@@ -112,7 +112,7 @@ def _codes(files: list[str], args: argparse.Namespace) -> Iterator[int]:
     plain = Namespace(**{name: value for name, value in vars(args).items() if not callable(value)})
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
         for code, out, errors in pool.map(partial(_lint_in_process, args=plain), files, chunksize=_AT_ONCE):
-            sys.stdout.write(out)
+            sys.stdout.write(encodable(out, sys.stdout))
             sys.stdout.flush()
             sys.stderr.write(errors)
             yield code

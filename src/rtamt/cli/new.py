@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     if path is None and missing:
         path = _answer(f"file [{pattern.name}.stl]") or f"{pattern.name}.stl"
     if path is None:
-        say(text.rstrip())
+        say(text.rstrip(), exact=True)
         return OK
     if os.path.exists(path):
         raise CommandError(f"'{path}' exists; choose another name with -o")

@@ -35,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """List the packs, or print one."""
     if args.name is not None:
-        say(pack(args.name).text.rstrip())
+        say(pack(args.name).text.rstrip(), exact=True)
         return OK
     rows = [("pack", "requirements", "about")]
     for name in packs():

@@ -32,14 +32,30 @@ _STYLES = {"good": "green", "bad": "red", "error": "yellow"}
 _PAINTED = lazy_pattern(rf"(\x1b\[(?:0|{'|'.join(_CODES.values())})m)")
 
 
-def say(text: str = "", *, file: TextIO | None = None, color: bool = False, flush: bool = False) -> None:
+def say(
+    text: str = "",
+    *,
+    file: TextIO | None = None,
+    color: bool = False,
+    flush: bool = False,
+    exact: bool = False,
+) -> None:
     """Print a text; every command prints with this, so that no name in it drives the terminal.
 
-    ``color``: whether there may be codes of :func:`paint` in it.
+    ``color``: whether there may be codes of :func:`paint` in it. ``exact``: whether the text is a file for programs, so
+    that characters that the encoding of the output lacks are an error and not escaped.
     """
     parts = _PAINTED.split(text) if color else [text]
     parts[::2] = [escaped(part) for part in parts[::2]]
-    print("".join(parts), file=file, flush=flush)
+    text = "".join(parts)
+    print(text if exact else encodable(text, file or sys.stdout), file=file, flush=flush)
+
+
+def encodable(text: str, stream: TextIO) -> str:
+    """Return a text with the characters that the encoding of a stream lacks as escapes."""
+    if text.isascii() or stream.errors != "strict":
+        return text
+    return text.encode(stream.encoding, "backslashreplace").decode(stream.encoding)
 
 
 def use_color(mode: str, stream: TextIO) -> bool:
