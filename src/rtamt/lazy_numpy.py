@@ -17,15 +17,15 @@ else:
     from importlib import import_module
     from types import ModuleType
 
-    class _Unloaded(ModuleType):
-        """A module that becomes a copy of NumPy, which Python reads as fast, with the first name that is read of it."""
+    class Unloaded(ModuleType):
+        """A module that becomes a copy of the one it names, as fast to read, with the first name that is read of it."""
 
         def __getattr__(self, name: str) -> Any:
-            loaded = import_module("numpy")
+            loaded = import_module(self.__name__)
             self.__dict__.update(vars(loaded))
             self.__class__ = ModuleType
             return getattr(loaded, name)
 
-    np = _Unloaded("numpy")
+    np = Unloaded("numpy")
 
 __all__ = ["np"]

@@ -13,7 +13,7 @@ from rtamt import lazy_typing
 MONITOR = "assert rtamt.parse('always[0:1](x >= 3)').monitor().update(0, x=1.0) is None"
 
 
-@pytest.mark.parametrize("module", ["typing", "numpy", "dataclasses", "copy", "inspect"])
+@pytest.mark.parametrize("module", ["typing", "numpy", "dataclasses", "copy", "datetime", "inspect"])
 def test_a_monitor_is_parsed_made_and_updated_without(module):
     code = f"import sys; sys.modules[{module!r}] = None; import rtamt; {MONITOR}"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from datetime import datetime, timedelta
 from functools import reduce
 from math import isinf, isnan
 from numbers import Real
@@ -13,6 +12,7 @@ from os import PathLike, fspath
 
 from rtamt.errors import TraceError, UsageError, shown, with_article
 from rtamt.language.units.durations import UNITS, check_unit, in_seconds
+from rtamt.lazy_datetime import dt
 from rtamt.lazy_numpy import np
 from rtamt.lazy_tuples import NamedTuple
 from rtamt.lazy_typing import TYPE_CHECKING, Any
@@ -71,7 +71,7 @@ class Timestamps(NamedTuple):
 
 def is_moment(time: Any) -> bool:
     """Return whether a time is a date or a duration, and not a number."""
-    return isinstance(time, (datetime, timedelta, np.datetime64, np.timedelta64))
+    return isinstance(time, (dt.datetime, dt.timedelta, np.datetime64, np.timedelta64))
 
 
 def plain(time: Any) -> Any:
@@ -248,7 +248,7 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
     kinds: dict[str, int] = {}
     found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
     for i, value in enumerate(raw.flat):
-        kind = "m" if isinstance(value, timedelta | np.timedelta64) else "M"
+        kind = "m" if isinstance(value, dt.timedelta | np.timedelta64) else "M"
         kinds.setdefault(kind, i)
         if not is_moment(value) or len(kinds) > 1:
             raise TraceError(

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta, timezone
 from fractions import Fraction
 from types import MappingProxyType
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy_datetime import dt
 from rtamt.lazy_numpy import np
 from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-_EPOCH = datetime(1970, 1, 1)
-_ZONED_EPOCH = _EPOCH.replace(tzinfo=timezone.utc)
 
 #: Seconds in each unit in which numpy counts time; years and months have no fixed length.
 _LENGTHS = MappingProxyType(
@@ -106,7 +103,7 @@ def nanoseconds_of(time: Any) -> int | None:
 
     A date without a time zone is taken literally, whatever the time zone of this machine.
 
-    >>> nanoseconds_of(datetime(1970, 1, 1, 0, 0, 1)), nanoseconds_of(np.timedelta64(5, "ms"))
+    >>> nanoseconds_of(dt.datetime(1970, 1, 1, 0, 0, 1)), nanoseconds_of(np.timedelta64(5, "ms"))
     (1000000000, 5000000)
     """
     exact = getattr(time, "to_numpy", None)  # pandas counts in nanoseconds, datetime in microseconds
@@ -117,7 +114,8 @@ def nanoseconds_of(time: Any) -> int | None:
             return None
         numbers, length = counts_of(np.array([time]))
         return round(int(numbers[0]) * length / UNITS["ns"])
-    since: timedelta = time
-    if isinstance(time, datetime):
-        since = time - (_EPOCH if time.tzinfo is None else _ZONED_EPOCH)
-    return (since // timedelta(microseconds=1)) * 1000
+    since: dt.timedelta = time
+    if isinstance(time, dt.datetime):
+        zone = None if time.tzinfo is None else dt.timezone.utc
+        since = time - dt.datetime(1970, 1, 1, tzinfo=zone)
+    return (since // dt.timedelta(microseconds=1)) * 1000

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timezone
-
 from rtamt.language.units.durations import decimal
+from rtamt.lazy_datetime import dt
 from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def date_text(seconds: Fraction) -> str:
     '2023-11-14 22:13:20.100000001'
     """
     whole = seconds // 1
-    date = datetime.fromtimestamp(int(whole), timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+    date = dt.datetime.fromtimestamp(int(whole), dt.timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
     fraction = f"{decimal(seconds - whole)}" if seconds != whole else "0"
     return f"{date}{fraction[1:]}"
 

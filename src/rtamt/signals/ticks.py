@@ -19,7 +19,6 @@ unchanged, and so is every other double that is the nearest to its own tick.
 
 from __future__ import annotations
 
-from datetime import datetime, timedelta
 from fractions import Fraction
 from numbers import Rational
 from types import MappingProxyType
@@ -27,6 +26,7 @@ from types import MappingProxyType
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
 from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy_datetime import dt
 from rtamt.lazy_numpy import np
 from rtamt.lazy_typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
@@ -336,9 +336,9 @@ def kinds_of(times: Any) -> dict[str, int]:
 def _kind_of_one(time: Any) -> str:
     if isinstance(time, np.timedelta64):
         return "timedeltas" if has_length(time) or np.isnat(time) else NO_LENGTH
-    if isinstance(time, timedelta):
+    if isinstance(time, dt.timedelta):
         return "timedeltas"
-    if isinstance(time, datetime):
+    if isinstance(time, dt.datetime):
         return "datetimes" if time.tzinfo is None else "zoned"
     return "datetimes" if isinstance(time, np.datetime64) else "seconds"
 
