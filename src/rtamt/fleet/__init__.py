@@ -5,7 +5,7 @@ module             purpose
 =================  ====================================================================
 fleet              ``Fleet``: an array of monitors by key: vehicles, machines, sessions
 updates            what a batch has made known
-keys               keys as arrays
+keys               the keys and columns of a batch
 opening            what a fleet has for its keys: records of the core, or monitors
 per_key            a monitor for each key: dense time, and the other verdict modes
 suite_per_key      a monitor for each key and each requirement of a suite

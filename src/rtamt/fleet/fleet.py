@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, overload
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.fleet.fleet_snapshot import unpacked
 from rtamt.fleet.gaps import GAPS
-from rtamt.fleet.keys import capacity_of, keys_of
+from rtamt.fleet.keys import capacity_of, columns_of, keys_of
 from rtamt.fleet.late_data import Reordered, moment_of
 from rtamt.fleet.opening import open_fleet
-from rtamt.signals.arrays import is_mapping
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
@@ -190,9 +189,7 @@ class Fleet(Generic[Update]):
         key and the index in the batch; no key has changed then.
         """
         given = keys_of(keys)
-        if not is_mapping(columns):
-            raise TraceError(f"expected a mapping from variable to values, got {type(columns).__name__}")
-        found = self._binding.applied(dict(columns), partial=self._partial)
+        found = self._binding.applied(columns_of(columns), partial=self._partial)
         return self._samples.take(given, times, found)  # type: ignore[return-value] # of this mode
 
     @exclusive

@@ -1,4 +1,4 @@
-"""Keys of a fleet as arrays: integers, texts or bytes; and how many there may be."""
+"""The keys and columns of a batch for a fleet; keys are integers, texts or bytes. And how many keys there may be."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.lazy_numpy import np
+from rtamt.signals.arrays import is_frame, is_mapping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,3 +88,14 @@ def _masked_error(index: int) -> TraceError:
 def is_padded(key: Any) -> bool:
     """Return whether a key ends with the character that an array of numpy loses."""
     return type(key) in _PADDED and key.endswith(_PADDED[type(key)])
+
+
+def columns_of(columns: Any) -> dict[str, Any]:
+    """Return the columns of a batch by variable; of a table, which also holds keys and times, only some are meant."""
+    if is_mapping(columns):
+        return dict(columns)
+    fields = getattr(getattr(columns, "dtype", None), "names", None)
+    table = fields or is_frame(columns) or hasattr(columns, "column_names")
+    advice = "; give {name: table[name] for name in spec.input_names}" if table else ""
+    kind = "a structured array" if fields else type(columns).__name__
+    raise TraceError(f"expected a mapping from variable to values, got {kind}{advice}")

@@ -11,6 +11,7 @@ import zlib
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import rtamt
@@ -64,6 +65,20 @@ def filled(spec: rtamt.Specification = SPEC, **settings: Any) -> rtamt.Fleet:
             "'time' has 1 and 'x' has 2 samples: give one value of each at every sample",
         ),
         (["a"], [1], 5, "expected a mapping from variable to values, got int"),
+        (
+            ["a"],
+            [1],
+            np.array([("a", 1, 1)], [("key", "U1"), ("time", float), ("x", float)]),
+            "expected a mapping from variable to values, got a structured array; "
+            "give {name: table[name] for name in spec.input_names}",
+        ),
+        (
+            ["a"],
+            [1],
+            pl.DataFrame({"x": [1]}),
+            "expected a mapping from variable to values, got DataFrame; "
+            "give {name: table[name] for name in spec.input_names}",
+        ),
         ([1.5], [1], {"x": [1]}, "the keys are [1.5], expected a sequence of integers, texts, or bytes"),
         (5, [1], {"x": [1]}, "the keys are 5, expected a sequence of integers, texts, or bytes"),
         ("ab", [6, 6], {"x": [1, 1]}, "the keys are 'ab', expected a sequence of integers, texts, or bytes"),
