@@ -32,6 +32,8 @@ _ELEMENTS = 1000
 _SCAN, _NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
+#: Messages among which a stamp soon after 0 shows that a topic starts at 0, and that stamps were not left at 0.
+_FIRST_STAMPS = 100
 #: How far the timestamp of a message may be from its recording, in nanoseconds, if both are from the same clock.
 _SAME_CLOCK = 60 * 10**9
 
@@ -135,19 +137,26 @@ def _existing(path: str) -> Path:
 class _Topic:
     """A topic: its table, and where the numbers of its columns are in a message.
 
-    ``behind``: nanoseconds from the stamp in the header of its first message to its recording, 0 without a stamp.
-    ``by_recording``: a note on why stamps in headers are ignored; empty if they are used.
+    ``from_zero``: whether a stamp of 0 is a time, the start of a simulation. ``behind``: nanoseconds from the stamp in
+    the header of its first message to its recording, 0 without a stamp. ``by_recording``: a note on why stamps in
+    headers are ignored; empty if they are used.
     """
 
     table: Table
     connections: list[Any]
     steps: dict[str, Steps]
+    from_zero: bool
     behind: int
     by_recording: str = ""
 
     @property
     def name(self) -> str:
         return str(self.connections[0].topic)
+
+    def time_of(self, message: Any, recorded: int) -> int:
+        """Return the time of a message that was recorded at an instant, in nanoseconds."""
+        stamp = recorded if self.by_recording else _header_time(message)
+        return stamp if stamp or self.from_zero else recorded
 
 
 def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
@@ -161,7 +170,8 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
     connection, recorded, raw = first
     message = _message(reader, connection, raw)
     steps = {f"{topic}{_text(path)}": path for path in _numbers(message)}
-    stamp = _header_time(message) or recorded
+    stamp = _header_time(message)
+    from_zero = stamp == 0 and _starts_at_0(reader, connections)
     if connection.msgtype == _SCAN:
         steps[f"{topic}.{_NEAREST}"] = (_NEAREST, topic)
     time_field = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
@@ -175,8 +185,13 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
 
     fields = [Field(column, column, "", "number") for column in steps]
     table = Table((time_field, *fields), load, time_field=time_field)
-    made.append(_Topic(table, connections, steps, recorded - stamp))
+    made.append(_Topic(table, connections, steps, from_zero, recorded - stamp if stamp or from_zero else 0))
     return made[0]
+
+
+def _starts_at_0(reader: Any, connections: Sequence[Any]) -> bool:
+    first = islice(messages(reader, connections), _FIRST_STAMPS)
+    return any(0 < _header_time(_message(reader, known, data)) <= _SAME_CLOCK for known, _, data in first)
 
 
 def _align(topics: Sequence[_Topic]) -> None:
@@ -207,7 +222,7 @@ class _Rows:
 
     def take(self, recorded: int, message: Any) -> None:
         """Add a message; of several with the same timestamp the first."""
-        stamp = (not self._topic.by_recording and _header_time(message)) or recorded
+        stamp = self._topic.time_of(message, recorded)
         row = [_at(message, path) for path in self._paths]
         if self._last is not None and stamp <= self._last[0]:
             if stamp == self._last[0]:  # a signal has one value at an instant: the first

@@ -53,3 +53,20 @@ def test_an_obstacle_too_close_to_measure_was_left_out_and_so_were_all_ranges_wi
         "a laser scan on /unset has no valid range, because its range_min is 0 and its range_max 0: "
         "read single ranges, such as /unset.ranges[0], or correct the driver"
     )
+
+
+@pytest.mark.parametrize("late", [START, 0])
+def test_a_simulation_that_starts_at_0_was_an_error(tmp_path, late):
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(5):
+            bag.stamped("/x", i / 10, i, late=late)
+    trace = rtamt.read(bag.path)
+    assert trace["/x.value"].times.tolist() == [0, 0.1, 0.2, 0.3, 0.4]
+
+
+def test_stamps_that_were_left_at_0_at_first_are_times_of_recording(tmp_path):
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(5):
+            at = START + i
+            bag.stamped("/x", at if i > 1 else 0, i, late=0 if i > 1 else at)
+    assert rtamt.read(bag.path)["/x.value"].times.tolist() == [(START + i) * 10**9 for i in range(5)]
