@@ -37,6 +37,7 @@ struct rtamt_fleet {
     std::vector<double> times;
     std::vector<std::uint8_t> flags;
     std::vector<rtamt_fleet_row> rows;
+    std::vector<std::uint8_t> late;  // by sample of the last batch
     std::vector<std::uint8_t> saved; // the state whose size was asked for, until anything changes
 
     [[nodiscard]] const Monitors* monitors() const noexcept {
@@ -154,10 +155,12 @@ void deliver(rtamt_fleet& handle, const Monitors::Report& report, rtamt_fleet_va
     for (std::size_t i = 0; i < report.at_start.size(); ++i) {
         const AtStart& at_start = report.at_start[i];
         for (std::size_t k = 0; k < outputs; ++k) {
-            results[i * outputs + k] = {at_start.late ? 0.0 : at_start.values[k], no_time,
-                                        at_start.late ? 0 : 1, 0};
+            results[i * outputs + k] = {at_start.values[k], no_time, 1, 0};
         }
     }
+    handle.late.clear();
+    for (const AtStart& at_start : report.at_start)
+        handle.late.push_back(at_start.late ? 1 : 0);
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.rows[i];
         handle.rows[i] = {row.index,           row.begin,        row.end,
@@ -362,6 +365,10 @@ size_t rtamt_fleet_rows(const rtamt_fleet* fleet, const rtamt_fleet_row** rows) 
 
 uint64_t rtamt_fleet_late(const rtamt_fleet* fleet) {
     return fleet == nullptr || fleet->monitors() == nullptr ? 0 : fleet->monitors()->late();
+}
+
+int32_t rtamt_fleet_is_late(const rtamt_fleet* fleet, size_t index) {
+    return fleet == nullptr || index >= fleet->late.size() ? 0 : fleet->late[index];
 }
 
 rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count) {

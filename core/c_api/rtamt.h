@@ -260,8 +260,8 @@ RTAMT_API const char* rtamt_fleet_output(const rtamt_fleet* fleet, uint32_t outp
 
 /* Takes a batch, keys in any order. A new key starts a trace. `results` receives the values of the
  * first `outputs` outputs, one sample after another: in the modes but delayed those at the start of
- * the trace; there an output is not known of a sample that was later than the lateness allows, and
- * was left out. rtamt_fleet_rows has what became known of other instants. After RTAMT_REFUSED and
+ * the trace. A sample that was later than the lateness allows is left out, and the outputs are those
+ * before it: see rtamt_fleet_is_late. rtamt_fleet_rows has what became known of other instants. After RTAMT_REFUSED and
  * RTAMT_UNDEFINED, `rejected` is the index in the batch, or `count` if no sample is wrong; it may
  * be null. */
 RTAMT_API rtamt_status rtamt_fleet_take(rtamt_fleet* fleet, const rtamt_fleet_batch* batch,
@@ -294,6 +294,10 @@ RTAMT_API size_t rtamt_fleet_rows(const rtamt_fleet* fleet, const rtamt_fleet_ro
 
 /* How many samples were later than the lateness allows; 0 for a null fleet. */
 RTAMT_API uint64_t rtamt_fleet_late(const rtamt_fleet* fleet);
+
+/* 1 if the sample of an index in the last batch that succeeded was later than the lateness allows,
+ * and was left out; else 0. */
+RTAMT_API int32_t rtamt_fleet_is_late(const rtamt_fleet* fleet, size_t index);
 
 /* Forgets keys; where one is not there, it is refused, and all stay. */
 RTAMT_API rtamt_status rtamt_fleet_drop(rtamt_fleet* fleet, const int64_t* keys, size_t count);

@@ -95,6 +95,9 @@ DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> obs
     }
     engine_->settle_inputs(closed_after(index));
     if (auto failure = engine_->late_row(index, row_, given_)) return failure;
+    if (index < times_.newest() && !late_rows_->contains(index)) {
+        times_.insert(index, time, [&](Tick t) { return late_rows_->after(t); });
+    }
     late_rows_->set(index, row_);
     advance(index, time);
     return std::nullopt;

@@ -22,66 +22,83 @@ class LateRows {
     // `ranges`: what is known of each input before it is seen.
     explicit LateRows(std::vector<Bounds> ranges) : ranges_(std::move(ranges)) {}
 
+    [[nodiscard]] bool contains(Tick t) const noexcept { return is_at(find(t), t); }
+
     [[nodiscard]] std::span<const Bounds> at(Tick t) const noexcept {
         const std::size_t place = find(t);
-        return place < ticks_.size() && ticks_[place] == t ? row(place) : ranges_;
+        return is_at(place, t) ? row(place) : ranges_;
+    }
+
+    // The tick of the next row after a tick, `forever` where there is none.
+    [[nodiscard]] Tick after(Tick t) const noexcept {
+        const std::size_t place = find(t + 1);
+        return place < ticks_.size() ? ticks_[place] : forever;
     }
 
     void set(Tick t, std::span<const Bounds> values) {
         const std::size_t place = find(t);
-        const std::size_t width = ranges_.size();
-        if (place == ticks_.size() || ticks_[place] != t) {
-            rows_.reserve(rows_.size() + width);
-            ticks_.insert(ticks_.begin() + static_cast<std::ptrdiff_t>(place), t);
-            rows_.insert(rows_.begin() + static_cast<std::ptrdiff_t>(place * width), values.begin(),
-                         values.end());
-        } else {
-            std::ranges::copy(values, rows_.begin() + static_cast<std::ptrdiff_t>(place * width));
+        if (is_at(place, t)) {
+            std::ranges::copy(values, rows_.begin() + first_of(place));
+            return;
         }
+        rows_.reserve(rows_.size() + values.size());
+        ticks_.insert(ticks_.begin() + static_cast<std::ptrdiff_t>(place), t);
+        rows_.insert(rows_.begin() + first_of(place), values.begin(), values.end());
     }
 
-    // Forgets the rows before a tick.
+    // Forgets the rows before a tick; their memory once they are as many as the others.
     void drop_before(Tick t) {
-        const std::size_t place = find(t);
-        const auto count = static_cast<std::ptrdiff_t>(place);
-        ticks_.erase(ticks_.begin(), ticks_.begin() + count);
-        rows_.erase(rows_.begin(),
-                    rows_.begin() + count * static_cast<std::ptrdiff_t>(ranges_.size()));
+        head_ = find(t);
+        if (2 * head_ < ticks_.size()) return;
+        rows_.erase(rows_.begin(), rows_.begin() + first_of(head_));
+        ticks_.erase(ticks_.begin(), ticks_.begin() + static_cast<std::ptrdiff_t>(head_));
+        head_ = 0;
     }
 
     [[nodiscard]] std::size_t bytes() const noexcept {
-        return ticks_.size() * sizeof(Tick) + rows_.size() * sizeof(Bounds);
+        return (ticks_.size() - head_) * (sizeof(Tick) + ranges_.size() * sizeof(Bounds));
     }
 
     void transfer(Snapshot& snapshot) {
-        std::size_t size = ticks_.size();
+        std::size_t size = ticks_.size() - head_;
         snapshot.count(size, sizeof(Tick) + ranges_.size() * sizeof(Bounds));
-        ticks_.resize(size);
-        rows_.resize(size * ranges_.size());
-        snapshot.values(ticks_.data(), ticks_.size());
-        snapshot.values(rows_.data(), rows_.size());
-        for (std::size_t i = 1; i < size; ++i)
+        if (snapshot.loading()) head_ = 0;
+        ticks_.resize(head_ + size);
+        rows_.resize(ticks_.size() * ranges_.size());
+        snapshot.values(ticks_.data() + head_, size);
+        snapshot.values(rows_.data() + first_of(head_), size * ranges_.size());
+        for (std::size_t i = head_ + 1; i < ticks_.size(); ++i)
             snapshot.require(ticks_[i - 1] < ticks_[i]);
-        for (const Bounds& each : rows_)
-            snapshot.require(each.lower <= each.upper);
+        for (std::size_t i = head_ * ranges_.size(); i < rows_.size(); ++i)
+            snapshot.require(rows_[i].lower <= rows_[i].upper);
     }
 
   private:
     std::vector<Bounds> ranges_;
     std::vector<Tick> ticks_; // in order
     std::vector<Bounds> rows_;
+    std::size_t head_ = 0; // rows before it are forgotten
+
+    [[nodiscard]] bool is_at(std::size_t place, Tick t) const noexcept {
+        return place < ticks_.size() && ticks_[place] == t;
+    }
+
+    [[nodiscard]] std::ptrdiff_t first_of(std::size_t place) const noexcept {
+        return static_cast<std::ptrdiff_t>(place * ranges_.size());
+    }
 
     // The place of the first row at a tick or later.
     [[nodiscard]] std::size_t find(Tick t) const noexcept {
         const std::size_t size = ticks_.size();
-        if (size == 0 || ticks_.back() < t) return size;
+        if (head_ == size || ticks_.back() < t) return size;
         // As far from the end, if none is missing.
         const auto back = static_cast<std::size_t>(ticks_.back() - t);
-        if (back < size) {
+        if (back < size - head_) {
             const std::size_t place = size - 1 - back;
             if (ticks_[place] == t) return place;
         }
-        return static_cast<std::size_t>(std::ranges::lower_bound(ticks_, t) - ticks_.begin());
+        const auto head = ticks_.begin() + static_cast<std::ptrdiff_t>(head_);
+        return static_cast<std::size_t>(std::lower_bound(head, ticks_.end(), t) - ticks_.begin());
     }
 
     [[nodiscard]] std::span<const Bounds> row(std::size_t place) const noexcept {

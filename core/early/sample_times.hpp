@@ -1,7 +1,9 @@
-// The times of samples by their index, for samples about one period apart.
+// The times of samples by their index, for samples about one period apart: those that were given,
+// and computed ones where there is no sample yet.
 //
-// Cost: a comparison a sample. Memory: two words for each sample that does not come exactly a whole
-// number of periods after the last such sample; none while all others do.
+// Cost: a comparison a sample in order; a late one also looks at those after it, up to the next
+// that is kept. Memory: two words for each sample that does not come exactly a whole number of
+// periods after the last such sample; none while all others do.
 #pragma once
 
 #include "../program/snapshot.hpp"
@@ -42,11 +44,27 @@ class SampleTimes {
         last_ = time;
     }
 
+    // The first sample at an index before the newest one. `next`: from an index to that of the next
+    // sample. Later samples keep their times.
+    template <class Next>
+    void insert(Tick index, double time, Next&& next) {
+        if (at(index) == time) return;
+        const auto after =
+            std::ranges::upper_bound(anchors_, index, {}, [](const Anchor& a) { return a.index; });
+        const Tick end = after == anchors_.end() ? newest_ + 1 : after->index;
+        std::vector<Anchor> added{{index, time}};
+        for (Tick t = next(index); t < end; t = next(t)) {
+            const double given = at(t);
+            if (continued(added.back(), t) != given) added.push_back({t, given});
+        }
+        anchors_.insert(after, added.begin(), added.end());
+    }
+
     [[nodiscard]] double at(Tick index) const noexcept {
         const auto after =
             std::ranges::upper_bound(anchors_, index, {}, [](const Anchor& a) { return a.index; });
         const Anchor& anchor = after == anchors_.begin() ? *after : *std::prev(after);
-        return anchor.time + static_cast<double>(index - anchor.index) * period_;
+        return continued(anchor, index);
     }
 
     // Forgets the times of samples before an index, but for those that are computed.
@@ -97,6 +115,10 @@ class SampleTimes {
     double last_ = 0.0;
     double period_;
     double tolerance_;
+
+    [[nodiscard]] double continued(const Anchor& anchor, Tick index) const noexcept {
+        return anchor.time + static_cast<double>(index - anchor.index) * period_;
+    }
 };
 
 } // namespace rtamt::early

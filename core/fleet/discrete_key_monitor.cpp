@@ -127,6 +127,7 @@ class DiscreteEarly final : public KeyMonitor {
     struct Seen {
         double time = 0;
         std::vector<early::DenseMonitor::Given> known;
+        Tick tick = 0; // before the trace starts, from its earliest sample on
     };
 
     const MonitorProgram& program_;
@@ -219,19 +220,39 @@ class DiscreteEarly final : public KeyMonitor {
         return true;
     }
 
+    // The sample of a time that follows another, if it is on its grid.
+    [[nodiscard]] std::optional<Tick> following(const Seen& seen, double time) const noexcept {
+        const double period = monitor_.period();
+        const double steps = std::nearbyint((time - seen.time) / period);
+        if (std::fabs(time - seen.time - steps * period) > program_.tolerance * period) return {};
+        return seen.tick + static_cast<Tick>(steps);
+    }
+
+    // Whether a sample would be the same one if it had come in order.
+    [[nodiscard]] bool fits(std::vector<Seen>::const_iterator after, double time, Tick tick) const {
+        return rehearsal_->place(time) == tick &&
+               (after == early_.end() || following({time, {}, tick}, after->time) == after->tick);
+    }
+
     // Keeps a sample until it is known where the trace starts, in the order of their times; throws
     // for one that cannot be taken then.
     void keep(Seen&& seen) {
-        const bool follows = early_.empty() || seen.time >= early_.back().time;
         const auto after = std::ranges::upper_bound(early_, seen.time, {}, &Seen::time);
-        const auto kept = early_.insert(after, std::move(seen));
-        if (follows && rehearsal_) {
-            (void)learn(*rehearsal_, *kept);
-            return;
+        if (rehearsal_ && after != early_.begin()) {
+            const auto tick = following(*std::prev(after), seen.time);
+            if (tick && fits(after, seen.time, *tick)) {
+                (void)learn(*rehearsal_, seen);
+                seen.tick = *tick;
+                early_.insert(after, std::move(seen));
+                return;
+            }
         }
+        early_.insert(after, std::move(seen));
         rehearsal_.emplace(program_.groups.front().graph, settings_of(program_));
-        for (const Seen& each : early_)
+        for (Seen& each : early_) {
             (void)learn(*rehearsal_, each);
+            each.tick = rehearsal_->newest();
+        }
     }
 
     void forget_start() noexcept {
@@ -305,7 +326,7 @@ class DiscreteEarly final : public KeyMonitor {
         early_.clear();
         const std::size_t count = state.take_count();
         for (std::size_t i = 0; i < count; ++i) {
-            Seen seen{finite(state), {}};
+            Seen seen{finite(state), {}, 0};
             const std::size_t known = state.take_count();
             for (std::size_t k = 0; k < known; ++k) {
                 const std::uint32_t input = input_called(state.take_text());

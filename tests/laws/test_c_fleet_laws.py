@@ -39,22 +39,12 @@ def of_c_fleet(fleet: CFleet, report: Report) -> list[Any]:
         rows.setdefault(index, []).append(row)
     if fleet.mode == "interval":
         return [
-            [*values, values[0] is None, rows.get(index, [])] for index, values in enumerate(report.values)
+            [*values, late, rows.get(index, [])]
+            for index, (values, late) in enumerate(zip(report.values, report.late, strict=True))
         ]
     if fleet.mode == "causation":
         return [list(values) for values in report.values]
     return [rows.get(index, []) for index in range(len(report.values))]
-
-
-def of_python(update: Any, keys: list[Any]) -> list[Any]:
-    """Return the same of a fleet of Python; a late sample has no bounds in C."""
-    found = of_fleet(update, keys)
-    if isinstance(update, rtamt.FleetBounds):
-        return [
-            [None, None, late, rows] if late else [lower, upper, late, rows]
-            for lower, upper, late, rows in found
-        ]
-    return found
 
 
 def attempted(fleet: rtamt.Fleet[Any], *batch: Any) -> tuple[Any, Exception | None]:
@@ -98,7 +88,7 @@ def test_a_fleet_in_c_is_one_of_python(mode: str, data: st.DataObject) -> None:
                 known = [value if is_known else None for value, is_known in pairs]
                 assert [value for (value,) in found.values] == known
             else:
-                assert of_c_fleet(in_c, found) == of_python(update, keys)
+                assert of_c_fleet(in_c, found) == of_fleet(update, keys)
         assert sorted(in_c.keys()) == sorted(fleet.keys())
         assert in_c.late == fleet.late
         if len(fleet) and data.draw(st.booleans()):
@@ -150,7 +140,7 @@ def test_a_watermark_in_c_is_one_of_python(mode: str, data: st.DataObject) -> No
             with pytest.raises(RejectedError):
                 in_c.update([1, 2], [time, time], columns)
             continue
-        assert of_c_fleet(in_c, in_c.update([1, 2], [time, time], columns)) == of_python(update, [1, 2])
+        assert of_c_fleet(in_c, in_c.update([1, 2], [time, time], columns)) == of_fleet(update, [1, 2])
         mark = time + data.draw(st.sampled_from([-1.0, 0.0]))
         try:
             update = fleet.watermark(mark)
@@ -158,6 +148,6 @@ def test_a_watermark_in_c_is_one_of_python(mode: str, data: st.DataObject) -> No
             with pytest.raises(Exception, match="no value"):
                 in_c.watermark(mark)
             continue
-        assert of_c_fleet(in_c, in_c.watermark(mark)) == of_python(update, in_c.keys())
+        assert of_c_fleet(in_c, in_c.watermark(mark)) == of_fleet(update, in_c.keys())
         if data.draw(st.booleans()):
             in_c = CFleet(fleet.compile(), 0, state=fleet.snapshot())

@@ -78,6 +78,7 @@ _TYPES: dict[str, tuple[tuple[Any, ...], Any]] = {
     "watermark": ((c_void_p, c_double, POINTER(Value), c_size_t), ctypes.c_int),
     "rows": ((c_void_p, POINTER(POINTER(Row))), c_size_t),
     "late": ((c_void_p,), c_uint64),
+    "is_late": ((c_void_p, c_size_t), ctypes.c_int32),
     "drop": ((c_void_p, POINTER(c_int64), c_size_t), ctypes.c_int),
     "drop_text": ((c_void_p, POINTER(c_char_p), c_size_t), ctypes.c_int),
     "expire": ((c_void_p, c_double, POINTER(c_size_t)), ctypes.c_int),
@@ -95,10 +96,14 @@ class RejectedError(RefusedError):
 
 
 class Report(NamedTuple):
-    """What a call has made known: rows of values of outputs (None: not known), and rows of other instants."""
+    """What a call has made known: rows of values of outputs (None: not known), and rows of other instants.
+
+    ``late``: which samples were later than the lateness allows.
+    """
 
     values: list[tuple[float | None, ...]]
     rows: list[tuple[Any, ...]]
+    late: list[bool]
 
 
 class CFleet:
@@ -201,7 +206,10 @@ class CFleet:
         ]
         rows = POINTER(Row)()
         found = LIBRARY.rtamt_fleet_rows(self._handle, byref(rows))
-        return Report(values, [tuple(getattr(row, name) for name, _ in Row._fields_) for row in rows[:found]])
+        late = [bool(LIBRARY.rtamt_fleet_is_late(self._handle, i)) for i in range(count)]
+        return Report(
+            values, [tuple(getattr(row, name) for name, _ in Row._fields_) for row in rows[:found]], late
+        )
 
     @property
     def late(self) -> int:

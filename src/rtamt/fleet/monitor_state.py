@@ -167,7 +167,7 @@ def _step(monitor: Any) -> Field:
 
 def _events(monitor: Any) -> Field:
     known = checked(row(_input(monitor), NUMBER, NUMBER), lambda found: found[1] <= found[2])
-    return many(row(_step(monitor), INTEGER, many(known)))
+    return many(row(_step(monitor), INTEGER, many(known)), list)
 
 
 def _snapshots(monitor: Any) -> Field:
@@ -197,7 +197,7 @@ def _changes(monitor: Any) -> Field:  # noqa: ARG001 - the same for all
 
 def _early(monitor: Any) -> Field:
     name = checked(TEXT, lambda found: found in monitor._inputs)
-    return many(row(checked(REAL, isfinite), mapping(name, optional(_BOUNDS))))
+    return many(row(checked(REAL, isfinite), mapping(name, optional(_BOUNDS))), list)
 
 
 def _evidence_state(monitor: Any) -> Field:

@@ -111,7 +111,8 @@ TEST_CASE("a fleet of each mode tells what it is") {
            rtamt_fleet_time(nullptr) == RTAMT_NO_DOMAIN && rtamt_fleet_inputs(nullptr) == 0 &&
            rtamt_fleet_outputs(nullptr) == 0 && rtamt_fleet_input(nullptr, 0) == nullptr &&
            rtamt_fleet_output(nullptr, 0) == nullptr && rtamt_fleet_rows(nullptr, nullptr) == 0 &&
-           rtamt_fleet_late(nullptr) == 0 && rtamt_fleet_key(nullptr, 0, nullptr, nullptr) == 0));
+           rtamt_fleet_late(nullptr) == 0 && rtamt_fleet_is_late(nullptr, 0) == 0 &&
+           rtamt_fleet_key(nullptr, 0, nullptr, nullptr) == 0));
 }
 
 TEST_CASE("verdicts come as rows, with the sample that made them known") {
@@ -127,7 +128,7 @@ TEST_CASE("verdicts come as rows, with the sample that made them known") {
     CHECK((rows[0].begin == 0.0 && rows[0].lower == rtamt::infinity && rows[0].decided_at == 1.0));
 }
 
-TEST_CASE("bounds at the start are outputs, and those of a late sample are not known") {
+TEST_CASE("bounds at the start are outputs, and a late sample leaves them as they were") {
     const FleetHandle fleet = create({Mode::interval, Domain::dense, 2});
     const std::array<std::int64_t, 3> keys{7, 7, 7};
     const std::array<double, 3> times{0.0, 4.0, 1.0};
@@ -137,8 +138,11 @@ TEST_CASE("bounds at the start are outputs, and those of a late sample are not k
     CHECK(rtamt_fleet_update(fleet.get(), keys.data(), times.data(), columns.data(), 3,
                              values.data(), 2, nullptr) == RTAMT_OK);
     CHECK((values[3].known == 1 && values[2].value <= values[3].value));
-    CHECK((values[4].known == 0 && values[4].value == 0.0 && std::isnan(values[4].time)));
+    CHECK((values[4].known == 1 && values[4].value == values[2].value));
+    CHECK((values[5].known == 1 && values[5].value == values[3].value));
     CHECK(rtamt_fleet_late(fleet.get()) == 1);
+    CHECK((rtamt_fleet_is_late(fleet.get(), 1) == 0 && rtamt_fleet_is_late(fleet.get(), 2) == 1));
+    CHECK(rtamt_fleet_is_late(fleet.get(), 3) == 0);
 }
 
 TEST_CASE("a batch that is wrong changes nothing and names its sample") {

@@ -83,12 +83,15 @@ class PythonEarlyMonitor:
         if index is None or after != self.samples:
             raise RefusedError("order")
         before = self.state()
+        first = index not in self._known
         known = self._known.setdefault(index, {})
         known.update({self._names[number]: (low, high) for number, low, high in values})
         if index > self.newest:
             if not self._anchors or self.time(index) != time:
                 self._anchors[index] = time
             self.newest, self._last = index, time
+        elif first:
+            self._insert(index, time)
         self.samples += 1
         late = 0 if self._lateness is None else self._lateness + 1
         self.closed = max(self.closed, self.newest - late)
@@ -98,6 +101,17 @@ class PythonEarlyMonitor:
         except BaseException:
             self.restore(before)
             raise
+
+    def _insert(self, index: int, time: float) -> None:
+        """Keep the time of the first sample at an index before the newest one; later samples keep theirs."""
+        if self.time(index) == time:
+            return
+        end = min((i for i in self._anchors if i > index), default=self.newest + 1)
+        given = {i: self.time(i) for i in sorted(self._known) if index < i < end}
+        self._anchors[index] = time
+        for later, own in given.items():
+            if self.time(later) != own:
+                self._anchors[later] = own
 
     def _knowledge(self, *, finished: bool = False) -> Knowledge:
         n = self.newest + 1

@@ -14,6 +14,7 @@ discrete_eager      eager verdicts in discrete time
 dense_eager         eager verdicts in dense time
 interval            bounds of the robustness: late samples and corrections
 discrete_interval   the monitor of bounds in discrete time
+rehearsal           the first samples of a trace, before it is known where it starts
 dense_interval      the monitor of bounds in dense time
 member_bounds       bounds in discrete time of quantifiers over members that come and go
 causation           what each sample alone causes: what its monitors share

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from fractions import Fraction
+from itertools import takewhile
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy_numpy import np
@@ -12,6 +14,8 @@ from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
 #: The number of kept times above which those that can no longer be requested are dropped.
@@ -62,28 +66,43 @@ class CallerClock:
         timestamps = self._times.read([time], samples)
         return Timestamp(float(timestamps.seconds[0]), timestamps.original)
 
-    def take(self, stamp: Timestamp, *, begun: bool) -> None:
-        """Remember the time of a sample; ``begun``: whether it is known where the trace starts.
+    def take(self, stamp: Timestamp, *, begun: bool, later: Iterable[float] = ()) -> None:
+        """Remember the time of a sample, the first one of its instant.
 
-        From then on a late sample has the time that follows from those before it, as in the back end.
+        ``begun``: whether it is known where the trace starts; until then every time is kept. ``later``: the instants
+        from the next to the newest one, which keep their times.
         """
         assert stamp.original is not None
         self._times = self._times.extended(stamp.original)
         place = bisect_right(self._seconds, stamp.seconds)
-        if begun and place < len(self._seconds):
+        if begun and self._continues(stamp, place):
             return
-        if place < len(self._seconds) or not self._continues(stamp):
-            self._seconds.insert(place, stamp.seconds)
-            self._originals.insert(place, stamp.original)
+        if place and self._seconds[place - 1] == stamp.seconds:  # of an instant that had no sample, perhaps
+            self._originals[place - 1] = stamp.original
+            return
+        until = self._seconds[place] if place < len(self._seconds) else inf
+        kept = [(stamp.seconds, stamp.original)]
+        for each in takewhile(lambda seconds: seconds < until, later):
+            original = np.array([self.time(each)])
+            if original.dtype.kind == stamp.original.dtype.kind:
+                kept.append((each, original))
+        self._seconds[place:place] = [seconds for seconds, _ in kept]
+        self._originals[place:place] = [original for _, original in kept]
 
-    def _continues(self, stamp: Timestamp) -> bool:
-        """Return whether a time follows from the last one that is kept, in both forms."""
-        if not self._seconds:
+    def _continues(self, stamp: Timestamp, place: int) -> bool:
+        """Return whether a time follows from the one that is kept before it, in both forms."""
+        if not place:
             return False
-        steps = round((stamp.seconds - self._seconds[-1]) / float(self._period))
-        if stamp.original is None or self._seconds[-1] + steps * float(self._period) != stamp.seconds:
+        earlier = self._seconds[place - 1]
+        steps = round((stamp.seconds - earlier) / float(self._period))
+        if stamp.original is None or earlier + steps * float(self._period) != stamp.seconds:
             return False
-        return bool(self._after(self._originals[-1], steps) == stamp.original[0])
+        return bool(self._after(self._originals[place - 1], steps) == stamp.original[0])
+
+    def extend(self, stamp: Timestamp) -> None:
+        """Note the form of a time that is not kept."""
+        assert stamp.original is not None
+        self._times = self._times.extended(stamp.original)
 
     def forget(self, earliest: float) -> None:
         """Forget times that are not needed for any time from ``earliest`` on."""

@@ -88,8 +88,15 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """Remember the time of a sample that the back end has taken, if it was not given in seconds."""
         if stamp.original is None:
             return
-        plain = self._clock.plain
-        self._clock.take(stamp, begun=begun)
+        plain, backend = self._clock.plain, self._backend
+        place = backend.place(stamp.seconds) if begun else None
+        if place is None:
+            self._clock.take(stamp, begun=False)
+        elif backend.time(place) == stamp.seconds:
+            later = map(backend.time, range(place + 1, backend.newest + 1))
+            self._clock.take(stamp, begun=True, later=later)
+        else:
+            self._clock.extend(stamp)  # the instant has the time of its first sample
         if plain != self._clock.plain:
             self._connect(self._backend)
         if self._clock.full and begun:

@@ -22,6 +22,7 @@ from rtamt.usage_guard import exclusive, in_use
 from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor
 from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.early.prediction import Later, later_samples
+from rtamt.verdicts.early.rehearsal import Rehearsal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -61,9 +62,9 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         #: Of each output the samples whose bounds were open when the trace ended.
         self._open_at_end: tuple[tuple[int, ...], ...] = ()
         # Samples that arrived before the start of the trace was known.
-        self._early: tuple[Any, ...] = ()
-        # A back end that has taken them, and what their corrections are replayed on.
-        self._rehearsal: tuple[Any, tuple[Any, ...], tuple[Any, ...]] | None = None
+        self._early: list[Any] = []
+        # A back end that has taken them.
+        self._rehearsal: Rehearsal | None = None
         self._at_end: Interval | None = None
         # The state of the back end before a call that takes several steps, any of which may fail.
         self._before: bytes | None = None
@@ -113,16 +114,19 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 changed = (*self._noted.get(output, ()), *backend.changes(output))
                 self._noted = {**self._noted, output: changed}
             if self._replays:
-                self._events = (*self._events, (time, place, observations))
+                self._events.append((time, place, observations))
 
     @contextmanager
     def _whole(self) -> Iterator[None]:
         """Undo what a call has done if one of its steps fails; of the back end, what followed :meth:`_keep`."""
         remembered = {name: getattr(self, name) for name in self._remembered}
+        lengths = [(each, len(each)) for each in remembered.values() if isinstance(each, list)]
         try:
             yield
         except BaseException:
             self.__dict__.update(remembered)
+            for each, length in lengths:  # which only grow
+                del each[length:]
             backend = inner_of(self._backend)
             if self._before is not None:
                 backend = self._session.open()
@@ -169,50 +173,55 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
         """Buffer the first samples until no earlier one can arrive: the start of the trace is unknown before."""
-        self._rehearse(time, known)
-        self._keep()
-        self._early = (*self._early, (time, known))
-        times = [time for time, _ in self._early]
+        times = self._rehearse(time, known)
+        self._early.append((time, known))
         assert self._late is not None
-        if round((max(times) - min(times)) / float(self._step)) > self._late:
+        if round((times[-1] - times[0]) / float(self._step)) > self._late:
             self._start()
 
-    def _rehearse(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
-        """Raise the error for a sample that cannot be taken once the trace starts, and every later one with it."""
+    def _rehearse(self, time: float, known: dict[str, tuple[float, float] | None]) -> list[float]:
+        """Raise the error for a sample that cannot be taken once the trace starts, and every later one with it.
+
+        Returns the times of all first samples, in order.
+        """
         samples, rehearsal = [(time, known)], self._rehearsal
-        if rehearsal is None or any(time < then for then, _ in self._early):
+        if rehearsal is None or not rehearsal.fits(time, float(self._step), self._tolerance):
             samples = sorted([*self._early, *samples], key=lambda sample: sample[0])
-            rehearsal = self._session.open(), (), ()
+            rehearsal = Rehearsal(self._session.open())
         remembered = {name: getattr(self, name) for name in self._remembered}
         backend = inner_of(self._backend)
         try:
-            taking, self._events, self._snapshots = rehearsal
-            self._connect(taking)
+            self._events, self._snapshots = rehearsal.events, rehearsal.snapshots
+            self._connect(rehearsal.backend)
             for each in samples:
                 self._check_late(each[0])
                 self._learn(*each)
-            self._rehearsal = inner_of(self._backend), self._events, self._snapshots
+                rehearsal.add(each[0], self._backend.place(each[0]))
+            rehearsal.backend = inner_of(self._backend)
+            rehearsal.events, rehearsal.snapshots = self._events, self._snapshots
         finally:
             self.__dict__.update(remembered)
             self._connect(backend)
+        self._rehearsal = rehearsal
+        return rehearsal.times
 
     def _start(self) -> None:
         """Take the samples that were kept; all that they changed counts as changed by the last of them."""
         self._keep()
-        early = sorted(self._early, key=lambda sample: sample[0])
-        noted: dict[int, tuple[Any, ...]] = dict.fromkeys(self._outputs, ())
+        self._rehearsal = None
+        noted: dict[int, list[Any]] = {output: [] for output in self._outputs}
         moments: list[tuple[int, float]] = []
-        for time, known in early:
+        for time, known in sorted(self._early, key=lambda sample: sample[0]):
             before = self._backend.newest
             if before >= 0:
                 self._check_late(time)
             self._learn(time, known)
             if self._backend.newest > before:
                 moments.append((self._backend.newest, time))
-            noted = {output: (*runs, *self._news(output)) for output, runs in noted.items()}
-        self._early = ()
-        self._rehearsal = None
-        self._note(noted)
+            for output, runs in noted.items():
+                runs.extend(self._news(output))
+        self._early = []
+        self._note({output: tuple(runs) for output, runs in noted.items()})
         self._moments = tuple(moments)
         self._retracted = None  # nothing was reported that a correction could retract
 

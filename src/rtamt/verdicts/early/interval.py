@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from rtamt.signals.outcomes import Change, Interval
     from rtamt.signals.time_domain_interface import TimeDomain
 
-#: The number of samples between two snapshots of a monitor that replays corrections.
-_SNAPSHOT_EVERY = 64
+#: A monitor that replays corrections keeps about so many snapshots, with at least so many events between two of them.
+_SNAPSHOTS = 16
+_LEAST_EVENTS = 64
 
 STARTS = ("start", "every")
 CORRECTIONS = ("reject", "replay")
@@ -86,11 +87,19 @@ class IntervalMonitor(EarlyMonitor):
     def _forget(self) -> None:
         super()._forget()
         # What a correction is replayed on: samples, and the states before some of them.
-        self._events: tuple[Any, ...] = ()
+        self._events: list[Any] = []
         self._snapshots: tuple[Any, ...] = ()
         self._retracted: tuple[Change, ...] | None = None
         # The last watermark that was given, as the back end takes it.
         self._mark: float | None = None
+
+    def _state(self) -> tuple[Any, ...]:
+        fingerprint, remembered, of_backend = super()._state()
+        return fingerprint, _unshared(remembered), of_backend
+
+    def _resume(self, state: tuple[Any, ...]) -> None:
+        fingerprint, remembered, of_backend = state
+        super()._resume((fingerprint, _unshared(remembered), of_backend))
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -150,7 +159,7 @@ class IntervalMonitor(EarlyMonitor):
         self._backend.learn(time, observations, self._backend.samples)
         self._retracted = None
         if self._replays:
-            self._events = (*self._events, (time, place, tuple(observations)))
+            self._events.append((time, place, tuple(observations)))
 
     def _settle_presence(self, place: int) -> None:
         """Before a sample makes others final: variables without a sample there have none."""
@@ -158,7 +167,8 @@ class IntervalMonitor(EarlyMonitor):
     def _keep_snapshot(self) -> None:
         """Keep a state from time to time, of which one is before every sample that may be corrected."""
         backend = self._backend
-        if self._snapshots and len(self._events) - self._snapshots[-1][1] < _SNAPSHOT_EVERY:
+        events = len(self._events)
+        if self._snapshots and events - self._snapshots[-1][1] < max(_LEAST_EVENTS, events // _SNAPSHOTS):
             return
         kept = (*self._snapshots, (backend.newest, len(self._events), backend.state()))
         usable = [i for i, (newest, _, _) in enumerate(kept) if newest <= backend.closed]
@@ -184,7 +194,7 @@ class IntervalMonitor(EarlyMonitor):
         if self._mark is not None:
             backend.watermark(self._mark)
         self._connect(backend)
-        self._events = tuple(events)
+        self._events = events
         self._snapshots = tuple(usable)
         self._retracted = self._differences(before, backend)
 
@@ -254,6 +264,11 @@ class IntervalMonitor(EarlyMonitor):
     @abstractmethod
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
+
+
+def _unshared(remembered: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a copy of what a monitor remembers, with copies of the lists, which grow in place."""
+    return {name: list(each) if isinstance(each, list) else each for name, each in remembered.items()}
 
 
 def _text(bounds: tuple[float, float]) -> str:

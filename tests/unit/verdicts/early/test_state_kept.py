@@ -151,16 +151,6 @@ def test_what_precedes_a_trace_keeps_no_other_requirement_open(backend):
     assert (first.begin, first.end, first.final) == (0.0, 0.002, True)
 
 
-@backends
-def test_a_late_sample_has_the_time_that_follows_from_the_samples_before_it(backend):
-    monitor = rtamt.parse("x >= 0", period="100ms", backend=backend).monitor(
-        verdict="interval", lateness="1s"
-    )
-    for k in (0, 1, 2, 3, 4, 5, 12, 6):
-        monitor.update(k / 10, x=k)
-    assert [(each.begin, each.end) for each in monitor.changes()] == [(6 * 0.1, 6 * 0.1)]  # not 0.6
-
-
 @times
 @backends
 @pytest.mark.parametrize(
