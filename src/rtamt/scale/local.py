@@ -8,20 +8,23 @@ import threading
 from collections import deque
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from itertools import islice
 from multiprocessing import connection, get_context, parent_process
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from rtamt.fleet.verdict_table import VerdictTable
     from rtamt.scale.job import Job
     from rtamt.scale.recordings import Recording
 
-#: Recordings that wait for each process, so that none is idle.
+#: Batches of recordings that wait for each process, so that none is idle.
 _AHEAD = 2
+#: The most recordings of a batch, and the bytes with which it is full: progress is reported after each batch.
+_MOST, _FULL = 16, 2**18
 
 
 def tables(
@@ -39,39 +42,67 @@ def tables(
             yield recording, job.table(recording.path)
         return
     waiting = deque(recordings)
+    apart: set[Recording] = set()
     while waiting:
-        running: dict[Future[VerdictTable], Recording] = {}
+        running: dict[Future[list[VerdictTable]], list[Recording]] = {}
         with _pool(job, count) as pool:
             try:
-                yield from _run(pool, waiting, running, count * _AHEAD)
+                yield from _run(pool, waiting, running, count, apart)
             except BrokenProcessPool:
                 pass
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
-        for recording in running.values():  # one of them has ended its process
-            yield recording, _check_alone(job, recording)
+        for batch in running.values():  # a recording of one of them has ended its process
+            if len(batch) == 1:
+                yield batch[0], _check_alone(job, batch[0])
+            else:
+                apart.update(batch)
+                waiting.extendleft(reversed(batch))
 
 
 def _run(
     pool: ProcessPoolExecutor,
     waiting: deque[Recording],
-    running: dict[Future[VerdictTable], Recording],
-    most: int,
+    running: dict[Future[list[VerdictTable]], list[Recording]],
+    count: int,
+    apart: Collection[Recording],
 ) -> Iterator[tuple[Recording, VerdictTable]]:
     while waiting or running:
-        while waiting and len(running) < most:
-            future = pool.submit(_table, waiting[0].path)
-            running[future] = waiting.popleft()
+        while waiting and len(running) < count * _AHEAD:
+            batch = _batch(waiting, count, apart)
+            future = pool.submit(_tables, [recording.path for recording in batch])
+            running[future] = batch
+            for _ in batch:
+                waiting.popleft()
         done, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
-            table = future.result()
-            yield running.pop(future), table
+            found = future.result()
+            yield from zip(running.pop(future), found, strict=True)
+
+
+def _batch(waiting: Sequence[Recording], count: int, apart: Collection[Recording]) -> list[Recording]:
+    """Return the next recordings for one of ``count`` processes: one, or several small files; ``apart``: one each.
+
+    The last ones are handed out one at a time, so that all processes end together.
+    """
+    most = min(_MOST, max(1, len(waiting) // (2 * count * _AHEAD)))
+    batch: list[Recording] = []
+    size = 0
+    for recording in islice(waiting, most):
+        try:
+            size += _FULL if recording in apart else os.path.getsize(recording.path)
+        except OSError:  # a remote one, or none any more
+            size += _FULL
+        if batch and size > _FULL:
+            break
+        batch.append(recording)
+    return batch
 
 
 def _check_alone(job: Job, recording: Recording) -> VerdictTable:
     with _pool(job, 1) as pool:
         try:
-            return pool.submit(_table, recording.path).result()
+            return pool.submit(_tables, [recording.path]).result()[0]
         except BrokenProcessPool:
             return job.failed(
                 recording.path,
@@ -103,5 +134,5 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _table(path: str) -> VerdictTable:
-    return _jobs[0].table(path)
+def _tables(paths: Sequence[str]) -> list[VerdictTable]:
+    return [_jobs[0].table(path) for path in paths]

@@ -17,7 +17,8 @@ import rtamt
 from rtamt.cli import main
 from rtamt.scale.engines import Progress, check_recordings
 from rtamt.scale.job import Job
-from rtamt.scale.recordings import recordings_of
+from rtamt.scale.local import _batch
+from rtamt.scale.recordings import Recording, recordings_of
 from tests.unit.scale.recorded import DeadlyJob, expected, suite, write_csv
 
 
@@ -60,6 +61,8 @@ def test_times_that_go_back_are_the_error_of_that_recording(folder):
 
 
 def test_a_recording_whose_process_dies_is_rows_with_an_error_and_the_others_are_checked(folder):
+    for i in range(10, 40):  # so many that several are handed out together
+        write_csv(folder / f"{i}.csv", i)
     write_csv(folder / "2_deadly.csv", 2)
     job = DeadlyJob(suite())
     found = {row.recording: row for row in rows(check_recordings(job, recordings_of([str(folder)]), jobs=2))}
@@ -68,7 +71,29 @@ def test_a_recording_whose_process_dies_is_rows_with_an_error_and_the_others_are
     assert wrong == {
         deadly: f"{deadly} cannot be checked: the process that read it was ended, perhaps for want of memory"
     }
-    assert len(found) == 7
+    assert len(found) == 6 + 30 + 1
+
+
+def test_small_files_are_handed_out_together_and_the_last_ones_one_at_a_time(tmp_path):
+    def sizes(files):
+        for i, size in enumerate(files):
+            (tmp_path / f"{i}.csv").write_bytes(bytes(size))
+        waiting = [Recording(str(tmp_path / f"{i}.csv"), "") for i in range(len(files))]
+        found = []
+        while waiting:
+            found.append(len(_batch(waiting, 2, waiting[:0])))
+            del waiting[: found[-1]]
+        return found
+
+    assert sizes([100] * 40) == [5, 4, 3, 3, 3, 2, 2, 2, 2, *[1] * 14]
+    assert sizes([100] * 1000)[:3] == [16, 16, 16]
+    assert sizes([2**17] * 100)[:3] == [2, 2, 2]
+    assert sizes([2**20, 0] * 2) == [1] * 4
+    remote = [Recording(f"s3://logs/{i}.csv", "") for i in range(100)]
+    assert len(_batch(remote, 2, ())) == 1
+    local = [Recording(str(tmp_path / f"{i}.csv"), "") for i in range(4, 100)]
+    assert len(_batch(local, 2, ())) == 2
+    assert len(_batch(local, 2, {local[1]})) == 1
 
 
 # ---- the manifest --------------------------------------------------------------------------------
