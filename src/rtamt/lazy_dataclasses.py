@@ -48,8 +48,8 @@ else:
 __all__ = ["dataclass", "field", "fields", "replace"]
 
 _MISSING: Any = object()
-#: To compile an ``__init__`` takes as long as to interpret about twenty calls.
-_INTERPRETED = 8
+#: Calls before __init__ is compiled, which takes as long as to interpret many, but a fourth is rarely the last.
+_INTERPRETED = 3
 
 
 class Field:

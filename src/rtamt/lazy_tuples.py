@@ -80,8 +80,8 @@ else:
             values = [f"{field}={value!r}" for field, value in zip(self._fields, self, strict=True)]
             return f"{type(self).__name__}({', '.join(values)})"
 
-    #: To compile a constructor takes as long as to interpret many calls.
-    _INTERPRETED = 8
+    #: As in :mod:`rtamt.lazy_dataclasses`.
+    _INTERPRETED = 3
 
     def _first_new(owner: Any) -> Any:
         """Return a constructor that interprets its first calls, and then replaces itself by one that it compiles."""
