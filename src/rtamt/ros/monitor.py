@@ -120,6 +120,7 @@ class RosMonitor:
         self._faults: dict[str, str] = {}  # topics whose last message was unusable, and why
         self._repeated: set[str] = set()  # topics whose last message repeated a timestamp
         self._foreign: set[str] = set()  # topics whose timestamps are from another clock
+        self._compared: set[MessageGroup] = set()  # groups whose topics have been checked for a common clock
         self._timeless = False  # whether messages before the simulated clock is set have been reported
 
     def _groups(self, outputs: Sequence[Output], topic_of: Mapping[str, str]) -> Sequence[Group]:
@@ -192,6 +193,7 @@ class RosMonitor:
             if topic not in group.topics:
                 continue
             if self._all_arrive(group):
+                self._compare_clocks(group)
                 records += self._feed(group, stamp, values)
             else:
                 group.hold(stamp, values)
@@ -236,6 +238,21 @@ class RosMonitor:
                 f"the timestamps on {topic} are {apart} the clock: its messages are sampled as of their arrival",
             )
         return foreign
+
+    def _compare_clocks(self, group: MessageGroup) -> None:
+        """Report topics whose timestamps are far behind those of others: nothing later is known of the output."""
+        if group in self._compared or not all(self._heard[topic] for topic in group.topics):
+            return
+        self._compared.add(group)
+        ahead = {topic: self._timestamps[topic] - self._heard[topic] for topic in sorted(group.topics)}
+        last, first = min(ahead, key=ahead.__getitem__), max(ahead, key=ahead.__getitem__)
+        apart = ahead[first] - ahead[last]
+        if apart > max(self._leap, SKEW):
+            self._log(
+                Level.WARN,
+                f"the timestamps on {last} are {seconds_text(apart)} behind those on {first}: dense time knows nothing "
+                f"after them; use one clock for both, or discrete time",
+            )
 
     def pause(self, now: int) -> float:
         """Return how many seconds a node may sleep before it calls :meth:`tick`, at most :data:`PAUSE`."""

@@ -23,6 +23,18 @@ def test_dense_time_takes_the_stamps_of_the_headers_each_topic_on_its_own_clock(
     assert numbers(watched.message("/gnt", message(3, at=11), arrival)) == [(10.75, 3)]
 
 
+def test_dense_time_was_silent_where_topics_have_no_time_in_common():
+    watched = monitor("rob.value = req.value >= gnt.value", time="dense")
+    for i in range(3):
+        arrival = (1_700_000_000 + i) * SECOND
+        assert watched.message("/req", message(1, at=1 + i), arrival) == []
+        assert watched.message("/gnt", message(1), arrival) == []
+    assert log_of(watched) == [
+        "the timestamps on /req are 1.7e+09 s behind those on /gnt: dense time knows nothing after them; "
+        "use one clock for both, or discrete time"
+    ]
+
+
 def test_dense_time_takes_the_arrival_of_messages_without_a_stamp():
     watched = monitor("rob.value = req.value >= 0", time="dense")
     assert numbers(watched.message("/req", message(1), 7 * SECOND)) == [(7, 1)]
