@@ -94,14 +94,22 @@ void Causes::read(const BoundsEngine& engine, const BoundsAtStart& at_start,
     if (!items_.empty()) start_ = {items_.back()[0], -items_.back()[1]};
 }
 
-// Hold from an open tick on: the engine keeps it from there on plus low.
+// Hold from an open tick on: the engine keeps it from there on plus low. Of `since` hold and goal
+// in the windows of open ticks: the engine keeps them for as long as each alone may change.
 void Causes::settle(const BoundsEngine& engine, Tick closed,
                     std::span<Tick> wanted) const noexcept {
     for (const Cause& cause : causes_) {
-        if (cause.kind != Cause::Kind::until) continue;
         const Tick open = plus(closed + 1, -engine.horizon(cause.ref));
-        Tick& first = wanted[causes_[cause.a / 2].ref / 2];
-        first = std::min(first, std::max<Tick>(0, plus(open, -cause.shift)));
+        const auto want = [&](std::uint32_t part, Tick t) {
+            Tick& first = wanted[causes_[part / 2].ref / 2];
+            first = std::min(first, std::max<Tick>(0, t));
+        };
+        if (cause.kind == Cause::Kind::until) {
+            want(cause.a, plus(open, -cause.shift));
+        } else if (cause.kind == Cause::Kind::since && cause.high < forever) {
+            want(cause.a, plus(open, -cause.high));
+            want(cause.b, plus(open, -cause.high));
+        }
     }
 }
 

@@ -20,6 +20,7 @@ bool View::turn(Tick& l, Tick& r) const noexcept {
 
 Run View::at(Tick t) const noexcept {
     if (reversed_) {
+        if (t > 0) return {1, forever, -infinity}; // no goal is before the start
         const Run run = runs_->at(-t);
         return {-run.end, -run.begin, run.value};
     }

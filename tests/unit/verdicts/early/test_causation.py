@@ -190,3 +190,23 @@ def test_causation_of_since_does_not_depend_on_goals_that_are_kept(samples, back
     assert caused == monitor.causation(0)
     newest = samples - 1
     assert monitor.runs() == [CausationRun(newest, newest, 0.0, 0.0)]
+
+
+@BACKENDS
+def test_causation_of_since_over_a_future_operator_is_that_of_its_copy(backend):
+    text = "s_next(y <= y) since[0:2] not(x >= y)"
+    monitor = rtamt.parse(text, backend=backend).monitor(verdict="causation")
+    for t, (x, y) in enumerate([(3, 1.5), (-1.5, -3), (3.5, 0.5), (-4, -4), (-0.5, -2)]):
+        monitor = copy.copy(monitor)
+        monitor.update(t, x=x, y=y)
+    assert monitor.runs() == [CausationRun(3.0, 4.0, 0.0, -1.5)]
+
+
+@BACKENDS
+def test_no_goal_of_since_is_before_the_start(backend):
+    monitor = rtamt.parse("s_next(0.5 > y) since rise(x < y)", backend=backend).monitor(verdict="causation")
+    for t, (x, y) in enumerate([(3, -2), (3.5, 2)]):
+        monitor = copy.copy(monitor)
+        monitor.update(t, x=x, y=y)
+    assert monitor.causation(0) == rtamt.Causation(inf, -inf)
+    assert monitor.causation(1) == rtamt.Causation(-1.5, -1.5)
