@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,11 @@ def run(args: argparse.Namespace) -> int:
     with Progress() as progress:
         progress.show("evaluating")
         trace, result = result_of_one(args, "plot")
+        if isinstance(result.known, Mapping):
+            raise CommandError(
+                f"{trace}: the requirements start at different times, so that they have no plot in common; "
+                "'rtamt report' plots each of them"
+            )
         try:
             seen = scene(result, instant(args.at, result), bounds=args.bounds)
             ends = (instant(args.start, result, "--from"), instant(args.end, result, "--to"))

@@ -62,3 +62,20 @@ def test_a_part_of_the_time(tmp_path, capsys):
     assert capsys.readouterr().err.startswith("rtamt: ")
     assert main(["plot", FORMULA, TRACE, "-o", str(path), "--from", "500"]) == 2
     assert "there is nothing to plot from 500 s to " in capsys.readouterr().err
+
+
+TEXT = "require slow: always(v <= 3); require near: always(d >= 1)"
+
+
+def test_requirements_that_start_at_different_times_have_a_report_and_no_plot(tmp_path, capsys):
+    log = tmp_path / "late.csv"
+    log.write_text("time,v,d\n0,5,\n0.5,4,4\n2,2,3\n")
+    assert main(["check", TEXT, str(log), "--time", "dense"]) == 1
+    capsys.readouterr()
+    assert main(["plot", TEXT, str(log), "--time", "dense", "-o", str(tmp_path / "late.svg")]) == 2
+    assert capsys.readouterr() == (
+        "",
+        f"rtamt: {log}: the requirements start at different times, so that they have no plot in common; "
+        "'rtamt report' plots each of them\n",
+    )
+    assert main(["report", TEXT, str(log), "--time", "dense", "-o", str(tmp_path / "late.html")]) == 1
