@@ -102,20 +102,23 @@ class BasicExecutor {
     }
 
     // The latest time a sample may have, so that the end of the trace is within the range of ticks.
-    [[nodiscard]] std::int64_t last_possible() const noexcept {
-        return never - 1 - program().latest();
-    }
+    [[nodiscard]] std::int64_t last_possible() const noexcept { return last_possible_; }
 
     [[nodiscard]] std::size_t state_bytes() const noexcept;
 
   private:
     struct Output {
+        std::int64_t lag = 0;
         bool emitted = false; // whether it has a value yet
         Formula last{};       // and which
     };
 
+    // Constants run until they have put out their only event, and once more to put out nothing.
+    enum class Constants : std::uint8_t { waiting, begun, done };
+
     Wiring<D> wiring_;
     std::vector<Output> outputs_;
+    std::int64_t last_possible_;
     std::int64_t origin_ = 0;     // when the trace begins
     std::int64_t frontier_ = 0;   // how far it is known
     std::int64_t stride_ = never; // longest step of the frontier
@@ -123,6 +126,7 @@ class BasicExecutor {
     bool started_ = false;        // origin_ is known
     bool fresh_ = false;          // and nothing has run yet
     bool finished_ = false;
+    Constants constants_ = Constants::waiting;
     Failure failure_{};
 
     [[nodiscard]] std::vector<InputQueue<Number>>& queues() noexcept { return wiring_.queues(); }
@@ -135,6 +139,7 @@ class BasicExecutor {
     [[nodiscard]] std::int64_t earliest_last() const noexcept;
     [[nodiscard]] std::int64_t latest_last() const noexcept;
     [[nodiscard]] std::int64_t step(std::int64_t target) noexcept;
+    void moved_to(std::int64_t frontier) noexcept;
     [[nodiscard]] bool run_guarded(std::int64_t frontier);
     void run_free(std::int64_t frontier);
     void deliver(Outputs outputs);

@@ -21,7 +21,11 @@ inline constexpr std::int64_t before_all = -(never / 2) - 1;
 
 template <ValueDomain D>
 BasicExecutor<D>::BasicExecutor(Program program)
-    : wiring_(std::move(program)), outputs_(wiring_.program().outputs.size()) {}
+    : wiring_(std::move(program)), outputs_(wiring_.program().outputs.size()),
+      last_possible_(never - 1 - wiring_.program().latest()) {
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        outputs_[i].lag = this->program().instructions[this->program().outputs[i]].lag;
+}
 
 template <ValueDomain D>
 std::size_t BasicExecutor<D>::state_bytes() const noexcept {
@@ -59,6 +63,7 @@ bool BasicExecutor<D>::open() noexcept {
     wiring_.units().each([&](const Unit& unit) { unit.kernel->begin(origin); });
     origin_ = origin;
     started_ = fresh_ = true;
+    constants_ = Constants::waiting;
     return true;
 }
 
@@ -79,10 +84,22 @@ std::int64_t BasicExecutor<D>::step(std::int64_t target) noexcept {
     return frontier;
 }
 
+// Every kernel has run up to the frontier.
+template <ValueDomain D>
+void BasicExecutor<D>::moved_to(std::int64_t frontier) noexcept {
+    frontier_ = frontier;
+    if (constants_ == Constants::begun) constants_ = Constants::done;
+    if (constants_ == Constants::waiting && frontier >= later(origin_, wiring_.latest_constant())) {
+        constants_ = Constants::begun;
+    }
+}
+
 // Returns whether no value is undefined.
 template <ValueDomain D>
 bool BasicExecutor<D>::run_guarded(std::int64_t frontier) {
+    const bool skips = constants_ == Constants::done;
     const auto failed = wiring_.units().run_guarded(never, [&](const Unit& unit) {
+        if (skips && unit.constant) return never;
         const std::int64_t arrival = unit.kernel->run(frontier);
         return arrival <= later(end_, unit.reach) ? arrival : never;
     });
@@ -98,7 +115,10 @@ bool BasicExecutor<D>::run_guarded(std::int64_t frontier) {
 
 template <ValueDomain D>
 void BasicExecutor<D>::run_free(std::int64_t frontier) {
-    wiring_.units().run_free([&](const Unit& unit) { (void)unit.kernel->run(frontier); });
+    const bool skips = constants_ == Constants::done;
+    wiring_.units().run_free([&](const Unit& unit) {
+        if (!skips || !unit.constant) (void)unit.kernel->run(frontier);
+    });
 }
 
 template <ValueDomain D>
@@ -106,9 +126,8 @@ void BasicExecutor<D>::deliver(Outputs outputs) {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Output& output = outputs_[i];
         const BasicEvents<Formula> events = wiring_.output(i);
-        const std::int64_t lag = program().instructions[program().outputs[i]].lag;
         for (std::size_t place = 0; place < events.count; ++place) {
-            const std::int64_t time = events.times[place] - lag;
+            const std::int64_t time = events.times[place] - output.lag;
             const Formula value = events.values[place];
             if (time > end_) break;
             if (output.emitted && value == output.last) continue;
@@ -129,7 +148,7 @@ bool BasicExecutor<D>::advance(std::int64_t target, Outputs outputs) {
         if (!run_guarded(frontier)) return false;
         run_free(frontier);
         deliver(outputs);
-        frontier_ = frontier;
+        moved_to(frontier);
     }
     return true;
 }
@@ -162,6 +181,7 @@ bool BasicExecutor<D>::dry_run(std::int64_t target, std::int64_t tail) {
         queue.rewind();
     frontier_ = frontier;
     fresh_ = fresh;
+    constants_ = Constants::waiting;
     return valid;
 }
 
@@ -200,6 +220,7 @@ bool BasicExecutor<D>::update(Outputs outputs) {
     wiring_.units().checkpoint();
     if (advance(target, outputs)) return true;
     wiring_.units().rollback();
+    constants_ = Constants::waiting;
     return false;
 }
 
@@ -272,6 +293,7 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
         snapshot.item(output.last);
     }
     snapshot.require(valid());
+    constants_ = Constants::waiting;
     if (!started_ || finished_) return; // kernels begin before they run again
     wiring_.units().each([&](const Unit& unit) {
         if (snapshot.loading()) unit.kernel->begin(origin_);
@@ -334,7 +356,7 @@ template <ValueDomain D>
 std::optional<std::int64_t> BasicExecutor<D>::known_until(std::size_t output) const noexcept {
     if (!started_ || fresh_) return std::nullopt;
     if (finished_) return end_;
-    const std::int64_t lag = program().instructions[program().outputs[output]].lag;
+    const std::int64_t lag = outputs_[output].lag;
     if (frontier_ < later(origin_, lag)) return std::nullopt;
     return frontier_ - lag;
 }

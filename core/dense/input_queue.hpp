@@ -34,7 +34,7 @@ class InputQueue {
         if (borrowed_) {
             head_ = 0;
             queue_.resize(0);
-            queue_.append(rest_);
+            if (rest_.count != 0) queue_.append(rest_);
         } else {
             head_ = queue_.count() - rest_.count;
             if (2 * head_ >= queue_.count()) { // amortised O(1) a sample, and half of it in use

@@ -11,6 +11,7 @@
 
 #include "../program/snapshot.hpp"
 #include "../values/domain.hpp"
+#include "../values/vectors.hpp"
 #include "events.hpp"
 
 #include <cstddef>
@@ -179,7 +180,7 @@ class Temporal : public Scalar<typename D::Value, Progress<typename D::Value, Ow
         Value last; // the value so far
         bool begun;
 
-        void put(std::int64_t time, const Value& next) noexcept {
+        RTAMT_INLINE void put(std::int64_t time, const Value& next) noexcept {
             const Value value = next; // which no store can change
             if (time <= start) [[unlikely]] {
                 last = value;

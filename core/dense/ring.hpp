@@ -1,8 +1,9 @@
 // The elements of a kernel's window, oldest first, with rollback of an update.
 //
-// Memory: twice the cells of the longest window so far; an emptied ring is reused. After
-// checkpoint(), cells that leave at the front stay where they are until the next one, and a cell
-// that is about to be overwritten is kept in a journal, so that rollback() restores everything.
+// Memory: twice the cells of the longest window so far, those of one update included; an emptied
+// ring is reused. After checkpoint(), cells that leave at the front stay where they are until the
+// next one, and a cell that is about to be overwritten is kept in a journal, so that rollback()
+// restores everything.
 // Cost: O(1) a cell that enters, amortised; unlike a copy of the window, it does not grow with it.
 #pragma once
 
@@ -35,10 +36,48 @@ class Ring {
     void pop_front() noexcept { ++head_; }
     void pop_back() noexcept { --tail_; }
 
+    [[nodiscard]] Cell& edit_back() { return edit(size() - 1); }
+
     // A cell to be changed in place.
     [[nodiscard]] Cell& edit(std::size_t i) {
         expose(head_ + i);
         return cell(head_ + i);
+    }
+
+    // The same cells while no update is to be rolled back: with room for those that enter, so that
+    // a loop can keep all of it in registers.
+    class Loose {
+      public:
+        [[nodiscard]] std::size_t size() const noexcept { return tail_ - head_; }
+        [[nodiscard]] bool empty() const noexcept { return tail_ == head_; }
+        [[nodiscard]] const Cell& front() const noexcept { return cells_[head_ & mask_]; }
+        [[nodiscard]] const Cell& back() const noexcept { return cells_[(tail_ - 1) & mask_]; }
+        [[nodiscard]] Cell& edit_back() noexcept { return cells_[(tail_ - 1) & mask_]; }
+        void push_back(const Cell& value) noexcept { cells_[tail_++ & mask_] = value; }
+        void pop_front() noexcept { ++head_; }
+        void pop_back() noexcept { --tail_; }
+
+      private:
+        friend Ring;
+        Cell* cells_;
+        std::size_t mask_;
+        std::size_t head_;
+        std::size_t tail_;
+        Loose(Cell* cells, std::size_t mask, std::size_t head, std::size_t tail) noexcept
+            : cells_(cells), mask_(mask), head_(head), tail_(tail) {}
+    };
+
+    [[nodiscard]] bool pinned() const noexcept { return pinned_; }
+
+    // For at most so many calls of push_back(); not between checkpoint() and rollback().
+    [[nodiscard]] Loose loosen(std::size_t entering) {
+        while (capacity_ - size() < entering)
+            grow();
+        return {cells_.get(), capacity_ - 1, head_, tail_};
+    }
+    void fasten(const Loose& loose) noexcept {
+        head_ = loose.head_;
+        tail_ = loose.tail_;
     }
 
     void clear() noexcept {

@@ -36,16 +36,13 @@ class Wedge final : public Temporal<typename Algebra::Domain> {
         const std::size_t due =
             wedge_.count_while([&](std::size_t i) { return wedge_[i].expiry <= frontier; });
         Writer out = this->open(due + 2 * a.count); // what arrives may leave again
-        for (std::size_t i = 0; i < a.count; ++i) {
-            const std::int64_t time = a.times[i];
-            while (!wedge_.empty() && wedge_.front().expiry < time)
-                expire(out);
-            arrive(time, a.values[i]);
-            if (wedge_.front().expiry <= time) wedge_.pop_front();
-            out.put(time, wedge_.front().value);
+        if (wedge_.pinned()) {
+            slide(wedge_, a, frontier, out);
+        } else {
+            auto loose = wedge_.loosen(a.count);
+            slide(loose, a, frontier, out);
+            wedge_.fasten(loose);
         }
-        while (!wedge_.empty() && wedge_.front().expiry <= frontier)
-            expire(out);
         this->close(out, frontier);
         return never;
     }
@@ -86,26 +83,45 @@ class Wedge final : public Temporal<typename Algebra::Domain> {
     std::int64_t width_;
     Ring<Segment> wedge_;
 
-    // The first segment leaves; the one that lasts never does, so there is another.
-    void expire(Writer& out) noexcept {
-        const std::int64_t time = wedge_.front().expiry;
-        wedge_.pop_front();
-        out.put(time, wedge_.front().value);
+    // All changes up to the frontier; `wedge` is the ring, or what it is loosened to.
+    template <class Cells>
+    void slide(Cells& wedge, const BasicEvents<Value>& a, std::int64_t frontier, Writer& result) {
+        Writer out = result; // which no store can change
+        for (std::size_t i = 0; i < a.count; ++i) {
+            const std::int64_t time = a.times[i];
+            while (!wedge.empty() && wedge.front().expiry < time)
+                expire(wedge, out);
+            arrive(wedge, time, a.values[i]);
+            if (wedge.front().expiry <= time) wedge.pop_front();
+            out.put(time, wedge.front().value);
+        }
+        while (!wedge.empty() && wedge.front().expiry <= frontier)
+            expire(wedge, out);
+        result = out;
     }
 
-    void arrive(std::int64_t time, Value value) {
-        if (!wedge_.empty()) {
-            const Value last = wedge_.back().value;
+    // The first segment leaves; the one that lasts never does, so there is another.
+    template <class Cells>
+    static void expire(Cells& wedge, Writer& out) noexcept {
+        const std::int64_t time = wedge.front().expiry;
+        wedge.pop_front();
+        out.put(time, wedge.front().value);
+    }
+
+    template <class Cells>
+    void arrive(Cells& wedge, std::int64_t time, Value value) {
+        if (!wedge.empty()) {
+            const Value last = wedge.back().value;
             if (last == value) return; // the segment continues
             if (Algebra::join(last, value) != value) {
-                wedge_.edit(wedge_.size() - 1).expiry = later(time, width_);
+                wedge.edit_back().expiry = later(time, width_);
             } else {
                 do {
-                    wedge_.pop_back();
-                } while (!wedge_.empty() && Algebra::join(wedge_.back().value, value) == value);
+                    wedge.pop_back();
+                } while (!wedge.empty() && Algebra::join(wedge.back().value, value) == value);
             }
         }
-        wedge_.push_back({never, value});
+        wedge.push_back({never, value});
     }
 };
 

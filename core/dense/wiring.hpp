@@ -28,6 +28,7 @@ struct Unit {
     Kernel* kernel;
     std::uint32_t instruction;
     std::int64_t reach; // how long after the end of the trace an output depends on it
+    bool constant;
 };
 
 template <ValueDomain D>
@@ -46,6 +47,9 @@ class Wiring {
     [[nodiscard]] const Program& program() const noexcept { return program_; }
     [[nodiscard]] const RollbackPlan<Unit>& units() const noexcept { return units_; }
     [[nodiscard]] std::size_t bytes() const noexcept;
+
+    // The latest lag of a constant: when, after the start of the trace, all of them have begun.
+    [[nodiscard]] std::int64_t latest_constant() const noexcept { return latest_constant_; }
 
     // By input.
     [[nodiscard]] std::vector<InputQueue<Number>>& queues() noexcept { return queues_; }
@@ -74,6 +78,7 @@ class Wiring {
     std::vector<Sort> sorts_;                      // by instruction
     std::vector<std::unique_ptr<Kernel>> kernels_; // by instruction; none for inputs and constants
     std::map<Stand, StandIn> stands_;
+    std::int64_t latest_constant_ = 0;
     RollbackPlan<Unit> units_;
     std::vector<InputQueue<Number>> queues_;
     std::vector<const BasicEvents<Formula>*> outputs_;

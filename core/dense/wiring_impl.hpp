@@ -38,7 +38,7 @@ Wiring<D>::Wiring(Program program)
                                                          : Kernels<D>::make(instruction, sorts_[i]);
         if (!kernels_[i]) continue;
         kernels_[i]->connect(operand(instruction.a, sort, lag), operand(instruction.b, sort, lag));
-        units_.add({kernels_[i].get(), i, reach[i]}, guards[i]);
+        units_.add({kernels_[i].get(), i, reach[i], false}, guards[i]);
     }
     for (const std::uint32_t output : program_.outputs) {
         cross(output, Sort::formula, guards[output]);
@@ -88,7 +88,8 @@ void Wiring<D>::add_constants(const std::vector<bool>& guarded) {
         auto& [kernel, is_guarded] = stands_[stand(index, sort, lag)];
         const bool fresh = !kernel;
         if (fresh) kernel = Kernels<D>::constant(sort, lag, source.x);
-        const Unit unit{kernel.get(), index, 0};
+        const Unit unit{kernel.get(), index, 0, true};
+        latest_constant_ = std::max(latest_constant_, lag);
         if (fresh) {
             units_.add(unit, guard);
         } else if (guard && !is_guarded) {
@@ -118,7 +119,7 @@ void Wiring<D>::cross(std::uint32_t index, Sort sort, bool guarded) {
         is_guarded = guarded;
         kernel = Kernels<D>::cross(sorts_[index], instruction.lag);
         kernel->connect(own(index), nullptr);
-        units_.add({kernel.get(), index, 0}, guarded);
+        units_.add({kernel.get(), index, 0, false}, guarded);
     }
 }
 

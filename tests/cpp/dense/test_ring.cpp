@@ -65,6 +65,42 @@ TEST_CASE("a ring is a deque and takes back any update") {
     }
 }
 
+TEST_CASE("a ring that is loosened for a while is a deque") {
+    Random random(11);
+    for (int round = 0; round < 300; ++round) {
+        Ring<int> ring;
+        std::deque<int> model;
+        int next = 0;
+        for (int update = 0; update < 20; ++update) {
+            const auto entering = random.between(0, 30);
+            auto loose = ring.loosen(static_cast<std::size_t>(entering));
+            for (std::int64_t i = 0; i < entering; ++i) {
+                loose.push_back(next);
+                model.push_back(next++);
+                CHECK((loose.front() == model.front() && loose.back() == model.back()));
+                if (random.between(0, 2) == 0) loose.edit_back() = model.back() = next++;
+                while (!model.empty() && random.between(0, 2) == 0) {
+                    loose.pop_front();
+                    model.pop_front();
+                }
+                if (!model.empty() && random.between(0, 3) == 0) {
+                    loose.pop_back();
+                    model.pop_back();
+                }
+                CHECK((loose.size() == model.size() && loose.empty() == model.empty()));
+            }
+            ring.fasten(loose);
+            CHECK(same(ring, model));
+            if (random.between(0, 3) == 0) { // an update that is taken back, as any ring does
+                ring.checkpoint();
+                ring.push_back(next);
+                ring.rollback();
+                CHECK(same(ring, model));
+            }
+        }
+    }
+}
+
 TEST_CASE("a ring that is emptied is reused") {
     Ring<int> ring;
     for (int i = 0; i < 100000; ++i) {
