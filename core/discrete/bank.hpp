@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,18 @@ class Bank {
         stride_ = stride;
     }
 
+    // Puts the registers `stride` values apart, but some `short_stride` values, and keeps nothing;
+    // settle() has to follow.
+    void arrange(std::size_t stride, std::span<const std::uint32_t> short_rows,
+                 std::size_t short_stride) {
+        std::vector<std::size_t> sizes(rows_, stride);
+        for (const std::uint32_t row : short_rows)
+            sizes[row] = short_stride;
+        offsets_.resize(rows_);
+        std::exclusive_scan(sizes.begin(), sizes.end(), offsets_.begin(), std::size_t{0});
+        cells_.assign(std::reduce(sizes.begin(), sizes.end()), Value{});
+    }
+
     // After the last register was added, and whenever they have moved: they have `size` slots.
     void settle(std::size_t size) noexcept {
         for (const Constant& constant : constants_)
@@ -55,10 +68,11 @@ class Bank {
             fragile.values = at(fragile.row);
     }
 
-    [[nodiscard]] Value* at(std::uint32_t row) noexcept { return cells_.data() + row * stride_; }
+    [[nodiscard]] Value* at(std::uint32_t row) noexcept { return cells_.data() + offset(row); }
     [[nodiscard]] const Value* at(std::uint32_t row) const noexcept {
-        return cells_.data() + row * stride_;
+        return cells_.data() + offset(row);
     }
+    [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
 
     // One sample of every input.
     template <class Number>
@@ -107,9 +121,14 @@ class Bank {
         Value last;
     };
 
+    [[nodiscard]] std::size_t offset(std::uint32_t row) const noexcept {
+        return offsets_.empty() ? row * stride_ : offsets_[row];
+    }
+
     std::vector<Value> cells_;
     std::uint32_t rows_ = 0;
-    std::size_t stride_ = 1; // values from one register to the next
+    std::size_t stride_ = 1;           // values from one register to the next
+    std::vector<std::size_t> offsets_; // of registers, unless they are all as long
     std::vector<Input> inputs_;
     std::vector<Constant> constants_;
     std::vector<Fragile> fragile_;

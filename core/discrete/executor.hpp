@@ -132,7 +132,11 @@ class BasicExecutor {
     Failure failure_{};
 
     [[nodiscard]] std::size_t longest_block() const noexcept {
-        if (!zero_copy_ || !zero_copy_->complete()) return wiring_.capacity();
+        if (!zero_copy_) return wiring_.capacity();
+        if (!zero_copy_->complete()) {
+            const bool present = slot_ >= program().latest() && samples_ == endless;
+            return present ? wiring_.trace_block() : wiring_.capacity();
+        }
         // Without registers long ones cost less, as long as columns that are read again stay in the
         // second cache.
         return zero_copy_->single() ? std::numeric_limits<std::size_t>::max() : 4096;

@@ -181,7 +181,7 @@ bool BasicExecutor<D>::advance(Columns columns, std::size_t count, Outputs outpu
         if (!run_guarded(block) && !checked) return false;
         run_free(block);
         deliver(block, start, outputs);
-        last_ = block.count - 1;
+        last_ = std::min(block.count, wiring_.capacity()) - 1;
         offset += block.count;
         slot_ += static_cast<std::int64_t>(block.count);
     }
@@ -298,13 +298,16 @@ void BasicExecutor<D>::transfer(Snapshot& snapshot) {
 template <ValueDomain D>
 void BasicExecutor<D>::begin_trace(std::size_t count) {
     if (slot_ != 0) reset();
+    const std::size_t slots = std::max(count, static_cast<std::size_t>(program().latest()));
     if constexpr (UniformDomain<D>) {
         if (!zero_copy_) zero_copy_.emplace(program(), wiring_.reads(), wiring_.writes());
-    }
-    if (zero_copy_ && zero_copy_->complete()) {
-        wiring_.run_long_blocks();
+        if (zero_copy_->complete()) {
+            wiring_.run_long_blocks();
+        } else {
+            wiring_.grow_for_trace(slots, zero_copy_->bypassed());
+        }
     } else {
-        reserve(std::max(count, static_cast<std::size_t>(program().latest())));
+        reserve(slots);
     }
 }
 

@@ -48,6 +48,9 @@ class Wiring {
     static constexpr std::size_t block =
         std::max<std::size_t>(2048 / std::max(sizeof(Number), sizeof(Formula)), 16);
 
+    // How many times as many slots blocks of whole traces may have.
+    static constexpr std::size_t longest_trace_block = 8;
+
     explicit Wiring(Program program);
 
     // Bytes of a new one for this program, without making it.
@@ -62,6 +65,12 @@ class Wiring {
 
     // Makes room for a block, keeping slot `last` of each register as the first.
     void grow(std::size_t last);
+
+    // Before a whole trace of so many slots: makes room for blocks of trace_block() slots in all
+    // registers but those of outputs that are bypassed, and for a block in these.
+    void grow_for_trace(std::size_t slots, std::span<const std::size_t> bypassed)
+        requires UniformDomain<D>;
+    [[nodiscard]] std::size_t trace_block() const noexcept { return trace_block_; }
 
     [[nodiscard]] const Program& program() const noexcept { return program_; }
     [[nodiscard]] Bank<Number>& numbers() noexcept { return numbers_; }
@@ -152,7 +161,8 @@ class Wiring {
     RollbackPlan<Unit> units_;
     std::vector<Sort> input_sorts_;
     std::vector<Formula*> outputs_;
-    std::size_t capacity_ = 1; // slots in a register
+    std::size_t capacity_ = 1;    // slots in a register
+    std::size_t trace_block_ = 1; // slots in those that are not bypassed
     std::int64_t longest_ = 0;
 
     Wiring(Plan plan, Program program);

@@ -265,8 +265,8 @@ void* Wiring<D>::at(const Place& place) noexcept {
 
 template <ValueDomain D>
 void Wiring<D>::connect() {
-    numbers_.settle(capacity_);
-    formulas_.settle(capacity_);
+    numbers_.settle(trace_block_);
+    formulas_.settle(trace_block_);
     for (Chain* chain : chains_)
         chain->make_room(capacity_);
     auto constant = constants_.cbegin();
@@ -290,7 +290,29 @@ template <ValueDomain D>
 void Wiring<D>::grow(std::size_t last) {
     numbers_.grow(detail::stride<Number>(block), last);
     formulas_.grow(detail::stride<Formula>(block), last);
+    capacity_ = trace_block_ = block;
+    connect();
+}
+
+// Blocks are as long as keeps the registers in the first cache: calls of kernels are fewer, and
+// more of each result is written at once. Code that is called keeps its blocks.
+template <ValueDomain D>
+void Wiring<D>::grow_for_trace(std::size_t slots, std::span<const std::size_t> bypassed)
+    requires UniformDomain<D>
+{
+    constexpr std::size_t cache = std::size_t{24} * 1024;
+    const std::size_t used = std::max<std::size_t>(formulas_.rows() - bypassed.size(), 1);
+    const std::size_t longest = program_.calls.empty() ? longest_trace_block * block : block;
+    const std::size_t fitting = std::clamp(cache / (used * sizeof(Formula)), block, longest);
+    const std::size_t wanted = std::min(fitting, std::max(slots, block));
+    if (slots <= capacity_ || wanted <= trace_block_) return;
+    std::vector<std::uint32_t> rows; // outputs share no register
+    rows.reserve(bypassed.size());
+    for (const std::size_t output : bypassed)
+        rows.push_back(places_[program_.outputs[output]].row);
+    formulas_.arrange(detail::stride<Formula>(wanted), rows, detail::stride<Formula>(block));
     capacity_ = block;
+    trace_block_ = wanted;
     connect();
 }
 

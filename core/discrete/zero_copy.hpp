@@ -82,6 +82,15 @@ class ZeroCopy {
         return !readers_.empty() && reads_input_[input];
     }
 
+    // The outputs whose registers are not looked at in blocks without absent slots.
+    [[nodiscard]] std::vector<std::size_t> bypassed() const {
+        std::vector<std::size_t> outputs;
+        outputs.reserve(writers_.size());
+        for (const Writer& writer : writers_)
+            outputs.push_back(writer.output);
+        return outputs;
+    }
+
     // Whether the last bind_buffers() had this output written where it belongs.
     [[nodiscard]] bool written(std::size_t output) const noexcept {
         return !written_.empty() && written_[output];

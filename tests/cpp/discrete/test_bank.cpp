@@ -21,6 +21,19 @@ TEST_CASE("registers keep their last slot when they grow") {
         CHECK(bank.at(c)[i] == 7.5);
 }
 
+TEST_CASE("some registers are shorter than the others") {
+    Bank<double> bank;
+    const auto a = bank.add();
+    const auto b = bank.add();
+    const auto c = bank.add();
+    bank.fill(c, 7.5);
+    const std::vector<std::uint32_t> rows{b};
+    bank.arrange(10, rows, 4);
+    bank.settle(9);
+    CHECK((bank.at(b) - bank.at(a) == 10 && bank.at(c) - bank.at(b) == 4));
+    CHECK((bank.bytes() == 24 * sizeof(double) && bank.at(c)[8] == 7.5));
+}
+
 TEST_CASE("samples go to the registers of their inputs") {
     Bank<double> bank;
     const auto b = bank.add();

@@ -49,3 +49,34 @@ TEST_CASE("one kernel over a whole trace gives what it gives block by block") {
         CHECK(outputs == ways::online(executor, columns, count, random, 2000));
     }
 }
+
+// Blocks are longer once all of them are present: results come from registers, from the caller's
+// memory, or from both, of traces that are shorter and longer than the one before.
+TEST_CASE("long blocks of whole traces give what short ones give") {
+    Random random(13);
+    Builder builder;
+    const auto a = builder.input();
+    const auto b = builder.input();
+    const auto low = builder.unary(Opcode::slide_min, a, 21, 20);
+    const auto late = builder.later(b, 20);
+    for (const double limit : {0.0, 1.0, -2.0}) {
+        const auto margin = builder.pointwise(Opcode::sub, low, builder.constant(limit));
+        const auto other = builder.pointwise(Opcode::sub, builder.constant(limit), late);
+        builder.output(builder.pointwise(Opcode::min, margin, other));
+    }
+    const auto read = builder.pointwise(Opcode::max, low, late);
+    builder.output(read).output(builder.unary(Opcode::run_max, read, 0, 20)).output(late);
+    ways::Executor whole(builder.program());
+    ways::Executor stepped(builder.program());
+    for (const std::size_t count : {300U, 5000U, 10U, 2000U, 9000U}) {
+        const std::vector<Signal> columns{random.signal(count), random.signal(count)};
+        std::vector<Signal> outputs(whole.program().outputs.size(), Signal(count));
+        std::vector<double*> places;
+        for (Signal& output : outputs)
+            places.push_back(output.data());
+        const std::vector<const double*> samples{columns[0].data(), columns[1].data()};
+        CHECK(!whole.evaluate(samples, count, places));
+        CHECK(outputs == ways::online(stepped, columns, count, random, 700));
+        stepped.reset();
+    }
+}
