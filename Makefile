@@ -101,11 +101,15 @@ peers: $(VENV)/.made ## install the tools that we are compared with, each into a
 conformance: $(VENV)/.core peers ## ask every peer the conformance corpus: conformance/RESULTS.md
 	$(RUN) conformance/table.py
 
-soak: $(VENV)/.core $(VENV)/.group-test ## watch 10^8 samples and hours of dense stamps, 10^6 cases of bounds and early verdicts, 10^4 formulas of the solver, ten times as many examples of every law
+soak: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## watch 10^8 samples and hours of dense stamps, 10^6 cases of bounds and early verdicts, 10^4 formulas of the solver, ten times as many examples of every law; run 10^6 changed programs and states each
 	$(RUN) benchmarks/soak.py
 	$(RUN) -m tests.laws.early.soak 1000000
 	$(RUN) -m tests.laws.analysis_soak 10000
 	$(RUN) -m pytest tests/laws --hypothesis-profile=soak --timeout=0
+	$(WITH_VENV) cmake --preset asan
+	$(WITH_VENV) cmake --build --preset asan --target mutate_compiled mutate_forged
+	build/asan/tests/fuzz/mutate_compiled 1000000 1000000 tests/fuzz/corpus/compiled
+	build/asan/tests/fuzz/mutate_forged 1000000 1000000
 
 vsix: ## build the extension for Visual Studio Code with npm: editors/vscode/rtamt.vsix
 	cd editors/vscode && npm install --no-audit --no-fund && npm run package
@@ -122,7 +126,7 @@ fuzz: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-build ## look for input t
 	@command -v clang++ >/dev/null || { echo "error: make fuzz needs Clang; install it as root: apt-get install clang" >&2; exit 1; }
 	$(WITH_VENV) cmake --preset fuzz
 	$(WITH_VENV) cmake --build --preset fuzz
-	for target in program state; do \
+	for target in program state compiled forged; do \
 	    mkdir -p build/fuzz/found/$$target && \
 	    build/fuzz/tests/fuzz/fuzz_$$target build/fuzz/found/$$target tests/fuzz/corpus/$$target \
 	        -artifact_prefix=build/fuzz/ -max_total_time=$(FUZZ_SECONDS) -timeout=10 -rss_limit_mb=1024 \

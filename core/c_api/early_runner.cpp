@@ -195,6 +195,7 @@ void EarlyRunner::transfer(Snapshot& snapshot) {
     snapshot.item(verdict_);
     snapshot.item(finished_);
     snapshot.require(samples_ >= 0 && samples_ < longest && decided_ < samples_ && decided_ >= -1);
+    snapshot.require(engine_.seen() == samples_ - 1);
     snapshot.require(bounds_.lower == bounds_.lower && bounds_.upper == bounds_.upper &&
                      verdict_ == verdict_);
 }

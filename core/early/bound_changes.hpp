@@ -1,8 +1,8 @@
 // The last change of a node of an engine: runs of ticks and their new bounds.
 #pragma once
 
-#include "../program/snapshot.hpp"
 #include "bounds_engine.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -107,14 +107,10 @@ class BoundChanges {
     }
 
     void transfer(Snapshot& snapshot) {
-        std::size_t size = changed_.size();
-        snapshot.count(size, 2 * sizeof(Tick));
-        changed_.resize(size);
-        for (auto& [first, last] : changed_) {
-            snapshot.item(first);
-            snapshot.item(last);
-            snapshot.require(0 <= first && first <= last && last < forever);
-        }
+        checked::list(snapshot, changed_, 2 * sizeof(Tick), [&](auto& range) {
+            checked::tick(snapshot, range.first);
+            checked::tick(snapshot, range.second, range.first);
+        });
     }
 
   private:

@@ -1,6 +1,6 @@
 #include "bounds_at_start.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <map>
@@ -315,12 +315,11 @@ Bounds BoundsAtStart::ended(const BoundsEngine& engine, Tick end) const {
 void BoundsAtStart::transfer(Snapshot& snapshot) {
     for (State& state : states_) {
         for (std::size_t reg = 0; reg < 2; ++reg) {
-            snapshot.item(state.value[reg]);
-            snapshot.item(state.best[reg]);
-            snapshot.item(state.held[reg]);
+            checked::number(snapshot, state.value[reg]);
+            checked::number(snapshot, state.best[reg]);
+            checked::number(snapshot, state.held[reg]);
         }
-        snapshot.item(state.next);
-        snapshot.require(state.next >= 0);
+        checked::tick_or_forever(snapshot, state.next);
     }
 }
 

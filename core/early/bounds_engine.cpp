@@ -1,6 +1,6 @@
 #include "bounds_engine.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <ranges>
@@ -186,21 +186,19 @@ void BoundsEngine::transfer(Snapshot& snapshot) {
     for (State& state : nodes_) {
         state.own[0].transfer(snapshot);
         state.own[1].transfer(snapshot);
-        snapshot.item(state.from);
-        snapshot.item(state.keep);
-        snapshot.item(state.undefined.exact);
-        snapshot.item(state.undefined.any);
+        checked::tick_or_forever(snapshot, state.from);
+        checked::tick_or_forever(snapshot, state.keep);
+        checked::tick_or_forever(snapshot, state.undefined.exact);
+        checked::tick_or_forever(snapshot, state.undefined.any);
         snapshot.item(state.undefined.step);
         const auto& steps = node(static_cast<std::size_t>(&state - nodes_.data())).steps;
         snapshot.require(state.undefined.step < std::max<std::size_t>(1, steps.size()));
-        snapshot.require(state.own[0].front() <= std::max<Tick>(0, state.keep) &&
-                         state.own[1].front() <= std::max<Tick>(0, state.keep));
+        snapshot.require(state.own[0].front() <= state.keep && state.own[1].front() <= state.keep);
     }
     for (auto& known : inputs_)
         known.transfer(snapshot);
-    snapshot.item(seen_);
-    snapshot.require(seen_ >= -1 && seen_ < forever);
-    snapshot.item(complete_);
+    checked::tick(snapshot, seen_, -1);
+    checked::tick_or_forever(snapshot, complete_, -1);
     if (!snapshot.loading()) return;
     seen_before_ = seen_;
     complete_before_ = complete_;

@@ -131,6 +131,8 @@ class BoundsEngine {
     // The sum of the bounds of all windows, without those that have no end: how far from a sample a
     // value may be that it changes, and that others do not share from there on.
     [[nodiscard]] Tick reach() const noexcept;
+    // The newest tick with samples, -1 before the first.
+    [[nodiscard]] Tick seen() const noexcept { return seen_; }
     [[nodiscard]] const Graph& graph() const noexcept { return graph_; }
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
     [[nodiscard]] std::size_t inputs() const noexcept { return graph_.inputs; }

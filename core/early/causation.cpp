@@ -1,7 +1,7 @@
 #include "causation.hpp"
 
-#include "../program/snapshot.hpp"
 #include "causation_until.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -43,6 +43,7 @@ void Causes::check(const BoundsEngine& engine, const BoundsAtStart& at_start) {
         require(!pair || earlier(cause.b, i));
         require(!recursion || (cause.core / 2 < engine.size() && cause.low >= 0));
         require(cause.low <= cause.high && cause.shift >= 0 && cause.shift < forever);
+        require(cause.kind != Cause::Kind::since || cause.shift == 0); // it looks back anyway
         reach_ = std::min(plus(reach_, cause.shift + 2), forever / 4);
     }
     for (const std::uint32_t output : outputs_)
@@ -295,13 +296,14 @@ std::vector<BoundChange> caused_runs(const Pieces& satisfaction, const Pieces& v
 void Causes::transfer(Snapshot& snapshot) {
     for (Part& part : known_) {
         for (Pieces& pieces : part) {
-            std::size_t size = pieces.size();
-            snapshot.count(size, sizeof(Run));
-            pieces.resize(size);
-            snapshot.values(pieces.data(), size);
+            Tick end = 0;
+            checked::list(snapshot, pieces, sizeof(Run), [&](Run& piece) {
+                checked::run(snapshot, piece.begin, piece.end, end);
+                checked::number(snapshot, piece.value);
+            });
         }
     }
-    snapshot.item(start_);
+    checked::numbers(snapshot, start_);
 }
 
 } // namespace rtamt::early

@@ -1,6 +1,6 @@
 #include "dense_monitor.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -229,11 +229,11 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
     for (DenseOutput& output : outputs_)
         output.transfer(snapshot);
     samples_.transfer(snapshot);
-    snapshot.item(closed_);
-    snapshot.require(closed_ >= -1 && closed_ < forever);
+    checked::tick(snapshot, closed_, -1);
     snapshot.item(begun_);
     snapshot.item(finished_);
     snapshot.require(begun_ == samples_.start().has_value());
+    snapshot.require(engine_.seen() == (begun_ ? newest() : -1));
 }
 
 } // namespace rtamt::early

@@ -1,6 +1,6 @@
 #include "dense_output.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 
@@ -75,12 +75,14 @@ Tick DenseOutput::settle(const BoundsEngine& engine, Tick closed) noexcept {
 
 void DenseOutput::transfer(Snapshot& snapshot) {
     decisions_.transfer(snapshot);
-    early::transfer(snapshot, decided_);
+    early::transfer(snapshot, decided_, [&](Decision& decision) { // counted from anywhere
+        checked::time(snapshot, decision.l);
+        checked::time(snapshot, decision.r);
+        snapshot.require(decision.l <= decision.r);
+    });
     changes_.transfer(snapshot);
-    for (Tick* tick : {&open_, &held_, &next_held_}) {
-        snapshot.item(*tick);
-        snapshot.require(*tick >= 0);
-    }
+    for (Tick* tick : {&open_, &held_, &next_held_})
+        checked::tick_or_forever(snapshot, *tick);
 }
 
 } // namespace rtamt::early

@@ -1,7 +1,5 @@
 #include "dense_requirements.hpp"
 
-#include "../program/snapshot.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -393,6 +391,7 @@ void DenseRequirements::transfer(Snapshot& snapshot) {
         start = std::min(start, begun.value_or(start));
     }
     snapshot.require(start == minimum_->start);
+    snapshot.require(minimum_->engine.seen() == *newest() - start);
 }
 
 } // namespace rtamt::early

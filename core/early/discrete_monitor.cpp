@@ -334,21 +334,25 @@ void DiscreteMonitor::transfer(Snapshot& snapshot) {
     times_.transfer(snapshot);
     if (late_rows_) late_rows_->transfer(snapshot);
     for (std::vector<Decision>& news : news_) {
-        early::transfer(snapshot, news);
+        Tick end = 0;
+        early::transfer(snapshot, news, [&](Decision& decision) {
+            checked::run(snapshot, decision.l, decision.r, end);
+        });
         for (const Decision& decision : news)
-            snapshot.require(0 <= decision.l && decision.l <= decision.r &&
-                             decision.r <= times_.newest() && decision.at <= times_.newest());
+            snapshot.require(decision.r <= times_.newest() && decision.at <= times_.newest());
     }
-    snapshot.values(open_.data(), open_.size());
-    snapshot.values(kept_.data(), kept_.size());
-    snapshot.item(closed_);
-    snapshot.item(samples_);
+    for (Tick& open : open_)
+        checked::tick_or_forever(snapshot, open);
+    for (Tick& kept : kept_)
+        checked::tick(snapshot, kept);
+    checked::tick(snapshot, closed_, -1);
+    checked::tick(snapshot, samples_);
     snapshot.item(finished_);
-    snapshot.require(closed_ >= -1 && closed_ < forever);
-    for (const Tick open : open_)
-        snapshot.require(open >= 0);
+    // What counts samples counts the same ones.
+    if (engine_) snapshot.require(times_.newest() == engine_->seen());
+    if (zone_) snapshot.require(times_.newest() == zone_->newest());
     for (std::size_t i = 0; i < outputs_.size(); ++i)
-        snapshot.require(kept_[i] >= 0 && kept_[i] <= held(i));
+        snapshot.require(kept_[i] <= held(i));
 }
 
 } // namespace rtamt::early

@@ -1,6 +1,6 @@
 #include "eager_engine.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 #include "trace_end.hpp"
 
 #include <algorithm>
@@ -327,10 +327,9 @@ std::size_t EagerEngine::bytes() const noexcept {
 void EagerEngine::transfer(Snapshot& snapshot) {
     for (State& state : states_) {
         state.own.transfer(snapshot);
-        snapshot.item(state.from);
-        snapshot.item(state.keep);
-        snapshot.require(0 <= state.from && state.from <= forever && state.keep <= state.from);
-        snapshot.require(state.own.front() <= std::max<Tick>(0, state.keep));
+        checked::tick_or_forever(snapshot, state.from);
+        checked::tick_or_forever(snapshot, state.keep);
+        snapshot.require(state.own.front() <= state.keep && state.keep <= state.from);
         state.decided.clear();
     }
 }

@@ -2,9 +2,9 @@
 // upper bound negative. What is decided before it is reached waits.
 #pragma once
 
-#include "../program/snapshot.hpp"
 #include "bounds_engine.hpp"
 #include "eager_engine.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,16 +20,14 @@ struct Decision {
     bool satisfied;
 };
 
-inline void transfer(Snapshot& snapshot, std::vector<Decision>& decisions) {
-    std::size_t size = decisions.size();
-    snapshot.count(size, 3 * sizeof(Tick) + 1);
-    decisions.resize(size);
-    for (Decision& decision : decisions) {
-        snapshot.item(decision.l);
-        snapshot.item(decision.r);
-        snapshot.item(decision.at);
+// Decisions, whose ticks a function transfers.
+template <class Ticks>
+void transfer(Snapshot& snapshot, std::vector<Decision>& decisions, Ticks&& ticks) {
+    checked::list(snapshot, decisions, 3 * sizeof(Tick) + 1, [&](Decision& decision) {
+        ticks(decision);
+        checked::time(snapshot, decision.at);
         snapshot.item(decision.satisfied);
-    }
+    });
 }
 
 // The first sample whose time is that of a decision.
@@ -110,7 +108,12 @@ class EagerVerdicts {
 
     [[nodiscard]] std::size_t bytes() const noexcept { return waiting_.size() * sizeof(Decision); }
 
-    void transfer(Snapshot& snapshot) { rtamt::early::transfer(snapshot, waiting_); }
+    void transfer(Snapshot& snapshot) {
+        Tick end = 0;
+        early::transfer(snapshot, waiting_, [&](Decision& decision) {
+            checked::run(snapshot, decision.l, decision.r, end);
+        });
+    }
 
   private:
     std::vector<Decision> waiting_; // by their first ticks, which they share with no other

@@ -144,8 +144,8 @@ void Graph::check() const {
                           node.kind == Kind::until || node.kind == Kind::since ||
                           node.kind == Kind::since_dense;
         const bool rank = node.kind == Kind::rank_least || node.kind == Kind::rank_greatest;
-        require(!rank || (node.steps.size() == 1 && node.steps.front().x >= 1.0 &&
-                          node.low > -forever && node.high < forever));
+        require(!rank || (node.steps.size() == 1 && node.low > -forever && node.high < forever &&
+                          node.steps.front().x >= 1.0 && node.steps.front().x <= 0x1p53));
         require(node.kind <= Kind::pulses && (node.kind != Kind::held || node.low == node.high));
         if (node.kind == Kind::atom || node.kind == Kind::map) require(!node.steps.empty());
         if (node.kind != Kind::atom) require(earlier(node.a));
@@ -164,11 +164,15 @@ void Graph::check() const {
             require(step.opcode < static_cast<Opcode>(opcodes.size()) &&
                     (info(step.opcode).pointwise || step.opcode == Opcode::input ||
                      step.opcode == Opcode::constant));
-            if (node.kind == Kind::map) continue;
+            if (node.kind == Kind::map) {
+                require(step.opcode != Opcode::input && step.opcode != Opcode::constant);
+                continue;
+            }
             if (step.opcode == Opcode::input) {
                 require(step.a < inputs);
-            } else if (step.opcode != Opcode::constant) {
-                require(step.a < s && (info(step.opcode).operands < 2 || step.b < s));
+            } else if (step.opcode != Opcode::constant) { // a second operand is read if it is there
+                const bool second = info(step.opcode).operands > 1 || step.b != none;
+                require(step.a < s && (!second || step.b < s));
             }
         }
     }

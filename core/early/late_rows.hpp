@@ -5,8 +5,8 @@
 // others moves these. Memory: a tick and bounds of every input for each row.
 #pragma once
 
-#include "../program/snapshot.hpp"
 #include "../values/bounds.hpp"
+#include "state_checks.hpp"
 #include "step_map.hpp"
 
 #include <algorithm>
@@ -65,10 +65,12 @@ class LateRows {
         if (snapshot.loading()) head_ = 0;
         ticks_.resize(head_ + size);
         rows_.resize(ticks_.size() * ranges_.size());
-        snapshot.values(ticks_.data() + head_, size);
+        Tick next = 0;
+        for (std::size_t i = head_; i < ticks_.size(); ++i) {
+            checked::tick(snapshot, ticks_[i], next);
+            next = ticks_[i] + 1;
+        }
         snapshot.values(rows_.data() + first_of(head_), size * ranges_.size());
-        for (std::size_t i = head_ + 1; i < ticks_.size(); ++i)
-            snapshot.require(ticks_[i - 1] < ticks_[i]);
         for (std::size_t i = head_ * ranges_.size(); i < rows_.size(); ++i)
             snapshot.require(rows_[i].lower <= rows_[i].upper);
     }

@@ -6,8 +6,8 @@
 // periods after the last such sample; none while all others do.
 #pragma once
 
-#include "../program/snapshot.hpp"
 #include "runs.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,18 +89,17 @@ class SampleTimes {
     [[nodiscard]] std::size_t bytes() const noexcept { return anchors_.size() * sizeof(Anchor); }
 
     void transfer(Snapshot& snapshot) {
-        std::size_t size = anchors_.size();
-        snapshot.count(size, sizeof(Anchor));
-        anchors_.resize(size);
-        snapshot.values(anchors_.data(), size);
-        snapshot.item(newest_);
+        Tick next = 0;
+        checked::list(snapshot, anchors_, sizeof(Anchor), [&](Anchor& anchor) {
+            checked::tick(snapshot, anchor.index, next);
+            snapshot.item(anchor.time);
+            snapshot.require(std::isfinite(anchor.time));
+            next = anchor.index + 1;
+        });
+        checked::tick(snapshot, newest_, -1);
         snapshot.item(last_);
-        snapshot.require(newest_ >= -1 && newest_ < forever && (newest_ < 0) == anchors_.empty());
-        Tick before = -1;
-        for (const Anchor& anchor : anchors_) {
-            snapshot.require(before < anchor.index && anchor.index <= newest_);
-            before = anchor.index;
-        }
+        snapshot.require((newest_ < 0) == anchors_.empty() && next <= newest_ + 1);
+        snapshot.require(std::isfinite(last_) && (newest_ < 0 || at(newest_) == last_));
     }
 
   private:

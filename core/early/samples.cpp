@@ -178,11 +178,19 @@ std::size_t Samples::bytes() const noexcept {
 }
 
 void Samples::transfer(Snapshot& snapshot) {
+    const auto near = [](Tick time) { return time < farthest && time > -farthest; };
     snapshot.item(now_.start);
     snapshot.item(now_.newest);
     snapshot.item(now_.closed);
     snapshot.item(now_.waits);
-    snapshot.require(!now_.start || (*now_.start < farthest && *now_.start > -farthest));
+    snapshot.require(near(now_.start.value_or(0)) && near(now_.newest.value_or(0)));
+    // Lateness is counted back from the newest sample.
+    snapshot.require(now_.closed == never || now_.closed == at_end ||
+                     (now_.closed <= farthest && now_.closed > -farthest - forever));
+    if (now_.start) {
+        const Tick length = now_.newest.value_or(*now_.start - 1) - *now_.start;
+        snapshot.require(length >= 0 && length < longest);
+    }
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         Column& column = inputs_[i];
         std::size_t size = column.size();
@@ -192,7 +200,7 @@ void Samples::transfer(Snapshot& snapshot) {
             snapshot.item(column[k].time);
             snapshot.item(column[k].bounds.lower);
             snapshot.item(column[k].bounds.upper);
-            snapshot.require(column[k].time < farthest && column[k].time > -farthest);
+            snapshot.require(near(column[k].time) && column[k].time <= now_.newest);
             snapshot.require(k == 0 || column[k - 1].time < column[k].time);
             snapshot.require(column[k].bounds.lower <= column[k].bounds.upper);
         }

@@ -5,7 +5,6 @@
 #include "kleene_runs.hpp"
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 namespace rtamt::early {
@@ -195,6 +194,22 @@ void StepMap<Value>::drop_before(Tick t) noexcept {
 
 // ---- state --------------------------------------------------------------------------------------
 
+namespace {
+
+[[nodiscard]] bool is_sound(double value) noexcept {
+    return value == value; // no NaN
+}
+
+[[nodiscard]] bool is_sound(const Bounds& value) noexcept {
+    return value.lower <= value.upper;
+}
+
+[[nodiscard]] bool is_sound(Kleene value) noexcept {
+    return value <= Kleene::fails;
+}
+
+} // namespace
+
 template <class Value>
 void StepMap<Value>::transfer(Snapshot& snapshot) {
     std::vector<Tick> starts;
@@ -215,12 +230,8 @@ void StepMap<Value>::transfer(Snapshot& snapshot) {
     directory_.clear();
     head_ = 0;
     for (std::size_t i = 0; i < size; ++i) {
-        snapshot.require(starts[i] < forever && (i == 0 || starts[i - 1] < starts[i]));
-        if constexpr (std::is_enum_v<Value>) {
-            snapshot.require(values[i] <= Kleene::fails);
-        } else {
-            snapshot.require(values[i] == values[i]); // no NaN
-        }
+        snapshot.require(starts[i] < forever && starts[i] > (i == 0 ? -1 : starts[i - 1]));
+        snapshot.require(is_sound(values[i]));
         if (i % capacity == 0) directory_.emplace_back();
         append(starts[i], values[i]);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 
 namespace rtamt::early {
 
@@ -18,8 +19,16 @@ struct Column {
     Tick first = 0;
     std::vector<Bounds> values;
 
-    [[nodiscard]] Bounds at(Tick t, bool flipped) const {
-        const Bounds& value = values.at(static_cast<std::size_t>(t - first));
+    [[nodiscard]] Bounds& at(Tick t) {
+        const auto place = static_cast<std::size_t>(t - first);
+        if (place >= values.size()) {
+            throw std::invalid_argument("This is not the state of a monitor of this program: it "
+                                        "has no values where the end of the trace reads some.");
+        }
+        return values[place];
+    }
+    [[nodiscard]] Bounds at(Tick t, bool flipped) {
+        const Bounds& value = at(t);
         return flipped ? Interval::neg(value) : value;
     }
 };
@@ -51,9 +60,7 @@ std::vector<BoundsEngine::Rest> bounds_at_end(const Graph& graph, std::span<cons
         Column& column = columns[i];
         column.first = std::clamp<Tick>(state.keep, 0, end);
         column.values.resize(static_cast<std::size_t>(end - column.first));
-        const auto place = [&](Tick t) -> Bounds& {
-            return column.values.at(static_cast<std::size_t>(t - column.first));
-        };
+        const auto place = [&](Tick t) -> Bounds& { return column.at(t); };
         for (Tick t = column.first; t < end; ++t)
             place(t) = at(static_cast<std::uint32_t>(2 * i), t);
         const Tick from = std::max(state.from, column.first);
@@ -149,7 +156,7 @@ std::vector<BoundsEngine::Rest> bounds_at_end(const Graph& graph, std::span<cons
     }
     std::vector<BoundsEngine::Rest> result;
     for (const std::uint32_t ref : refs) {
-        const Column& column = columns[ref / 2];
+        Column& column = columns[ref / 2];
         BoundsEngine::Rest rest{column.first, {}};
         for (Tick t = column.first; t < end; ++t)
             rest.bounds.push_back(column.at(t, (ref & 1U) != 0));

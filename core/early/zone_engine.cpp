@@ -1,6 +1,6 @@
 #include "zone_engine.hpp"
 
-#include "../program/snapshot.hpp"
+#include "state_checks.hpp"
 
 #include <algorithm>
 #include <ranges>
@@ -309,22 +309,16 @@ std::size_t ZoneEngine::bytes() const noexcept {
 }
 
 void ZoneEngine::transfer(Snapshot& snapshot) {
-    snapshot.item(newest_);
-    snapshot.require(newest_ >= -1 && newest_ < forever);
-    snapshot.item(at_start_);
-    const auto number = [&](double& value) {
-        snapshot.item(value);
-        snapshot.require(value == value); // no NaN
-    };
+    const auto number = [&](double& value) { checked::number(snapshot, value); };
+    checked::tick(snapshot, newest_, -1);
+    checked::numbers(snapshot, at_start_);
     for (auto& runs : final_) {
-        std::size_t size = runs.size();
-        snapshot.count(size, sizeof(BoundChange));
-        runs.resize(size);
-        snapshot.values(runs.data(), size);
-        for (std::size_t k = 0; k < size; ++k) {
-            const auto& [l, r, bounds] = runs[k];
-            snapshot.require(l >= 0 && l <= r && r < newest_ && (k == 0 || runs[k - 1].r < l));
-        }
+        Tick end = 0;
+        checked::list(snapshot, runs, sizeof(BoundChange), [&](BoundChange& run) {
+            checked::run(snapshot, run.l, run.r, end);
+            checked::numbers(snapshot, run.bounds);
+        });
+        snapshot.require(end <= std::max<Tick>(0, newest_));
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         const Node& node = graph_.nodes[i];
@@ -341,14 +335,13 @@ void ZoneEngine::transfer(Snapshot& snapshot) {
                 number(value);
         }
     }
-    snapshot.item(newest_before_);
-    snapshot.require(newest_before_ >= -1 && newest_before_ <= newest_);
+    checked::tick(snapshot, newest_before_, -1);
+    snapshot.require(newest_before_ <= newest_);
     bool has_row = !before_.empty();
     snapshot.item(has_row);
     before_.resize(has_row ? outputs_.size() : 0);
     for (Column& before : before_) {
-        snapshot.item(before.first);
-        snapshot.require(before.first >= 0);
+        checked::tick(snapshot, before.first);
         std::size_t size = before.values[0].size();
         snapshot.count(size, 2 * sizeof(double));
         for (auto& values : before.values) {

@@ -56,6 +56,8 @@ class ZoneEngine {
     // Bounds of an output at a tick that is not final for longer than the last one.
     [[nodiscard]] Bounds at(std::size_t output, Tick t) const noexcept;
     [[nodiscard]] Bounds at_start() const noexcept { return at_start_; }
+    // The newest tick with samples, -1 before the first.
+    [[nodiscard]] Tick newest() const noexcept { return newest_; }
     // Bounds of an output at ticks of the trace from `first` on, which were not dropped.
     [[nodiscard]] std::vector<Bounds> all_from(std::size_t output, Tick first) const;
     void drop_before(std::size_t output, Tick t);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -30,11 +31,18 @@ constexpr std::int64_t most_ticks = 9'007'199'254'740'992; // in a second: 2^53
     return numbers;
 }
 
+// A text for people, which C passes on without its length.
+[[nodiscard]] std::string read_text(GraphReader& reader) {
+    std::string text = reader.text();
+    GraphReader::require(text.find('\0') == std::string::npos);
+    return text;
+}
+
 [[nodiscard]] MonitorProgram::Input read_input(GraphReader& reader) {
     MonitorProgram::Input input;
-    input.name = reader.text();
+    input.name = read_text(reader);
     const std::uint32_t boolean = reader.number();
-    GraphReader::require(boolean <= 1 && input.name.find('\0') == std::string::npos);
+    GraphReader::require(boolean <= 1);
     input.boolean = boolean == 1;
     input.range.lower = reader.real();
     input.range.upper = reader.real();
@@ -122,12 +130,12 @@ MonitorProgram MonitorProgram::parse(std::span<const std::uint8_t> bytes) {
     const std::uint32_t inputs = reader.count(24);
     for (std::uint32_t i = 0; i < inputs; ++i)
         program.inputs.push_back(read_input(reader));
-    program.formula = reader.text();
-    program.made_of = reader.text();
+    program.formula = read_text(reader);
+    program.made_of = read_text(reader);
     const std::uint32_t meanings = reader.count(8);
     for (std::uint32_t i = 0; i < meanings; ++i) {
         const std::uint32_t step = reader.number();
-        program.meanings[step] = reader.text();
+        program.meanings[step] = read_text(reader);
     }
     if (const std::string code = reader.text(); program.mode == Mode::delayed) {
         program.program = Program::parse(
@@ -164,6 +172,12 @@ MonitorProgram MonitorProgram::parse(std::span<const std::uint8_t> bytes) {
         GraphReader::require(program.groups.front().inputs == all);
     } else {
         GraphReader::require(program.numerator == 1 && program.denominator < most_ticks);
+        std::vector<bool> read(inputs); // a sample of each goes to a group
+        for (const auto& group : program.groups) {
+            for (const std::uint32_t input : group.inputs)
+                read[input] = true;
+        }
+        GraphReader::require(!early || std::ranges::all_of(read, std::identity{}));
     }
     std::uint32_t before = 0;
     for (const early::DenseRequirements::Group& group : program.groups) {

@@ -303,6 +303,8 @@ void DenseEarlyMonitor::restore(const nb::bytes& state) {
 void DenseEarlyMonitor::transfer(Snapshot& snapshot) {
     monitor_.transfer(snapshot);
     snapshot.values(counts_.data(), counts_.size());
+    for (const std::int64_t count : counts_)
+        snapshot.require(count >= 0 && count < early::forever);
 }
 
 } // namespace rtamt::python
