@@ -22,7 +22,7 @@ struct Decision {
 
 // Decisions, whose ticks a function transfers.
 template <class Ticks>
-void transfer(Snapshot& snapshot, std::vector<Decision>& decisions, Ticks&& ticks) {
+void transfer(Snapshot& snapshot, std::vector<Decision>& decisions, const Ticks& ticks) {
     checked::list(snapshot, decisions, 3 * sizeof(Tick) + 1, [&](Decision& decision) {
         ticks(decision);
         checked::time(snapshot, decision.at);

@@ -9,7 +9,6 @@
 #include "step_map.hpp"
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace rtamt::early::checked {
@@ -53,12 +52,13 @@ inline void run(Snapshot& snapshot, Tick& first, Tick& last, Tick& end) {
 
 // Items of at least `size` bytes, each transferred by a function.
 template <class Item, class Transfer>
-void list(Snapshot& snapshot, std::vector<Item>& items, std::size_t size, Transfer&& transfer) {
+void list(Snapshot& snapshot, std::vector<Item>& items, std::size_t size,
+          const Transfer& transfer) {
     std::size_t count = items.size();
     snapshot.count(count, size);
     items.resize(count);
     for (Item& item : items)
-        std::forward<Transfer>(transfer)(item);
+        transfer(item);
 }
 
 } // namespace rtamt::early::checked
