@@ -40,6 +40,8 @@ class Silences:
         for name, channel in channels.items():
             if channel.times is not None and len(channel.times):
                 seconds = in_seconds(channel.times)
+                if not np.isfinite(seconds).all():
+                    return  # evaluation rejects such times
                 pace = self._paces.setdefault(table, _Pace(name, 0, float(seconds[0]), 0.0))
                 pauses = np.diff(seconds, prepend=pace.last)
                 pace.count, pace.last = pace.count + len(seconds), float(seconds[-1])
