@@ -1,7 +1,8 @@
-"""Write output files completely or not at all."""
+"""Read texts that end, and write output files completely or not at all."""
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from contextlib import contextmanager, suppress
@@ -11,6 +12,7 @@ from rtamt.lazy_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from typing import TextIO
 
 
 def nearest_file(path: str) -> str:
@@ -26,13 +28,22 @@ def nearest_file(path: str) -> str:
     return f"; did you mean '{os.path.join(folder, close[0])}'?" if close else ""
 
 
-def is_device(path: str) -> bool:
+def is_device(path: str | os.PathLike[str]) -> bool:
     """Return whether a path leads to a device, such as ``/dev/zero``."""
     try:
         mode = os.stat(path).st_mode
     except (OSError, ValueError):  # texts that are no paths
         return False
     return stat.S_ISCHR(mode) or stat.S_ISBLK(mode)
+
+
+def open_text(
+    path: str | os.PathLike[str], encoding: str = "utf-8-sig", newline: str | None = None
+) -> TextIO:
+    """Open a text to read it whole; raises :class:`OSError`, also for a device: it may have no end."""
+    if is_device(path):
+        raise OSError(errno.EINVAL, "it is a device, expected a file", path)
+    return open(path, encoding=encoding, newline=newline)
 
 
 def same_file(first: str, second: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 
 from rtamt.errors import UsageError, choices, shown
+from rtamt.files import open_text
 from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.imports import PACKAGED, Library
 from rtamt.language.parsing.specfile import parse_document
@@ -130,7 +131,7 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     if not isinstance(given, str):
         raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path")
     try:
-        with open(given, encoding="utf-8-sig") as file:
+        with open_text(given) as file:
             text = file.read()
     except OSError as error:
         raise UsageError(f"cannot read the specification '{path}': {error.strerror}") from error

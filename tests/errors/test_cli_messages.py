@@ -72,6 +72,8 @@ def run(capsys, monkeypatch, tmp_path):
         ),
         (["info", "folder"], "'folder' is a directory, expected a specification file or a formula"),
         (["info", "/dev/zero"], "'/dev/zero' is a device, expected a specification file or a formula"),
+        (["format", "/dev/zero"], "cannot read '/dev/zero': it is a device, expected a file"),
+        (["falsify", "/dev/zero"], "cannot read '/dev/zero': it is a device, expected a file"),
         (
             ["info", " "],
             "the specification is empty; give a file or a formula, such as 'always(x >= 3)'",

@@ -209,6 +209,9 @@ def test_wrong_settings() -> None:
     assert check_message(rtamt.UsageError, rtamt.load, "nowhere.stl") == (
         "cannot read the specification 'nowhere.stl': No such file or directory"
     )
+    assert check_message(rtamt.UsageError, rtamt.load, "/dev/zero") == (
+        "cannot read the specification '/dev/zero': it is a device, expected a file"
+    )
 
 
 @pytest.mark.parametrize("backend", ["cpp", "python"])

@@ -13,7 +13,7 @@ from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, choices, did_you_mean, readable
-from rtamt.files import is_device, nearest_file, write_bytes, write_text
+from rtamt.files import is_device, nearest_file, open_text, write_bytes, write_text
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.lazy_numpy import np
@@ -217,7 +217,7 @@ def read_library(args: argparse.Namespace, time: str, file: str) -> Specificatio
     options, (folder, name) = settings_of(args, time, runs=False), os.path.split(os.path.abspath(file))
     try:
         parse(f'import "{name}"\ntrue', folder=folder, **options)
-        with open(file, encoding="utf-8-sig") as text:
+        with open_text(file) as text:
             spec = parse(f"{text.read()}\ntrue", folder=folder, **options)
     except SpecificationError:
         return None
@@ -293,7 +293,7 @@ def _read(args: argparse.Namespace, time: str, spec: str, *, runs: bool) -> Spec
 def read_text(path: str, encoding: str = "utf-8-sig", newline: str | None = None) -> str:
     """Return the text of a specification file; raise :class:`CommandError` if it cannot be read."""
     try:
-        with open(path, encoding=encoding, newline=newline) as file:
+        with open_text(path, encoding, newline) as file:
             return file.read()
     except OSError as error:
         raise CommandError(f"cannot read '{path}': {error.strerror or error}") from None

@@ -18,6 +18,7 @@ from rtamt.cli.command import (
     read_specifications,
 )
 from rtamt.cli.parser import OK, complain
+from rtamt.files import open_text
 from rtamt.language.units.durations import duration
 from rtamt.metrics import add_metrics_options
 
@@ -255,7 +256,7 @@ def _client(given: list[str], path: str | None) -> dict[str, str]:
     lines: list[str] = []
     if path is not None:
         try:
-            with open(path, encoding="utf-8") as file:
+            with open_text(path, "utf-8") as file:
                 lines = [line.strip() for line in file]
         except (OSError, UnicodeDecodeError) as error:
             raise CommandError(

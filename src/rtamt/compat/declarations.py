@@ -7,7 +7,6 @@ import importlib
 import math
 import sys
 from abc import ABC, abstractmethod
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rtamt.compat.associativity import warn_of_chains
@@ -22,6 +21,7 @@ from rtamt.errors import (
     with_article,
 )
 from rtamt.extras import message_class
+from rtamt.files import open_text
 from rtamt.language.contents import variables
 from rtamt.language.formula import Var, postorder
 from rtamt.language.operators import STL, Language
@@ -176,7 +176,8 @@ class Declarations(ABC):
     def get_spec_from_file(self, path: str | os.PathLike[str]) -> str:
         """Return the text of a file, for :attr:`spec`."""
         try:
-            return Path(path).read_text(encoding="utf-8")
+            with open_text(path, "utf-8") as file:
+                return file.read()
         except FileNotFoundError:
             raise UsageError(f"The file {path} does not exist.") from None
         except OSError as error:

@@ -13,6 +13,7 @@ from typing import Any
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
+from rtamt.files import open_text
 from rtamt.scale.messages import framed
 
 _PRIMITIVE = frozenset({"null", "boolean", "int", "long", "float", "double", "bytes", "string"})
@@ -27,7 +28,7 @@ class AvroDecoder:
 
     def _load(self, path: str) -> Any:
         try:
-            with open(path, encoding="utf-8-sig") as file:
+            with open_text(path) as file:
                 given = json.load(file)
         except OSError as error:
             raise UsageError(f"cannot read the schema '{path}': {error.strerror}") from None

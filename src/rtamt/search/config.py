@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, choices, did_you_mean, shown
 from rtamt.extras import library
+from rtamt.files import open_text
 from rtamt.lazy_dataclasses import dataclass
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
@@ -70,7 +71,8 @@ def load_search(path: str | os.PathLike[str]) -> Search:
     """Read a problem file; raise :class:`UsageError` with the file and the key."""
     place = Path(path)
     try:
-        data = _toml().loads(place.read_text(encoding="utf-8"))
+        with open_text(place, "utf-8") as file:
+            data = _toml().loads(file.read())
     except OSError as error:
         raise UsageError(f"cannot read '{path}': {error.strerror}") from error
     except RecursionError:
