@@ -49,7 +49,7 @@ __all__ = ["dataclass", "field", "fields", "replace"]
 
 _MISSING: Any = object()
 #: Calls before __init__ is compiled, which takes as long as to interpret many, but a fourth is rarely the last.
-_INTERPRETED = 3
+INTERPRETED = 3
 
 
 class Field:
@@ -180,7 +180,7 @@ def _first_init(*, frozen: bool) -> Callable[..., None]:
         if owner is None:
             owner = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
         calls += 1
-        if calls <= _INTERPRETED and _stored(self, owner, store, args, given):
+        if calls <= INTERPRETED and _stored(self, owner, store, args, given):
             if hasattr(owner, "__post_init__"):
                 self.__post_init__()
         else:
@@ -193,7 +193,7 @@ def _first_init(*, frozen: bool) -> Callable[..., None]:
 def _stored(self: Any, owner: Any, store: Any, args: tuple[Any, ...], given: dict[str, Any]) -> bool:
     """Store the values of the fields; return whether the arguments were valid. The compiled method reports an error."""
     names = owner.__match_args__
-    values = dict(zip(names, args))  # noqa: B905 - more arguments than fields are found below
+    values = dict(zip(names, args, strict=False))
     if len(args) > len(names) or not values.keys().isdisjoint(given):
         return False
     values.update(given)

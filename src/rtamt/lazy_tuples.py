@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 else:
     from collections import _tuplegetter
 
+    from rtamt.lazy_dataclasses import INTERPRETED
+
     class _Bases:
         """The nominal base of classes, replaced by one that makes the class."""
 
@@ -80,9 +82,6 @@ else:
             values = [f"{field}={value!r}" for field, value in zip(self._fields, self, strict=True)]
             return f"{type(self).__name__}({', '.join(values)})"
 
-    #: As in :mod:`rtamt.lazy_dataclasses`.
-    _INTERPRETED = 3
-
     def _first_new(owner: Any) -> Any:
         """Return a constructor that interprets its first calls, and then replaces itself by one that it compiles."""
         calls = 0
@@ -91,8 +90,8 @@ else:
             nonlocal calls
             calls += 1
             fields = owner._fields
-            if calls <= _INTERPRETED and len(args) <= len(fields):
-                values = dict(zip(fields, args))  # noqa: B905 - the rest is named or has defaults
+            if calls <= INTERPRETED and len(args) <= len(fields):
+                values = dict(zip(fields, args, strict=False))
                 if values.keys().isdisjoint(given):
                     values = {**owner._field_defaults, **values, **given}
                     if values.keys() == {*fields}:

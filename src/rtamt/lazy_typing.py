@@ -39,11 +39,11 @@ else:
 
     ClassVar = Concatenate = Literal = Protocol = SupportsFloat = TypeAlias = TypeGuard = Any
 
-    def TypeVar(_name: str, **_options: object) -> type:  # noqa: N802 - the name of the standard library
+    def _type_variable(_name: str, **_options: object) -> type:
         """Return a type, which is not read."""
         return Any
 
-    ParamSpec = TypeVar
+    TypeVar = ParamSpec = _type_variable
 
     def cast(_kind: object, value: object) -> object:
         """Return the value."""
