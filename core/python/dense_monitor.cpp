@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -299,7 +298,7 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
     snapshot.values(counts_.data(), counts_.size());
     for (const std::int64_t count : counts_)
-        snapshot.require(count >= 0 && count < std::numeric_limits<std::int64_t>::max() / 4);
+        snapshot.require(count >= 0 && count < dense::never / 4);
     for (auto& until : until_)
         snapshot.item(until);
     for (EventList& list : results_)

@@ -14,17 +14,20 @@ NOTE = "/x.data has no sample in the last 20 s of the recording: its last value 
 BOTH = "always(/x.data >= 0 and /y.data >= 0)"
 
 
+def bag_of(folder, kind, counts):
+    """A bag with so many messages of each topic, one a second."""
+    with Bag(folder, kind) as bag:
+        for i in range(max(counts.values())):
+            for topic, count in counts.items():
+                if i < count:
+                    bag.plain(topic, 100 + i, 1.0)
+    return str(bag.path)
+
+
 @pytest.fixture
 def failed(tmp_path):
     """A bag of 30 s in which /x stops after 10 s, and /map is sent twice."""
-    with Bag(tmp_path, "mcap") as bag:
-        for i in range(31):
-            bag.plain("/y", 100 + i, 1.0)
-            if i <= 10:
-                bag.plain("/x", 100 + i, 1.0)
-            if i <= 1:
-                bag.plain("/map", 100 + i, 1.0)
-    return str(bag.path)
+    return bag_of(tmp_path, "mcap", {"/y": 31, "/x": 11, "/map": 2})
 
 
 @pytest.mark.parametrize("options", [["--time", "dense"], ["--period", "1"], ["--time", "dense", "--early"]])
@@ -40,9 +43,4 @@ def test_notes_are_on_regular_signals_beside_others_that_go_on(failed):
 
 
 def test_a_pause_of_a_few_samples_is_no_silence(tmp_path):
-    with Bag(tmp_path, "sqlite3") as bag:
-        for i in range(30):
-            bag.plain("/y", 100 + i, 1.0)
-            if i <= 19:
-                bag.plain("/x", 100 + i, 1.0)
-    assert rtamt.read(bag.path).losses == ()
+    assert rtamt.read(bag_of(tmp_path, "sqlite3", {"/y": 30, "/x": 20})).losses == ()
