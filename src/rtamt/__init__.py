@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from rtamt.lazy_typing import Any
+from rtamt.lazy.typing import Any
 
 __version__ = "1.0.0.dev0"
 

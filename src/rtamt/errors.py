@@ -22,8 +22,8 @@ from __future__ import annotations
 
 import reprlib
 
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import re

@@ -19,8 +19,8 @@ import sys
 from importlib.machinery import PathFinder
 
 from rtamt.errors import UsageError, did_you_mean
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import Any
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import Any
 
 _MESSAGE_MODULE = lazy_pattern(r"([A-Za-z]\w*)\.msg", re.ASCII)
 _MESSAGE_CLASS = lazy_pattern(r"[A-Za-z]\w*", re.ASCII)

@@ -8,7 +8,7 @@ import stat
 from contextlib import contextmanager, suppress
 
 from rtamt.errors import readable
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,8 +15,8 @@ from rtamt.language.parsing.lexer import comments, is_name, is_numeral, is_quote
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

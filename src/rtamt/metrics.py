@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     import argparse

@@ -20,8 +20,8 @@ from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.english import to_english
 from rtamt.language.units.durations import NUMBER, UNITS
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.specification_loader import parse
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.plan import compile_program
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.early import ends_differently, loose

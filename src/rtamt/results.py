@@ -11,8 +11,8 @@ from rtamt.errors import EvaluationError, UsageError, did_you_mean
 from rtamt.language.contents import variables
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
 from rtamt.signals.listing import show_time
 from rtamt.signals.outcomes import BoundedSignal, Interval
 from rtamt.verdicts import offline as verdicts

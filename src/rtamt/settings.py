@@ -13,7 +13,7 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Formula
 from rtamt.language.operators import Language
 from rtamt.language.value_types import BOOLEAN, Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number, is_truth
 

@@ -13,8 +13,8 @@ from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import check_unit
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 from rtamt.signals.data_errors import nan_of_members
 from rtamt.signals.sampling import sampled
 from rtamt.signals.trace import Trace

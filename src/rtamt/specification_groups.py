@@ -12,8 +12,8 @@ from types import MappingProxyType
 from rtamt.errors import UsageError, choices
 from rtamt.language.document import Declaration
 from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.presence import channel_of
 from rtamt.specification_recorded import RecordedSpecification
 

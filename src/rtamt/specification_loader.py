@@ -10,8 +10,8 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.imports import PACKAGED, Library
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import positive_period
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.semantics import semantics_of
 from rtamt.settings import (
     check_backend,

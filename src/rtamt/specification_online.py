@@ -9,8 +9,8 @@ from rtamt.engine import OnlineMonitor, Watched, engine_of
 from rtamt.errors import UsageError
 from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any, Literal, cast, overload
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any, Literal, cast, overload
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import require_samples, watched_of

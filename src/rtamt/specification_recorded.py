@@ -7,8 +7,8 @@ from math import inf
 from types import MappingProxyType
 
 from rtamt.language.quantifiers import Declared
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.signals.binding import Binding
 from rtamt.signals.sampling import without_values
 from rtamt.signals.trace import Trace

@@ -20,8 +20,8 @@ from rtamt.language.parsing.type_rules import as_formula
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import positive_period
 from rtamt.language.value_types import WHOLE
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters

@@ -11,7 +11,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.recovery import all_errors
 from rtamt.language.parsing.specfile import parse_document
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DEFAULT
 from rtamt.specification_loader import domain_of

@@ -10,7 +10,7 @@ from _thread import allocate_lock
 from functools import wraps
 
 from rtamt.errors import UsageError
-from rtamt.lazy_typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
+from rtamt.lazy.typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -27,7 +27,7 @@ class Prose(griffe.Extension):
 
     def on_alias_instance(self, *, alias: griffe.Alias, **_: object) -> None:
         """Read our dataclasses as those of the standard library, which are type checked and documented alike."""
-        alias.target_path = alias.target_path.replace("rtamt.lazy_dataclasses.", "dataclasses.")
+        alias.target_path = alias.target_path.replace("rtamt.lazy.dataclasses.", "dataclasses.")
 
     def on_package(self, *, pkg: griffe.Module, **_: object) -> None:
         """Replace the sections of every docstring once all modules are loaded."""

@@ -18,7 +18,7 @@ from rtamt.language.contents import variables
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.value_types import WHOLE
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

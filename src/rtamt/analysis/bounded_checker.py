@@ -14,8 +14,8 @@ from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import STL, Bounds, Tense
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.horizon import horizon

@@ -36,7 +36,7 @@ from rtamt.language.operators import (
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_of
 from rtamt.language.value_types import Boolean, Enumeration
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import ground
 from rtamt.rewrite.semantics import boolean

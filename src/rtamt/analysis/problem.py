@@ -12,8 +12,8 @@ from rtamt.analysis.solver import Solver
 from rtamt.analysis.witness import Goal, Witness
 from rtamt.language.contents import variables
 from rtamt.language.formula import Const, Formula, postorder
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,7 +12,7 @@ from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.sql import shown
 from rtamt.specification_loader import packs
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import CommandError
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.formats import is_bag
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind, topic_of

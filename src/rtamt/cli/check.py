@@ -26,8 +26,8 @@ from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
 from rtamt.errors import escaped
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, c
 from rtamt.files import is_device, nearest_file, open_text, write_bytes, write_text
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
-from rtamt.lazy_numpy import np
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.readers.formats import METADATA, SUFFIXES
 from rtamt.rewrite.semantics import SEMANTICS
 from rtamt.settings import check_backend, require_backend

@@ -13,7 +13,7 @@ from rtamt.cli.live_view import format_time
 from rtamt.cli.terminal import say
 from rtamt.errors import StlError, TraceError
 from rtamt.language.value_types import BOOLEAN, value_text
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.outcomes import Interval, VerdictRun
 from rtamt.verdicts.early.at_start import SAFE
 from rtamt.verdicts.early.discrete import DiscreteEarlyMonitor

@@ -12,7 +12,7 @@ from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
 from rtamt.files import replacing
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 
 if TYPE_CHECKING:
     import argparse

@@ -13,7 +13,7 @@ from rtamt.cli.terminal import use_color
 from rtamt.errors import escaped
 from rtamt.extras import library
 from rtamt.language.value_types import value_text
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.trace import in_seconds
 

@@ -28,7 +28,7 @@ from rtamt.cli.stdin_reader import Samples, lines_of
 from rtamt.cli.stream_members import StreamMembers
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError, TraceError
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.metrics import add_metrics_options, exported
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.sampling import HeldSampler

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.cli.command import short, stamp_text
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.language.operators import STL
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
 from rtamt.readers.sql import shown
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text

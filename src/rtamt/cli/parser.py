@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from rtamt.cli.terminal import say
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.files import same_file
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -14,8 +14,8 @@ from rtamt.cli.command import (
 )
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.units.durations import duration, positive_period
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
 from rtamt.readers.assemble import select, trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag

@@ -11,7 +11,7 @@ from rtamt.cli.reading_options import add_input_options, add_instant_option, rea
 from rtamt.cli.report_formats.html import HtmlReport
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, say
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 
 if TYPE_CHECKING:
     import argparse

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import json_number, stamp_text
 from rtamt.cli.terminal import say
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -28,7 +28,7 @@ from rtamt.cli.reading_options import (
     read_for,
 )
 from rtamt.errors import BoundError, StlError, TraceError
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown

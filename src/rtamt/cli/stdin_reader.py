@@ -20,7 +20,7 @@ from rtamt.cli.json_lines import (
 )
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.assemble import Choice, select, timestamps_of
 from rtamt.readers.csv import (
     Column,

@@ -11,7 +11,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any, TextIO
 
 from rtamt.errors import UsageError, choices, escaped
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

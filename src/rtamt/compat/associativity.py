@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

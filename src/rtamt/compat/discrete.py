@@ -15,7 +15,7 @@ from rtamt.compat.formulas import Formulas
 from rtamt.compat.options import sampling
 from rtamt.errors import StlError, UsageError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.check import check_bounds
 from rtamt.signals import arrays
 from rtamt.signals.arrays import TIME

@@ -12,7 +12,7 @@ from rtamt.errors import UsageError
 from rtamt.language.document import Requirement
 from rtamt.language.formula import Var
 from rtamt.language.printing.printer import canonical
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.semantics import apply_semantics, semantics_of
 from rtamt.specification import Specification, result_of
 

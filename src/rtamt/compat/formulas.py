@@ -16,7 +16,7 @@ from rtamt.language.formula import Formula, Var, outermost, postorder
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import canonical
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.rewrite.ground import grounds
 from rtamt.rewrite.semantics import apply_semantics, boolean, semantics_of
 from rtamt.rewrite.truth import is_part_of_a_condition

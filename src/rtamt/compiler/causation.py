@@ -11,7 +11,7 @@ from rtamt.compiler.graph import ITEMS, LATTICE, interval_in_steps
 from rtamt.compiler.program import NO_OPERAND
 from rtamt.language.formula import Apply, Formula, children
 from rtamt.language.operators import Pointwise, Shift, Since, Tense, Until, Window
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.early import connects
 
 if TYPE_CHECKING:

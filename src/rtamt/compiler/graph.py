@@ -17,8 +17,8 @@ from rtamt.compiler.time_graph import SampledGraphs, graphs_of
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.lazy_dataclasses import dataclass, field, fields, replace
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, field, fields, replace
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:

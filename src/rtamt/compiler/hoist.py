@@ -18,9 +18,9 @@ from collections import Counter
 from math import isfinite, isinf
 
 from rtamt.language.formula import Parameter
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

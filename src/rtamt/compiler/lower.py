@@ -16,7 +16,7 @@ from rtamt.compiler.program import CallSite, Instruction, Program, instruction
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import rank_of
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

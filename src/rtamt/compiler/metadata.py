@@ -10,8 +10,8 @@ from fractions import Fraction
 from types import MappingProxyType
 
 from rtamt.errors import UsageError
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -17,8 +17,8 @@ from __future__ import annotations
 from types import MappingProxyType
 
 from rtamt.compiler.hoist import hoist
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping

@@ -14,8 +14,8 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder
 from rtamt.language.operators import STL, Until, Window
 from rtamt.language.parameters import with_values
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.discrete import Discrete

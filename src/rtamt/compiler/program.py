@@ -25,9 +25,9 @@ from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.desugar import written
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DOMAINS

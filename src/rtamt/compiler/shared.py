@@ -11,8 +11,8 @@ from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.contents import leaves_of
 from rtamt.language.formula import Formula, Parameter
 from rtamt.language.parameters import with_values
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 

@@ -11,8 +11,8 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.records import Blocks, Compiled
 from rtamt.language.undefined_value import meaning_of
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import as_written
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from math import inf
 from rtamt.compiler.lower import Lowering
 from rtamt.compiler.program import Instruction
 from rtamt.language.operators import Tense
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -10,8 +10,8 @@ from rtamt.errors import UsageError
 from rtamt.language.contents import types_of
 from rtamt.language.formula import postorder
 from rtamt.language.undefined_value import UndefinedAtTickError
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.coding import codes_of
 

@@ -13,8 +13,8 @@ from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Session, TickDefinition
 from rtamt.engine.native import core
 from rtamt.language.parameters import with_values
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:

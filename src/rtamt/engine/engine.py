@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

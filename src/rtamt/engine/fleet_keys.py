@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,8 +7,8 @@ import sys
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.desugar import written
 from rtamt.signals import sampling_period
 

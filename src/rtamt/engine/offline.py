@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 
 from rtamt.engine.engine import engine_of
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:

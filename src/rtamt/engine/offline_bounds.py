@@ -5,8 +5,8 @@ The definitions are imported on use: the start of most programs would pay for th
 
 from __future__ import annotations
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 from rtamt.signals.outcomes import BoundedSignal
 
 if TYPE_CHECKING:

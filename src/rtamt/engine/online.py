@@ -9,8 +9,8 @@ from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Formula
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rtamt.lazy_typing import Any
+from rtamt.lazy.typing import Any
 
 
 class SlowPath:

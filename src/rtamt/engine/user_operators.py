@@ -14,8 +14,8 @@ from functools import partial
 from rtamt.errors import EvaluationError, StlError, UsageError
 from rtamt.language.definitions.dense import QUARTERS, Steps
 from rtamt.language.operators import Blocks, Bounds, Compiled
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.reference.definition_adapter import (
     DefinedEvents,
     DefinedSamples,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Protocol
 
 from rtamt.language.formula import Apply, Const, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Until, Window
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode, window_of
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from rtamt.explain.wording import predicate_text, reading
 from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Var
 from rtamt.language.value_types import value_text
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 

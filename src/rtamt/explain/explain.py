@@ -18,7 +18,7 @@ from rtamt.explain.signals import Signals, truths
 from rtamt.explain.wording import cause, predicate_text, summary
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import PAGE
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.semantics import boolean, no_verdict
 from rtamt.rewrite.structure import Structure, literal
 from rtamt.signals.instants import Cells, StepFunction, two_valued

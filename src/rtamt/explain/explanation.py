@@ -7,8 +7,8 @@ from html import escape
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.signals.datetimes import nanoseconds_of
 
 if TYPE_CHECKING:

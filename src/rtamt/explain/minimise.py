@@ -12,8 +12,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.explain.signals import truths
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import literal, reaches
 from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 

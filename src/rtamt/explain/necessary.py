@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.explain.propagate import Asked, Demands
 from rtamt.language.formula import Var
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 

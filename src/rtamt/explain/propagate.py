@@ -14,8 +14,8 @@ from rtamt.explain.witnesses import blocking, reaching, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
 from rtamt.language.shares import rank_of
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Place, opcode, window_of
 from rtamt.signals.instants import NONE, Cells
 

@@ -18,7 +18,7 @@ from rtamt.explain.propagate import Demands
 from rtamt.explain.signals import Signals, truths
 from rtamt.language.formula import Apply, Const, Formula, Var, children
 from rtamt.language.records import Ahead, Pointwise, Shift, Sort, Source, Sum, Tense, Window
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.structure import CHOOSING, NEGATION, NEVER, Structure, own_reach, window_of
 from rtamt.rewrite.truth import rebuilt

@@ -6,7 +6,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Formula, Var, children
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import CHOOSING, NEGATION, opcode
 from rtamt.signals.instants import Cells, StepFunction, two_valued
 

@@ -14,7 +14,7 @@ from rtamt.engine.dense.monitor import DenseMonitor
 from rtamt.engine.discrete.monitor import Monitor, last_settled_time
 from rtamt.fleet.reports import FleetBounds, FleetCausation, FleetChanges, FleetPoints, FleetVerdicts
 from rtamt.fleet.updates import FleetUpdate, Released
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.verdicts.early.causation import CausationMonitor
 from rtamt.verdicts.early.dense_eager import DenseEagerMonitor
 from rtamt.verdicts.early.discrete_eager import EagerMonitor

@@ -22,7 +22,7 @@ from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.desugar import written
 from rtamt.signals.counting import DOUBLES
 

@@ -12,9 +12,9 @@ from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
-from rtamt.lazy_numpy import np
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.outcomes import Interval
 
 if TYPE_CHECKING:

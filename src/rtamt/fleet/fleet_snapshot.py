@@ -11,7 +11,7 @@ from math import isfinite, isnan, nan
 
 from rtamt.errors import UsageError
 from rtamt.fleet.gaps import GAPS, Gaps
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 #: The first bytes of a state with late data or gaps, with a monitor for each key, and with one for each requirement.
 _MAGIC, MONITORS, REQUIREMENTS = b"RTAMTFLE", b"RTAMTFLM", b"RTAMTFLS"

@@ -9,8 +9,8 @@ from rtamt.engine import Query, Watched, engine_of
 from rtamt.errors import StlError
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.binding import Binding, union
 from rtamt.signals.sampling import sampled
 from rtamt.verdicts.preparation import is_storable, prepare

@@ -7,7 +7,7 @@ from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, shown
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.arrays import is_frame, is_mapping
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.fleet_snapshot import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.arrays import is_truth, number_of, timestamps
 
 if TYPE_CHECKING:

@@ -39,8 +39,8 @@ from rtamt.fleet.fields import (
 )
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.signals.episodes import Episode
 from rtamt.signals.outcomes import Change
 from rtamt.signals.ticks import TimeScale

@@ -11,7 +11,7 @@ from rtamt.errors import UsageError, shown
 from rtamt.fleet.fields import DATA, INTEGER, KIND, NATURAL, REAL, TEXT, Field, Source, damaged, many, row
 from rtamt.fleet.fleet_snapshot import MONITORS, REQUIREMENTS
 from rtamt.fleet.keys import MOST, is_padded
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,7 +10,7 @@ from rtamt.fleet.late_data import InOrder, Reordered
 from rtamt.fleet.suite import Suite
 from rtamt.language.units.durations import duration
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.settings import EVALUATION_SETTINGS
 from rtamt.signals.binding import Binding
 from rtamt.specification import Specification

@@ -11,8 +11,8 @@ from rtamt.errors import EvaluationError, TraceError, UsageError, shown
 from rtamt.fleet.collectors import collector_of
 from rtamt.fleet.monitor_state import MonitorStates
 from rtamt.fleet.monitors_snapshot import Monitors, packed, require_same, unpacked
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.arrays import TIME, timestamps
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.verdicts.early.interval import LateSampleError

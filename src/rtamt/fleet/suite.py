@@ -14,7 +14,7 @@ from rtamt.fleet.suite_snapshot import packed, unpacked
 from rtamt.fleet.verdict_table import SELECTABLE, Row, VerdictTable, number_of
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.printing.printer import excerpt, to_text
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.signals.trace import Trace
 from rtamt.specification import Specification
 from rtamt.specification_recorded import Optional

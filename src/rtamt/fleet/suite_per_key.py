@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError, choices, placed, shown
 from rtamt.fleet.monitors_snapshot import packed_requirements, unpacked_requirements
 from rtamt.fleet.reports import SuiteUpdate
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.data_errors import unknown_variable
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from rtamt.fleet.verdict_table import SELECTABLE
 from rtamt.language.parsing.sampling_clause import Sampling
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import BOOLEAN, Enumeration
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.signals.binding import Binding
 from rtamt.signals.discrete import DISCRETE
 from rtamt.signals.time_domains import DOMAINS

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import format_duration
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

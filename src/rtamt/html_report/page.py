@@ -15,8 +15,8 @@ from rtamt.extras import library
 from rtamt.html_report.scene_data import data_of
 from rtamt.html_report.signals import BUDGET, signals_of
 from rtamt.html_report.store import Store
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence

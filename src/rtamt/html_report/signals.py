@@ -6,8 +6,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.html_report.scene_data import line_data
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.plot.lines import Line
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from base64 import b64encode
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -15,7 +15,7 @@ from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Formula, Parameter, Span, Var, postorder
 from rtamt.language.value_types import Boolean, Enumeration
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -20,8 +20,8 @@ from rtamt.language.operators import STL, Fixity, Tense
 from rtamt.language.rows import function, infix
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Boolean, Enumeration
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

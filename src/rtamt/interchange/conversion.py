@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.tuples import NamedTuple
 
 
 class Rejection(NamedTuple):

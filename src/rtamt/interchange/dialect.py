@@ -15,9 +15,9 @@ from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_dataclasses import replace as with_changes
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import replace as with_changes
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

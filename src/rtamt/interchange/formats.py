@@ -10,7 +10,7 @@ from rtamt.interchange.c2po import read_c2po, write_c2po
 from rtamt.interchange.fret.export import write_fret
 from rtamt.interchange.fret.project import read_fret
 from rtamt.interchange.mtl import read_mtl, write_mtl
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

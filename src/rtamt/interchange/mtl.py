@@ -16,7 +16,7 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from fractions import Fraction

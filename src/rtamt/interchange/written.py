@@ -9,8 +9,8 @@ from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Enumeration
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rtamt.language.formula import KEPT, Apply, Var, postorder, store_contents
 from rtamt.language.value_types import Boolean, Enumeration
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,8 @@ from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Literal, TypeAlias
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Literal, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from rtamt.language.formula import Span
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Collection

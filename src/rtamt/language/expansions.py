@@ -9,8 +9,8 @@ from math import inf
 from rtamt.language.formula import Const, Formula, Interval
 from rtamt.language.rows import operator
 from rtamt.language.unwritten import AT_LEAST, BEFORE, GE, GT, PULSES
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rtamt.language.records import Known

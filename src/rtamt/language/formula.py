@@ -19,9 +19,9 @@ from __future__ import annotations
 from functools import partial
 
 from rtamt.language.equal_nodes import EqualNodes, representative
-from rtamt.lazy_dataclasses import dataclass, field, fields, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from rtamt.lazy.dataclasses import dataclass, field, fields, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rtamt.language.formula import Apply, Formula, Parameter, folds, postorder
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

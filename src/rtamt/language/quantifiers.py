@@ -29,9 +29,9 @@ from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
 from rtamt.language.units import rules as unit_rules
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, ClassVar, Literal
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, ClassVar, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -11,8 +11,8 @@ from types import MappingProxyType
 
 from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply, Formula, Interval
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

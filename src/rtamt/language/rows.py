@@ -13,7 +13,7 @@ from rtamt.language.records import (
     Pointwise,
     Sort,
 )
-from rtamt.lazy_typing import Any
+from rtamt.lazy.typing import Any
 
 #: The sorts of operands and results.
 N, F, C = Sort.NUMBER, Sort.FORMULA, Sort.CONDITION

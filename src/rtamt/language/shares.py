@@ -12,9 +12,9 @@ from math import ceil, inf
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Interval, Span
 from rtamt.language.units.durations import UNITS, decimal, exact, why_not_exact
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

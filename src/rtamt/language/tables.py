@@ -21,9 +21,9 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.unwritten import reaches
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,7 +6,7 @@ from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Compiled
 from rtamt.language.printing.printer import excerpt
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

@@ -21,7 +21,7 @@ from rtamt.language.records import (
     Tense,
 )
 from rtamt.language.rows import C, F, N, function, infix, operator, prefix
-from rtamt.lazy_typing import Any
+from rtamt.lazy.typing import Any
 
 
 def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:

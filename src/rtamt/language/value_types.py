@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import cached_property
 
 from rtamt.errors import did_you_mean
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

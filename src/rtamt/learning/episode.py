@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import EvaluationError, UsageError, choices, no_specification, shown
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.specification import Specification
 
 if TYPE_CHECKING:

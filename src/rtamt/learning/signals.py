@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 from rtamt.errors import TraceError, UsageError, choices, shown
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 
 #: Where a variable is found: ``("observation", 2)``, ``("info", "speed")``, ``("action",)``.
 Path: TypeAlias = tuple[Any, ...]

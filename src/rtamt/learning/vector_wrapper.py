@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.extras import library
 from rtamt.fleet.fleet import Fleet
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.learning.episode import INTERVAL, ROBUSTNESS, SHAPING, not_finite, settings_of
 from rtamt.learning.signals import SignalReader
 

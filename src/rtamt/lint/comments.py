@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Span
 from rtamt.language.parsing.lexer import comments
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

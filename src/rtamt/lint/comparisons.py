@@ -10,7 +10,7 @@ from rtamt.language.operators import STL, Source
 from rtamt.language.parsing.grammar import is_predicate
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import EQ, NE
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lint.edits import chain_operands, is_infix_here, keep_left, keep_right
 from rtamt.lint.found import Fix, Found
 from rtamt.lint.structure import JUNCTIONS

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import StlError
 from rtamt.language.parsing.lexer import comments
 from rtamt.language.substitution import substituted
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lint.report import findings
 
 if TYPE_CHECKING:

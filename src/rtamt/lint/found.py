@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from rtamt.errors import caret
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.parsing.lexer import tokenize, unquoted
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

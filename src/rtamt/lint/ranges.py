@@ -33,7 +33,7 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.printing.printer import number
 from rtamt.language.shares import ShareKind
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.lint.found import Found
 
 if TYPE_CHECKING:

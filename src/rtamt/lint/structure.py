@@ -10,7 +10,7 @@ from rtamt.language.formula import Apply, Const, Interval, Span
 from rtamt.language.operators import STL, Fixity, Pointwise, Sort, Tense, Window
 from rtamt.language.parsing.grammar import is_infix, is_number
 from rtamt.language.printing.printer import interval_text
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.lint.edits import (
     chain_operands,
     infix_at,

@@ -10,7 +10,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted, tokenize
 from rtamt.language.units.durations import UNITS
 from rtamt.language.words import functions, logical, symbols, temporal
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

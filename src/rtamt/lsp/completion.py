@@ -11,8 +11,8 @@ from rtamt.language.parsing.declarations import TYPES
 from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.parsing.lexer import NAME, is_word, quoted
 from rtamt.language.words import DECLARED_BY, QUANTIFYING, kind_of, meaning_of
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lint.found import Edit
 from rtamt.patterns import patterns
 

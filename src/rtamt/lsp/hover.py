@@ -11,7 +11,7 @@ from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import tokenize
 from rtamt.language.units.durations import format_duration
 from rtamt.language.words import DECLARED_BY, meaning_of
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lsp.imported import place_of
 from rtamt.patterns import patterns
 from rtamt.requirement_info import info_of

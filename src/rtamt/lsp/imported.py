@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rtamt.language.parsing.imports import PACKAGED, called
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lsp.outline import outline
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Const, Parameter, Var, postorder
 from rtamt.language.quantifiers import FieldOf
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

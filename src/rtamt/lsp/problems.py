@@ -9,8 +9,8 @@ from rtamt.errors import SpecificationError
 from rtamt.language.formula import Span
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.lint.fix import applied, with_fixes
 from rtamt.lint.found import Edit
 from rtamt.lint.rules import ALL

@@ -13,7 +13,7 @@ from pygls.uris import to_fs_path
 
 import rtamt
 from rtamt.language.formula import Span
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lsp.document import Analysis
 from rtamt.lsp.messages import Protocol, report
 from rtamt.lsp.places import Lines, Place

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Span

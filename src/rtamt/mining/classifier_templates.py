@@ -15,8 +15,8 @@ from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, show
 from rtamt.fleet.suite import Suite
 from rtamt.language.formula import Var
 from rtamt.language.units.durations import decimal
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.mining.direction import require, roles_of
 from rtamt.mining.grid import hardest
 from rtamt.mining.parameter_ranges import FARTHEST

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Var
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.mining.classifier_templates import builtin, features, own
 from rtamt.mining.decision_list import DecisionList, learn_list
 from rtamt.mining.mine import named_recordings

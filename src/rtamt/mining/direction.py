@@ -17,8 +17,8 @@ from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, 
 from rtamt.language.parameters import bounding
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import WHOLE
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.semantics import boolean
 

@@ -9,7 +9,7 @@ from math import gcd, lcm
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
-from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.mining.direction import require, roles_of
 from rtamt.mining.grid import Grid, hardest
 from rtamt.mining.parameter_ranges import (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices, shown
 from rtamt.language.units.durations import exact
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.mining.grid import Grid, digits, hardest
 from rtamt.mining.region import number, written
 from rtamt.signals.arrays import is_number

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.extras import library
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.plot import style
 
 if TYPE_CHECKING:

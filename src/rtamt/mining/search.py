@@ -7,8 +7,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.mining.region import Spent, written
 
 if TYPE_CHECKING:

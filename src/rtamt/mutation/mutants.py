@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import StlError, UsageError, line_and_column
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.substitution import substituted
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.mutation.equal_formulas import Keys
 from rtamt.mutation.operators import changes_of, describe_change
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.suite import Suite
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
 from rtamt.mutation.mutants import Mutant, mutants_of
 from rtamt.specification import Specification
 

@@ -17,8 +17,8 @@ from rtamt.language.shares import Share, ShareKind
 from rtamt.language.units.durations import UNITS
 from rtamt.language.unwritten import EQ, NE, TRUTH
 from rtamt.language.value_types import BOOLEAN, Enumeration
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

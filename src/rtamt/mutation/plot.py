@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.extras import library
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.plot import style
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, repr=False)

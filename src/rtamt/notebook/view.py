@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, shown
 from rtamt.html_report import Formula, Page, Row
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.notebook.static import StaticView
 from rtamt.plot.band import short_band
 from rtamt.plot.scene import scene

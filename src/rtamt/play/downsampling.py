@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

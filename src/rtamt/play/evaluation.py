@@ -11,8 +11,8 @@ from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt, to_text
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
 from rtamt.play.downsampling import line, number
 from rtamt.play.drawn_signals import sample_signals, signal_points
 from rtamt.play.recent import Recent

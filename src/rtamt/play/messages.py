@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError
 from rtamt.language.units.durations import positive_period
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.signals.arrays import is_number
 from rtamt.signals.time_domains import DOMAINS
 

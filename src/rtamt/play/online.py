@@ -6,8 +6,8 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.play.downsampling import kept_in, number, numbers, parts
 from rtamt.play.evaluation import error_as_data, inner, name_of, parse_request, result_of, select_requirement
 from rtamt.plot.band import band

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable

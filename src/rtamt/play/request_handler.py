@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.play.evaluation import Sources, evaluate_request, redraw
 from rtamt.play.messages import MessageError, Request
 from rtamt.play.online import known_at, redraw_replay, replay_request

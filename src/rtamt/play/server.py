@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from rtamt.extras import library
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.play.messages import MOST_BYTES
 from rtamt.play.request_handler import KINDS
 from rtamt.play.vocabulary import vocabulary

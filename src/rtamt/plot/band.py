@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.plot.x_axis import XAxis
 from rtamt.verdicts.early.at_start import StartMonitor
 from rtamt.verdicts.early.dense import DenseEarlyMonitor, push_tick

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.contents import variables
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges, matplotlib
 from rtamt.plot.lines import Line

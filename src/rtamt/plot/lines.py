@@ -5,8 +5,8 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.modules import np
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Const, Var
 from rtamt.language.parsing.grammar import is_predicate as is_comparison
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -12,7 +12,7 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Var
 from rtamt.language.records import Bounds, Fixity
 from rtamt.language.value_types import value_names
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.plot.band import Band, band
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch, moment_text
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.ahead import ahead
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of

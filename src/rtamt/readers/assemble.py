@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from rtamt import lazy_dataclasses
 from rtamt.errors import TraceError, choices, did_you_mean
-from rtamt.lazy_numpy import np
+from rtamt.lazy import dataclasses
+from rtamt.lazy.modules import np
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.numbers import numbers_of
 from rtamt.readers.silence import Silences
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from rtamt.signals.coding import Types
 
 
-@lazy_dataclasses.dataclass(frozen=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class Choice:
     """The caller's selection; see :func:`rtamt.read`."""
 
     time: str | None = None
     columns: tuple[str, ...] | None = None
-    names: Mapping[str, str] = lazy_dataclasses.field(default_factory=dict)
-    units: Mapping[str, str] = lazy_dataclasses.field(default_factory=dict)
+    names: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
     skip_nan: tuple[str, ...] = ()
     #: The types of signals whose values may be names.
-    types: Types = lazy_dataclasses.field(default_factory=dict)
+    types: Types = dataclasses.field(default_factory=dict)
     #: Seconds for which a value takes the place of samples that are left out.
     hold_for: Fraction | None = None
     #: Whether a value may be missing; discrete time needs one of every signal at every sample.
     gaps: bool = True
     #: Further columns of signals, for sources without the one in ``names``.
-    others: Mapping[str, tuple[str, ...]] = lazy_dataclasses.field(default_factory=dict)
+    others: Mapping[str, tuple[str, ...]] = dataclasses.field(default_factory=dict)
 
     def column_of(self, name: str, has: Callable[[str], bool]) -> str:
         """Return the column of a signal: the first of its columns that the source has, else the preferred one."""
@@ -49,7 +49,7 @@ class Choice:
         return next((each for each in (column, *self.others.get(name, ())) if has(each)), column)
 
 
-@lazy_dataclasses.dataclass(frozen=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class Selection:
     """The selection of one table: the field of timestamps, and the fields to read with the names of their signals."""
 
@@ -171,7 +171,7 @@ def select(source: Source, choice: Choice) -> list[Selection]:
     skipped = set(choice.skip_nan)
     for name, table, field in _wanted_signals(source, choice):
         of_table[id(table)].append(
-            (name, lazy_dataclasses.replace(field, skip_nan=name in skipped, type=choice.types.get(name)))
+            (name, dataclasses.replace(field, skip_nan=name in skipped, type=choice.types.get(name)))
         )
     found = []
     for table in source.tables:
@@ -390,6 +390,6 @@ def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
         return TimeScale(NANOSECOND, "seconds").ticks(times, name).view("m8[ns]")
 
     return {
-        name: lazy_dataclasses.replace(c, times=exact(c.times, name), table=exact(c.table, name))
+        name: dataclasses.replace(c, times=exact(c.times, name), table=exact(c.table, name))
         for name, c in channels.items()
     }

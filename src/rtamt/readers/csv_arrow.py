@@ -11,8 +11,8 @@ import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.readers.ahead import ahead
 from rtamt.readers.arrow import values_in_place
 from rtamt.readers.csv_cells import LARGEST

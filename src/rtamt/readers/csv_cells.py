@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import shown
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.csv import Header, is_boolean, is_number, number, truth
 from rtamt.readers.dates import DateError, Dates, is_date
 

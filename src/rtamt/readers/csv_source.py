@@ -8,8 +8,8 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.readers.csv import (
     Column,
     Header,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from datetime import date, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.signals.datetimes import has_length, nanoseconds_of
 
 if TYPE_CHECKING:

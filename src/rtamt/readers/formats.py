@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.readers.source import guarded, opening
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays

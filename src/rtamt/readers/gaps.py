@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.listing import show_time
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.source import printable
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.source import Field, Source, Table, damage, library, printable
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.arrays import is_masked, is_number
 from rtamt.signals.coding import encoded_value
 

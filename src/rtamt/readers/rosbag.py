@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.source import Field, Source, Table, printable, reason

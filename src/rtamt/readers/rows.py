@@ -7,8 +7,8 @@ from decimal import Decimal
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Table

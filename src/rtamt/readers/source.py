@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt import extras
 from rtamt.errors import StlError, TraceError
 from rtamt.files import nearest_file
-from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy.dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -9,7 +9,7 @@ from os.path import abspath, isfile
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import CHUNK, Source, guarded, library, missing_file, opening, printable
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, in_seconds
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_masked, is_number
 from rtamt.signals.counting import refuse_implausible

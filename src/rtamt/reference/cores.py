@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Const, Var, postorder
 from rtamt.language.operators import Pointwise
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.ground import ground

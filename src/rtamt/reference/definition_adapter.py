@@ -15,8 +15,8 @@ from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.shares import rank_arguments
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

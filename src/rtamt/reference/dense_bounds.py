@@ -15,9 +15,9 @@ from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import UndefinedAtTickError
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference.cores import core_of, inside_predicates
 from rtamt.reference.definition_adapter import signal_of
 from rtamt.reference.dense_robustness import last_read

@@ -18,7 +18,7 @@ from rtamt.language.definitions import dense as dense_definitions
 from rtamt.language.definitions.dense import QUARTERS, Steps, lifted, merged, pieces
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference.cores import core_of
 from rtamt.reference.dense_bounds import DenseKnowledge, bounds
 from rtamt.rewrite.early import at_one_instant, connects

@@ -18,9 +18,9 @@ from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.language.undefined_value import UndefinedAtTickError
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import spelled_out

@@ -19,8 +19,8 @@ from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
 from rtamt.reference.cores import core_of, inside_predicates
 from rtamt.reference.definition_adapter import arguments_of
 from rtamt.rewrite.desugar import written

@@ -16,8 +16,8 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sum, Tense
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.reference.definition_adapter import arguments_of, values_of
 from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds

@@ -10,7 +10,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference import dense_bounds, discrete_bounds
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.rewrite.semantics import boolean

@@ -12,7 +12,7 @@ from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
 from rtamt.language.units.durations import format_duration, is_less
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rtamt.language.contents import operators_of
 from rtamt.language.formula import Apply, Formula, Span, fold, folds
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.truth import read_conditions, rebuilt, with_truths
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import is_share
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.presence import tracked
 

@@ -11,8 +11,8 @@ from rtamt.language.contents import contents
 from rtamt.language.formula import Apply, Formula, Interval, folds
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:

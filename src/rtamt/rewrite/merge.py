@@ -7,8 +7,8 @@ from math import copysign
 
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
 from rtamt.language.operators import Bounds, builtin
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import expand, spelled_out_each
 from rtamt.rewrite.truth import rebuilt
 

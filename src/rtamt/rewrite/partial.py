@@ -8,7 +8,7 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from rtamt.language.operators import Operator, Sort, builtin
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

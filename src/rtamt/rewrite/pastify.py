@@ -22,7 +22,7 @@ from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.check import has_future, unbounded_future
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.partial import harmless, value_at

@@ -9,7 +9,7 @@ from __future__ import annotations
 from rtamt.language.formula import Apply, Var, fold, postorder
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Bounds
 from rtamt.language.unwritten import COLUMN, PRESENT
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon

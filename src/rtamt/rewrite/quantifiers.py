@@ -24,7 +24,7 @@ from rtamt.language.records import Known
 from rtamt.language.shares import ShareKind
 from rtamt.language.unwritten import PRESENT, WHERE_PRESENT
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.rewrite.desugar import standing_for
 from rtamt.rewrite.partial import may_fail
 from rtamt.rewrite.presence import channel_of

@@ -23,8 +23,8 @@ from rtamt.language.formula import Apply, Const, Formula, located
 from rtamt.language.operators import STL
 from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TypeAlias
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TypeAlias
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.truth import replaced, truth
 

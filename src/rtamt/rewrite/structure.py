@@ -15,7 +15,7 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL
 from rtamt.language.records import Bounds, Pointwise, Rank, Shift, Since, Sort, Tense, Until, Window
-from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Sort
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.unwritten import holds, is_truth
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

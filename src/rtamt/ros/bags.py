@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
 from rtamt.files import replacing
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
 from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED

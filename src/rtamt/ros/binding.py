@@ -9,7 +9,7 @@ from rtamt.errors import UsageError, shown, with_article
 from rtamt.extras import message_class
 from rtamt.language.contents import types_of, variables
 from rtamt.language.parsing.grammar import is_number
-from rtamt.lazy_dataclasses import dataclass, field, replace
+from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.rewrite.check import unbounded_future
 from rtamt.ros.fields import Path, check_path, path_of
 

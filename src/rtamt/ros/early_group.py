@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.ros.binding import EAGER, EVERY
 from rtamt.ros.group import Group, MessageGroup, SampledGroup
 from rtamt.signals.outcomes import VerdictRun

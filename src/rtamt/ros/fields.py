@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices, with_article
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.signals.arrays import is_number
 from rtamt.signals.recoding import Recoding
 

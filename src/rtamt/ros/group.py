@@ -7,7 +7,7 @@ from collections import deque
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.contents import variables
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:

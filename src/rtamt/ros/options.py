@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from rtamt.errors import UsageError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.metrics import add_metrics_options
 from rtamt.ros.binding import INSTANTS, VERDICTS, bind
 from rtamt.ros.monitor import RosMonitor

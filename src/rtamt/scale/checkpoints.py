@@ -16,8 +16,8 @@ from typing import Any
 from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.files import replacing
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.scale.recordings import is_remote
 
 _MAGIC = b"RTAMT-CHECKPOINT 1\n"

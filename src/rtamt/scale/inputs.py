@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.fleet.suite import Suite
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

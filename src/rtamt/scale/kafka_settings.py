@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError, UsageError
 from rtamt.extras import library
 from rtamt.files import nearest_file
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.readers.formats import SUFFIXES, is_bag
 
 if TYPE_CHECKING:

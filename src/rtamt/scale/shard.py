@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import EvaluationError, StlError, TraceError, UsageError, WaitedError
 from rtamt.fleet.fleet import Fleet
 from rtamt.fleet.reports import FleetPoints, SuiteUpdate
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.scale.arrivals import Arrivals
 from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.signals.counting import is_implausible

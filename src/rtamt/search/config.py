@@ -34,7 +34,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError, choices, did_you_mean, shown
 from rtamt.extras import library
 from rtamt.files import open_text
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
 from rtamt.specification_loader import load, parse

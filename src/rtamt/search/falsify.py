@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.language.printing.printer import to_text
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.search.executor import Enough, Runs
 from rtamt.search.log import Evaluation, Record
 from rtamt.search.optimizers import optimizer as named_optimizer

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     import os

@@ -21,8 +21,8 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from rtamt.errors import UsageError, shown, with_article
-from rtamt.lazy_dataclasses import dataclass, fields
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, fields
+from rtamt.lazy.modules import np
 from rtamt.signals.arrays import is_number
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import UsageError
 from rtamt.files import write_text
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     import os

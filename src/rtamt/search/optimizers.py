@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.errors import UsageError, choices
 from rtamt.extras import library
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.batch import evaluate_requirements
 from rtamt.errors import StlError, UsageError, did_you_mean, shown
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.search.inputs import Range
 from rtamt.search.log import Evaluation
 from rtamt.signals.arrays import TIME, is_number

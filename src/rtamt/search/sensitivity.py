@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.extras import library
 from rtamt.language.printing.printer import to_text
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.search.executor import Enough, Runs, count
 from rtamt.search.log import Evaluation, Record
 

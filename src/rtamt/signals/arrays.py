@@ -12,10 +12,9 @@ from os import PathLike, fspath
 
 from rtamt.errors import TraceError, UsageError, shown, with_article
 from rtamt.language.units.durations import UNITS, check_unit, in_seconds
-from rtamt.lazy_datetime import dt
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import dt, np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import counting
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible

@@ -7,8 +7,8 @@ under another name, perhaps in another unit.
 from __future__ import annotations
 
 from rtamt.errors import TraceError, choices
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, is_frame, is_mapping
 from rtamt.signals.time_columns import check_frame, split_unit
 from rtamt.signals.trace import Trace

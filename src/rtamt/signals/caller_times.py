@@ -6,9 +6,9 @@ from fractions import Fraction
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.value_types import BOOLEAN, Enumeration
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

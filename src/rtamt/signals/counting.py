@@ -7,8 +7,8 @@ from fractions import Fraction
 from numbers import Integral
 
 from rtamt.errors import TraceError, shown
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

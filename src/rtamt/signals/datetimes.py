@@ -7,9 +7,8 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_datetime import dt
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import dt, np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:

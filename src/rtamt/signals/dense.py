@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from rtamt.errors import StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import positive_period
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.coding import NO_TYPES

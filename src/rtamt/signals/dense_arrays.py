@@ -6,8 +6,8 @@ from math import isnan, nan
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of

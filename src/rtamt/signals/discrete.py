@@ -7,9 +7,9 @@ from math import isfinite
 
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
 from rtamt.language.units.durations import UNITS, decimal, positive_period
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import (
     TIME,

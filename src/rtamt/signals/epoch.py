@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from rtamt.language.units.durations import decimal
-from rtamt.lazy_datetime import dt
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.modules import dt
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -11,8 +11,8 @@ from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.modules import np
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping, number_of
 

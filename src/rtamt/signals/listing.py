@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import groupby
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import date_text, is_epoch, moment_text
 

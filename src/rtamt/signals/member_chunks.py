@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, is_mapping

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError
 from rtamt.language.quantifiers import Field
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays

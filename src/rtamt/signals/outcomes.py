@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from rtamt.errors import EvaluationError
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from math import ceil, floor
 
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, format_duration
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.listing import show_time
 from rtamt.signals.sampling_period import merged
 

@@ -6,7 +6,7 @@ from math import isfinite, isnan
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.coding import NO_TYPES, encoded_value, no_truth
 from rtamt.signals.counting import implausible, is_implausible

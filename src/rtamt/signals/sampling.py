@@ -8,9 +8,9 @@ from __future__ import annotations
 from math import isnan
 
 from rtamt.errors import TraceError, UsageError
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.resampling import Sampler

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.units.durations import format_duration
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:

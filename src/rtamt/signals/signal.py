@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.sampling_period import RegularTimes
 
 if TYPE_CHECKING:

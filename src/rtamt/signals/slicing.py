@@ -5,9 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rtamt.errors import TraceError, UsageError, shown
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -25,10 +25,9 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_datetime import dt
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.modules import dt, np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.counting import (
     DOUBLES,

@@ -7,8 +7,8 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

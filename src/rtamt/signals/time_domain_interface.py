@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from importlib import import_module
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any, ClassVar
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.ground import grounds
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.sampling_period import TOLERANCE

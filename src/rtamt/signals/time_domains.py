@@ -5,8 +5,8 @@ from __future__ import annotations
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices, shown
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import TOLERANCE

@@ -14,9 +14,9 @@ from importlib import import_module
 
 from rtamt.errors import TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration, positive_period
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, overload
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing

@@ -13,9 +13,9 @@ from math import lcm
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.language.units.pint_units import in_unit, parsed, registry, same_text
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray

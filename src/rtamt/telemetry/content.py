@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 from rtamt.language.value_types import value_names
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.plot.band import band
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals.epoch import is_epoch

@@ -24,7 +24,7 @@ from math import isfinite
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

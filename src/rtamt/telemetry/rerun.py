@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError
 from rtamt.extras import library
 from rtamt.files import replacing
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.telemetry.content import SATISFIED, VIOLATED, content_of
 from rtamt.telemetry.messages import ROOT, topic
 

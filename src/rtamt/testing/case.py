@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold
 from rtamt.language.operators import Bounds, Fixity, Language, Operator, Tense
 from rtamt.language.printing.printer import to_text
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
 from rtamt.testing.strategies import formulas
 
 if TYPE_CHECKING:

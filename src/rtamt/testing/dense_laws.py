@@ -10,7 +10,7 @@ from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.errors import EvaluationError
 from rtamt.language.contents import variables
 from rtamt.language.operators import Tense
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.reference import dense_robustness as dense_reference
 from rtamt.signals.dense import Dense, record_dense
 from rtamt.testing.case import NAMES, ONE, Case, check_own_code

@@ -16,7 +16,7 @@ from rtamt.language.formula import Apply, Formula, Var, fold
 from rtamt.language.operators import STL, Language, Operator, Sort, Tense
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.reference import discrete_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import horizon

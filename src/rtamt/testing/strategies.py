@@ -13,8 +13,8 @@ from rtamt.language.formula import Apply, Const, Formula, Interval, Var
 from rtamt.language.operators import STL, Bounds, Language, Operator, Sort, Tense
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.shares import Share, ShareKind, rank_arguments
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
 from rtamt.reference import discrete_robustness as reference
 
 if TYPE_CHECKING:

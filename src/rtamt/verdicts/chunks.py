@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine import Evaluators
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
-from rtamt.lazy_dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals.episodes import WindowTracker, place_in
 from rtamt.verdicts.decompose import Anchored, Leaf, anchor, check_in_chunks

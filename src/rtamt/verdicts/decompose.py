@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from rtamt.errors import BoundError
 from rtamt.language.formula import Apply, Formula, Var, children, fold, postorder
 from rtamt.language.operators import Pointwise, Sort, Tense, Window
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.check import has_future, unbounded_future
 
 if TYPE_CHECKING:

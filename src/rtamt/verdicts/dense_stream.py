@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.dense.monitor import finish_ticks, known_ticks, push_ticks
 from rtamt.errors import TraceError
 from rtamt.language.contents import own_variables
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.chunks import Group, Requirement, StreamResult

@@ -8,8 +8,8 @@ from __future__ import annotations
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, did_you_mean, shown
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:

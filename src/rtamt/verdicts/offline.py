@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import EvaluationError
 from rtamt.language.contents import own_variables
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.semantics import no_verdict

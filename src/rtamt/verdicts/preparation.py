@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rtamt.compiler.stored import is_built_in
 from rtamt.engine.backend import compiled_backend
 from rtamt.language.formula import Apply, Var, fold, postorder
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.discrete import DISCRETE

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Var
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.semantics import no_verdict
 from rtamt.signals.discrete import DISCRETE, DiscreteTrace
 from rtamt.verdicts.decompose import Leaf

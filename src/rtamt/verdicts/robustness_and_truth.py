@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Const, Formula, Var
 from rtamt.language.operators import STL
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.semantics import apply_semantics, boolean
 from rtamt.signals.signal import Signal
 from rtamt.signals.time_domain_interface import DomainTrace

@@ -20,7 +20,7 @@ from rtamt.language.parameters import bounds_of
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
 from rtamt.verdicts.robustness_and_truth import Outputs, outputs_of

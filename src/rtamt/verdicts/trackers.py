@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Var
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.discrete import DiscreteTrace
 from rtamt.signals.episodes import place_in
 

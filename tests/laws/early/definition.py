@@ -12,7 +12,7 @@ from rtamt import Interval, Verdict, VerdictRun
 from rtamt.compiler.graph import FOREVER
 from rtamt.language.contents import variables
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.reference import dense_bounds, discrete_bounds, discrete_causation, eager_verdicts
 from rtamt.reference.dense_bounds import DenseKnowledge
 from rtamt.reference.discrete_bounds import ANYTHING, Knowledge

@@ -12,7 +12,7 @@ from rtamt.cli.runner import LARGE
 from rtamt.cli.terminal import printed
 from rtamt.errors import StlError
 from rtamt.html_report import File, Formula, Page, Row
-from rtamt.lazy_dataclasses import replace
+from rtamt.lazy.dataclasses import replace
 from rtamt.plot.band import short_band
 from rtamt.plot.scene import scene
 from rtamt.readers.sql import shown

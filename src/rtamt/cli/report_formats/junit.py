@@ -7,7 +7,7 @@ from xml.etree import ElementTree as ET
 
 from rtamt.cli.report_formats.messages import sentence
 from rtamt.cli.terminal import printed
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,8 +10,8 @@ from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvalua
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import calls_of, core, creation_error
 from rtamt.language.undefined_value import UndefinedAtTickError, undefined
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.reference import dense_robustness as reference
 from rtamt.rewrite.desugar import desugar
 from rtamt.signals.dense import Dense

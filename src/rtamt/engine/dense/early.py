@@ -10,7 +10,7 @@ from rtamt.engine.early import EarlyDefinition, EarlyProgram, EarlyQuery, Group
 from rtamt.engine.native import core
 from rtamt.language.contents import own_variables
 from rtamt.language.operators import STL
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of
 from rtamt.signals.coding import codes_of
 from rtamt.signals.outcomes import Causation

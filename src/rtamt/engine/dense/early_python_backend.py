@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
-from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.reference.dense_bounds import DenseKnowledge, Parts, StepBounds, bounds, least
 from rtamt.reference.dense_causation import causation
 from rtamt.reference.dense_causation import least as least_caused

@@ -9,9 +9,9 @@ from rtamt.engine.native import calls_of, core, creation_error, culprit
 from rtamt.engine.offline_bounds import bounded_signal, signal_bounds
 from rtamt.engine.user_operators import defined_signal
 from rtamt.language.undefined_value import UNNAMED, undefined, undefined_text
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.horizon import reach
 from rtamt.signals.arrays import TIME
 from rtamt.signals.dense import Dense, DenseTrace

@@ -14,9 +14,9 @@ from rtamt.engine.backend import RefusedError, Session
 from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
 from rtamt.language.contents import own_variables
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.signals.dense_arrays import changes, minimum
 from rtamt.usage_guard import UsageGuard, exclusive

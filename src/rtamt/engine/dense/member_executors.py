@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.dense.monitor import DenseMonitor, push_ticks
 from rtamt.engine.dense.steps import Steps, constant
 from rtamt.engine.quantifiers import QuantifierExecutor as Quantifier
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.language.contents import own_variables
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

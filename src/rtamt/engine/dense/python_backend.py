@@ -7,8 +7,8 @@ definition.
 from __future__ import annotations
 
 from rtamt.engine.backend import RefusedError
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.reference.dense_robustness import DenseReferenceMonitor
 from rtamt.usage_guard import UsageGuard, exclusive
 

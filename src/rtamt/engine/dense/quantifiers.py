@@ -10,7 +10,7 @@ from rtamt.engine.dense.steps import Inputs, member_of
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import check_unit
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals import arrays, dense_arrays, members
 from rtamt.signals.data_errors import missing_field, nan_of_members
 from rtamt.signals.inexact import gaps_of

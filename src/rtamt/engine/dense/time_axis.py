@@ -11,7 +11,7 @@ from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.shares import rank_of
 from rtamt.language.units.durations import decimal
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
 from rtamt.rewrite.structure import NEVER

@@ -12,7 +12,7 @@ from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
 from rtamt.engine.native import calls_of, core, core_monitor
 from rtamt.errors import UsageError
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import desugar
 
 if TYPE_CHECKING:

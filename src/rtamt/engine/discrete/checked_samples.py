@@ -8,8 +8,8 @@ from rtamt.engine.online import OnlineMonitor
 from rtamt.engine.slow_path import inner_of
 from rtamt.errors import TraceError, UsageError
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Timestamps
 from rtamt.signals.episodes import plain_times

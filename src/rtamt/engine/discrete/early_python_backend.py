@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.compiler.graph import FOREVER
 from rtamt.engine.backend import RefusedError
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 from rtamt.reference.discrete_causation import NOTHING, causation
 from rtamt.signals.outcomes import Causation, Change, Interval

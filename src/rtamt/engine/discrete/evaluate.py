@@ -14,7 +14,7 @@ from rtamt.engine.native import calls_of, core, creation_error, culprit
 from rtamt.engine.user_operators import defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
 from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals.arrays import TIME, columns_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible

@@ -8,9 +8,9 @@ from rtamt.engine.native import MonitorBase
 from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
 from rtamt.engine.slow_path import SlowPath, inner_of
 from rtamt.language.units.durations import check_unit
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete

@@ -12,7 +12,7 @@ from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.backend import RefusedError
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.reference.discrete_robustness import ReferenceMonitor, history
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.discrete.member_executors import Executor, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays
 from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members

@@ -6,9 +6,9 @@ from fractions import Fraction
 from functools import lru_cache
 
 from rtamt.engine.native import read_columns
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
 from rtamt.signals.sampling_period import RegularTimes

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
 from rtamt.errors import TraceError, UsageError
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.time_axis import TimeAxis
 from rtamt.language.formula import Apply, Formula, Var, folds
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.structure import settling

@@ -21,9 +21,9 @@ from rtamt.language.operators import STL, Sort
 from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 from rtamt.errors import SpecificationError
 from rtamt.language.formula import Span
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Interval
 from rtamt.language.operators import STL
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable

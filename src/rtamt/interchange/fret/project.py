@@ -16,8 +16,8 @@ from rtamt.interchange.fret.sentence import Duration, Sentence, parse_sentence
 from rtamt.interchange.written import Names, ReadRequirement, specification_text
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.units.durations import decimal
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -12,7 +12,7 @@ from typing import Literal
 from rtamt.errors import SpecificationError
 from rtamt.interchange.fret.expressions import KEYWORDS, Expression, ExpressionParser, conjunction
 from rtamt.language.formula import Span
-from rtamt.lazy_dataclasses import dataclass
+from rtamt.lazy.dataclasses import dataclass
 
 #: Whether a condition triggers where it becomes true, or wherever it holds.
 Condition = Literal["regular", "holding"]

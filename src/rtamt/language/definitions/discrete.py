@@ -20,8 +20,8 @@ import math
 from fractions import Fraction
 
 from rtamt.language.definitions.pointwise import div, mul, sub
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -24,9 +24,9 @@ from __future__ import annotations
 import math
 
 from rtamt.language.definitions import pointwise as p
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

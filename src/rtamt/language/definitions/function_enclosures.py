@@ -18,7 +18,7 @@ import math
 
 from rtamt.language.definitions import functions as f
 from rtamt.language.definitions.enclosures import Enclosure, each, hull, one, widened
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable

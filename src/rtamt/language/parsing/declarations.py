@@ -19,7 +19,7 @@ from rtamt.language.parsing.scope import Scope
 from rtamt.language.quantifiers import begins_quantifier
 from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, WHOLE, Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING, Literal
+from rtamt.lazy.typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

@@ -6,7 +6,7 @@ from rtamt.errors import choices, did_you_mean
 from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
 from rtamt.language.parsing.lexer import NO_ARROW, is_word, quoted
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

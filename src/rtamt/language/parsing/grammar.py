@@ -5,7 +5,7 @@ from __future__ import annotations
 from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import Fixity, Sort
 from rtamt.language.value_types import BOOLEAN, LITERALS
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.language.formula import Formula

@@ -20,7 +20,7 @@ from rtamt.language.parsing.imports import (
 )
 from rtamt.language.parsing.requirements import RequirementParser
 from rtamt.language.parsing.scope import Scope
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

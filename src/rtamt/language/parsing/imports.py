@@ -13,9 +13,9 @@ import stat
 from rtamt.errors import StlError, did_you_mean
 from rtamt.files import nearest_file
 from rtamt.language.parsing.templates import all_placed
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -14,7 +14,7 @@ from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.template_names import bound, constants_of
 from rtamt.language.units.durations import UNITS, exact, is_less, why_not_exact
 from rtamt.language.value_types import BOOLEAN
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.errors import SpecificationError

@@ -23,9 +23,9 @@ from itertools import accumulate, compress
 from rtamt.errors import UsageError
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import NUMBER
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, overload
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
     from rtamt.language.operators import Language

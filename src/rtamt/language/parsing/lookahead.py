@@ -7,7 +7,7 @@ from itertools import islice, pairwise
 from rtamt.language.operators import Fixity
 from rtamt.language.parsing.grammar import THEN
 from rtamt.language.parsing.typed_parser import TypedParser
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.language.parsing.lexer import Token

@@ -17,7 +17,7 @@ from rtamt.language.parsing.templates import Use, Uses
 from rtamt.language.quantifiers import field_of
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing_extensions import Self

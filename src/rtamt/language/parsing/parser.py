@@ -47,8 +47,8 @@ from rtamt.language.parsing.templates import Template, parse_use
 from rtamt.language.parsing.type_rules import takes_number
 from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
 from rtamt.language.shares import parse_share
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

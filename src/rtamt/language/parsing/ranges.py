@@ -13,7 +13,7 @@ future samples, and reject a sample outside. Evaluations of exact recordings che
 from __future__ import annotations
 
 from rtamt.language.formula import Span
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.language.parsing.declarations import DeclarationParser

@@ -12,8 +12,8 @@ from rtamt.language.parsing.parser import FormulaParser
 from rtamt.language.parsing.templates import begins_template
 from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.value_types import UNKNOWN
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

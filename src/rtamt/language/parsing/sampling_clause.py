@@ -14,8 +14,8 @@ from __future__ import annotations
 from rtamt.errors import UsageError, choices
 from rtamt.language.formula import Span
 from rtamt.language.units.durations import UNITS, format_duration, positive_period
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from types import MappingProxyType
 
-from rtamt.lazy_dataclasses import dataclass, field
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping

@@ -52,7 +52,7 @@ from rtamt.language.parsing.templates import begins_template, parse_template
 from rtamt.language.quantifiers import begins_group
 from rtamt.language.tables import begins_table
 from rtamt.language.value_types import UNKNOWN
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping

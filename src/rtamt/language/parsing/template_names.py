@@ -11,7 +11,7 @@ from math import isinf
 from rtamt.errors import BoundError
 from rtamt.language.formula import Const, Var
 from rtamt.language.units.durations import exact
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

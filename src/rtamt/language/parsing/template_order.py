@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from rtamt.language.parsing.lexer import places_of
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

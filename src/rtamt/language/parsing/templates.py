@@ -21,9 +21,9 @@ from rtamt.language.formula import Apply, Const, Formula, Span, Var, children, l
 from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
-from rtamt.lazy_dataclasses import dataclass, field, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.dataclasses import dataclass, field, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -12,7 +12,7 @@ from rtamt.language.operators import STL, Sort, Tense
 from rtamt.language.parsing.grammar import is_literal, is_number
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN, LITERALS, UNKNOWN, Ambiguous, Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -20,7 +20,7 @@ from rtamt.language.parsing.type_rules import (
     typed,
 )
 from rtamt.language.value_types import Ambiguous, Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -16,7 +16,7 @@ from rtamt.language.printing.printer import number, rational_text
 from rtamt.language.printing.writing import LONGEST, text_of
 from rtamt.language.units.durations import UNITS
 from rtamt.language.unwritten import TRUTH, WHERE_PRESENT, is_truth
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -10,7 +10,7 @@ from rtamt.language.parsing.grammar import ELSE, INFINITY, THEN, is_infix, is_pr
 from rtamt.language.parsing.lexer import NAME, TOPIC, is_word, quoted
 from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
 from rtamt.language.value_types import Enumeration
-from rtamt.lazy_typing import TYPE_CHECKING, TypeGuard
+from rtamt.lazy.typing import TYPE_CHECKING, TypeGuard
 
 if TYPE_CHECKING:
     from rtamt.language.printing.writing import Piece

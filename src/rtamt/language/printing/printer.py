@@ -23,8 +23,8 @@ from rtamt.language.printing.parentheses import (
 from rtamt.language.printing.writing import EXCERPT, LONGEST, excerpts_of, text_of
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.language.unwritten import PRESENT, TRUTH, WHERE_PRESENT
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

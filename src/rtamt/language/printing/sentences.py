@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.printing.english import begins_with_name, to_english
 from rtamt.language.printing.writing import PAGE
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

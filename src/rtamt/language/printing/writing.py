@@ -8,7 +8,7 @@ a text beyond a limit is abbreviated: its beginning, followed by the size of the
 from __future__ import annotations
 
 from rtamt.language.formula import COUNTLESS, Formula, postorder, size
-from rtamt.lazy_typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -10,8 +10,8 @@ from rtamt.language.printing.printer import excerpt
 from rtamt.language.quantifiers import FieldOf
 from rtamt.language.records import Tense
 from rtamt.language.units.dimensions import UNCHECKED, MisfitError, Number, Quantity, declared
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -22,9 +22,9 @@ from math import inf, isclose, pi
 from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.language.units.pint_units import UnknownUnitError, is_none, resolved, shortest_text, unit_text
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_tuples import NamedTuple
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

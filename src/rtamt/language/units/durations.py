@@ -23,9 +23,9 @@ from numbers import Rational, Real
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices, shown
-from rtamt.lazy_numpy import np
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING, SupportsFloat, TypeAlias
+from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING, SupportsFloat, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

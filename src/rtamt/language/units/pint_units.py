@@ -11,9 +11,9 @@ from math import inf
 
 from rtamt.errors import StlError
 from rtamt.extras import library
-from rtamt.lazy_dataclasses import dataclass
-from rtamt.lazy_patterns import lazy_pattern
-from rtamt.lazy_typing import TYPE_CHECKING, Any, TypeAlias
+from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
+from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -25,8 +25,8 @@ from rtamt.language.units.dimensions import (
     resolve,
     times,
 )
-from rtamt.lazy_dataclasses import replace
-from rtamt.lazy_typing import TYPE_CHECKING, TypeAlias
+from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

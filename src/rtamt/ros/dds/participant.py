@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import UsageError, choices, shown
 from rtamt.extras import library
 from rtamt.files import nearest_file
-from rtamt.lazy_dataclasses import dataclass, replace
+from rtamt.lazy.dataclasses import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

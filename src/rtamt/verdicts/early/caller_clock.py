@@ -8,8 +8,8 @@ from itertools import takewhile
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.lazy_numpy import np
-from rtamt.lazy_tuples import NamedTuple
+from rtamt.lazy.modules import np
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 

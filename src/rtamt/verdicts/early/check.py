@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine import Watched
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
-from rtamt.lazy_dataclasses import dataclass, replace
-from rtamt.lazy_numpy import np
+from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.modules import np
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays

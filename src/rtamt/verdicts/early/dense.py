@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
 from rtamt.language.units.durations import check_unit
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.errors import UsageError, did_you_mean, shown
-from rtamt.lazy_numpy import np
+from rtamt.lazy.modules import np
 from rtamt.signals import arrays
 
 if TYPE_CHECKING:

@@ -1,17 +1,20 @@
-"""NumPy, imported when it is first used: a monitor of plain numbers needs none, and its import takes longer than ours.
+"""Modules that are imported when they are first used.
 
-Every module takes ``np`` from here. A module that uses it where it is defined would import NumPy with itself.
+Every module takes ``np`` and ``dt`` from here. A monitor of plain numbers needs neither, and the import of NumPy takes
+longer than ours. A module that uses one of them where it is defined would import it with itself.
 
->>> from rtamt.lazy_numpy import np
->>> int(np.array([1, 2]).sum())
-3
+>>> from rtamt.lazy.modules import dt, np
+>>> int(np.array([1, 2]).sum()), dt.timedelta(minutes=1).total_seconds()
+(3, 60.0)
 """
 
 from __future__ import annotations
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import datetime as dt
+
     import numpy as np
 else:
     from importlib import import_module
@@ -26,6 +29,7 @@ else:
             self.__class__ = ModuleType
             return getattr(loaded, name)
 
+    dt = Unloaded("datetime")
     np = Unloaded("numpy")
 
-__all__ = ["np"]
+__all__ = ["dt", "np"]

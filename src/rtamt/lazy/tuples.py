@@ -14,7 +14,7 @@ pickle and pattern matching.
 
 from __future__ import annotations
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 else:
     from collections import _tuplegetter
 
-    from rtamt.lazy_dataclasses import INTERPRETED
+    from rtamt.lazy.dataclasses import INTERPRETED
 
     class _Bases:
         """The nominal base of classes, replaced by one that makes the class."""

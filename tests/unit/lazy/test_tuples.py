@@ -1,15 +1,12 @@
-"""Named tuples and regular expressions that are made at their first use are those of the standard library."""
+"""Named tuples of :mod:`rtamt.lazy.tuples` behave as those of the standard library."""
 
 import copy
 import pickle
-import subprocess
-import sys
 import typing
 
 import pytest
 
-from rtamt import lazy_tuples
-from rtamt.lazy_patterns import lazy_pattern
+from rtamt.lazy import tuples as lazy_tuples
 
 
 def made(base):
@@ -123,17 +120,3 @@ def test_defaults_stand_last():
         class Wrong(lazy_tuples.NamedTuple):
             a: int = 1
             b: int
-
-
-def test_patterns_are_those_of_the_standard_library_and_compiled_at_their_first_use():
-    lines = (
-        "import re, rtamt.lazy_patterns as ours",
-        "compiled = []; compile = re.compile",
-        "re.compile = lambda *given: compiled.append(given) or compile(*given)",
-        "word = ours.lazy_pattern('(?P<word>[a-z]+)', re.ASCII); assert not compiled",
-        "assert word.fullmatch('word')['word'] == 'word' and word.pattern == '(?P<word>[a-z]+)'",
-        "assert word.fullmatch('w1') is None and word.flags & re.ASCII and len(compiled) <= 2",
-    )
-    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True)
-    with pytest.raises(AttributeError):
-        _ = lazy_pattern("x").no_such_attribute

@@ -20,7 +20,7 @@ from __future__ import annotations
 from operator import attrgetter
 from types import MappingProxyType
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection

@@ -8,7 +8,7 @@ import typing
 
 import pytest
 
-from rtamt import lazy_typing
+from rtamt.lazy import typing as lazy_typing
 
 MONITOR = "assert rtamt.parse('always[0:1](x >= 3)').monitor().update(0, x=1.0) is None"
 

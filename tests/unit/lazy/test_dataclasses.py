@@ -1,4 +1,4 @@
-"""Classes of :mod:`rtamt.lazy_dataclasses` behave as those of the standard library."""
+"""Classes of :mod:`rtamt.lazy.dataclasses` behave as those of the standard library."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import pytest
 
-from rtamt import lazy_dataclasses
+from rtamt.lazy import dataclasses as lazy_dataclasses
 
 OPTIONS = [
     {"frozen": frozen, "slots": slots, "eq": eq, "repr": repr_}

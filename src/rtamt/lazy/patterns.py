@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from rtamt.lazy_typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from re import compile as lazy_pattern

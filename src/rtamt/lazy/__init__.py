@@ -1,0 +1,12 @@
+"""What the standard library and NumPy do at import, done at first use, so that a program starts faster.
+
+===========  ======================================================================
+module       purpose
+===========  ======================================================================
+typing       names of annotations, without the module :mod:`typing`
+modules      :mod:`numpy` and :mod:`datetime`, imported when they are first used
+patterns     regular expressions, compiled when they are first used
+dataclasses  data classes, whose methods are made when they are first called
+tuples       named tuples, whose constructor is compiled once a class has instances
+===========  ======================================================================
+"""
