@@ -191,7 +191,7 @@ def _run_job(args: argparse.Namespace, metrics: Metrics | None) -> Counter[str]:
     decode = decoder(args.format, _schemas(args.schema), args.message)
     if args.time_column == "":
         raise CommandError("a worker needs the time of each sample: name its field with --time-column")
-    reader = MessageReader(spec, decode, key=args.key, time=args.time_column, unit=args.time_unit or "s")
+    reader = MessageReader(spec, decode, key=args.key, time=args.time_column, unit=args.time_unit)
     settings = Settings(
         args.brokers,
         args.topic,

@@ -14,7 +14,7 @@ from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, as_array, is_masked
-from rtamt.signals.time_columns import is_stamps, split_unit
+from rtamt.signals.time_columns import check_index, is_stamps, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -109,6 +109,9 @@ def _dict(data: Mapping[Any, Any]) -> Source:
             # Each has its own column of timestamps, which no caller selects by name.
             tables.append(Table(shared.fields[1:], shared.load, time_field=shared.time_field))
         return Source("a dict", tuple(tables))
+    if not any(is_stamps(field_of(str(name)).name) for name in data):
+        for name, values in data.items():
+            check_index(values, str(name))
     return Source("a dict", (table_of({str(k): _array(v, str(k)) for k, v in data.items()}),))
 
 
@@ -130,7 +133,8 @@ def _read_structured(data: np.ndarray[Any, Any]) -> Source:
 def _pandas(frame: Any) -> Source:
     columns = {str(column): _pandas_column(frame.iloc[:, i]) for i, column in enumerate(frame.columns)}
     if len(columns) < len(frame.columns):
-        twice = next(str(c) for i, c in enumerate(frame.columns) if c in list(frame.columns[:i]))
+        names = list(map(str, frame.columns))  # 1 and "1" are one name
+        twice = next(name for i, name in enumerate(names) if name in names[:i])
         raise TraceError(f"the pandas frame has two columns called '{twice}'; rename one of them")
     index, time_column, axis = frame.index, None, None
     if type(index).__name__ == "PeriodIndex":
@@ -214,13 +218,18 @@ def _xarray(data: Any) -> Source:
             continue
         columns = {name: _floats(v.values) for name, v in along.items()}
         units = {name: str(v.attrs.get("units", "")) for name, v in along.items()}
-        time_column = None
+        for coord in [c for c in data.coords if data.coords[c].dims == (dim,)]:
+            columns[str(coord)] = data.coords[coord].values
+            units[str(coord)] = str(data.coords[coord].attrs.get("units", ""))
+        time_column, axis = None, None
         if dim in data.coords:
-            columns[str(dim)] = data.coords[dim].values
-            units[str(dim)] = str(data.coords[dim].attrs.get("units", ""))
-            timed = kind_of(columns[str(dim)]) == "time" or is_stamps(field_of(str(dim)).name)
+            kind = kind_of(columns[str(dim)])
+            timed = kind == "time" or is_stamps(field_of(str(dim)).name)
             time_column = str(dim) if timed else None
-        tables.append(table_of(columns, time_column, {name: unit for name, unit in units.items() if unit}))
+            # Rows are numbered by integers: what is measured is no number of a row.
+            axis = str(dim) if columns[str(dim)].dtype.kind == "f" else None
+        units = {name: unit for name, unit in units.items() if unit}
+        tables.append(table_of(columns, time_column, units, axis))
     notes = (f"left out, not one-dimensional: {', '.join(left_out)}",) if left_out else ()
     return Source("an xarray dataset", tuple(tables), notes=notes)
 

@@ -101,7 +101,10 @@ class TimestampColumn:
     def _find_unit(self, said: str | None) -> str | None:
         text = said if said is not None else self.field.unit
         if not text:
-            return unit_of(self.field.name)
+            unit = unit_of(self.field.name)
+            if unit is not None and not is_stamps(self.field.name):
+                self.notes.append(f"'{self.field.column}' is in {unit}, by its name")
+            return unit
         unit = unit_called(text)
         if unit is None:
             raise TraceError(

@@ -22,7 +22,7 @@ from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.scale.shard import Sample, key_problem
 from rtamt.signals.counting import is_implausible
 from rtamt.signals.datetimes import nanoseconds_of
-from rtamt.signals.time_columns import NAMES
+from rtamt.signals.time_columns import NAMES, unit_of
 
 if TYPE_CHECKING:
     from rtamt.fleet.suite import Suite
@@ -114,7 +114,8 @@ class MessageReader:
 
     In dense time a message may lack variables.
     ``key``: the field with the key of a sample; None for the key of the message. ``time``: the field with its time;
-    None for the first of the fields that have the name of a clock. ``unit``: of times that are numbers.
+    None for the first of the fields that have the name of a clock. ``unit``: of times that are
+    numbers; by default the one at the end of the name in ``time``, else seconds.
 
     >>> import rtamt
     >>> reader = MessageReader(rtamt.parse("speed <= 30"), decode_json, key="car")
@@ -129,12 +130,12 @@ class MessageReader:
         *,
         key: str | None = None,
         time: str | None = None,
-        unit: str = "s",
+        unit: str | None = None,
     ) -> None:
         self._decode = decode
         self._key = key
         self._clocks = NAMES if time is None else (time,)
-        self._scale = UNITS[check_unit(unit)]
+        self._scale = UNITS[check_unit(unit or unit_of(time or "") or "s")]
         self._inputs = inputs_of(spec)
         self._partial = is_dense(spec, {})
 

@@ -20,7 +20,7 @@ from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
-from rtamt.signals.time_columns import check_frame
+from rtamt.signals.time_columns import check_frame, check_index, is_labelled
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -96,6 +96,8 @@ def columns_of(
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
+    if TIME not in keys:
+        check_indexes(data, keys, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
     times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
@@ -113,8 +115,18 @@ def require_no_unit(data: Any, unit: str | None) -> None:
 
 
 def is_mapping(data: Any) -> bool:
-    """Return whether data is a mapping; dicts are checked first, because the general check takes a microsecond."""
-    return data.__class__ is dict or isinstance(data, Mapping)
+    """Return whether data is a mapping; dicts are checked first, because the general check takes a microsecond.
+
+    A dataset of xarray is none: as a mapping it lacks its coordinates, such as the timestamps.
+    """
+    return data.__class__ is dict or (isinstance(data, Mapping) and not is_labelled(data))
+
+
+def check_indexes(data: Any, keys: Sequence[str], names: Sequence[str]) -> None:
+    """Raise :class:`TraceError` if data without timestamps has series whose index may hold them."""
+    for name in names:
+        if name in keys:
+            check_index(data[name], name)
 
 
 def array(values: Any, name: str, first: int = 0, *, copy: bool = True) -> FloatArray:
@@ -324,6 +336,8 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
         return TraceError("expected data, got a LazyFrame; write frame.collect()")
     if hasattr(data, "column_names"):
         return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
+    if is_labelled(data):
+        return TraceError(f"expected data, got an xarray {type(data).__name__}; write rtamt.read(data)")
     if getattr(getattr(data, "dtype", None), "names", None):
         return TraceError("expected data, got a structured NumPy array; write rtamt.read(array)")
     return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")

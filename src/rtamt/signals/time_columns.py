@@ -30,14 +30,14 @@ SPELLINGS: Mapping[str, str] = MappingProxyType(
 _UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling in spellings.split()}
 #: Units at the end of a name: t_min may be a minimum, and t_h anything.
 _SUFFIXES = [spelling for spelling, unit in _UNIT_OF.items() if unit not in ("h", "min")]
-_STAMPS = lazy_pattern(rf"(?P<name>{'|'.join(NAMES)})(?:[ _](?P<unit>{'|'.join(_SUFFIXES)}))?")
+_STAMPS = lazy_pattern(rf"(?:{'|'.join(NAMES)})(?:[ _](?:{'|'.join(_SUFFIXES)}))?")
 _BRACKETS = lazy_pattern(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
 
 #: Words in the names of columns that may hold timestamps, but need not.
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
 #: Units that are also names of time columns; 's' and 'ms' are too ambiguous.
 _UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
-_WORDS = lazy_pattern(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+_WORDS = lazy_pattern(r"[A-Z]?[a-zµμ]+|[A-Z]+(?![a-z])")
 
 
 def split_unit(column: str) -> tuple[str, str]:
@@ -67,13 +67,14 @@ def is_stamps(name: str) -> bool:
 
 
 def unit_of(name: str) -> str | None:
-    """Return the unit at the end of such a name; None if there is none.
+    """Return the unit of time that is the last word of a name; None if it is none.
 
-    >>> unit_of("time_ms"), unit_of("stamp")
-    ('ms', None)
+    >>> [unit_of(name) for name in ("time_ms", "elapsedUs", "millis", "stamp", "t_min")]
+    ['ms', 'us', 'ms', None, None]
     """
-    match = _STAMPS.fullmatch(name.lower())
-    return _UNIT_OF[match["unit"]] if match and match["unit"] else None
+    words = _WORDS.findall(name)
+    last = words[-1].lower() if words and name.endswith(words[-1]) else ""
+    return _UNIT_OF[last] if last in _SUFFIXES else None
 
 
 def may_be_stamps(name: str) -> bool:
@@ -108,6 +109,28 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
             f"the frame with rtamt.read, which takes other columns and units",
             variable=time,
         )
+
+
+def check_index(values: Any, name: str) -> None:
+    """Raise :class:`TraceError` if values have an index that may hold their timestamps, which nothing reads.
+
+    Such values are a series of pandas or an array of xarray.
+    """
+    if isinstance(values, list | tuple):
+        return
+    indexes = values.indexes.values() if is_labelled(values) else [getattr(values, "index", None)]
+    found = [named for index in indexes for named in _times_in_index(index)]
+    if found:
+        raise TraceError(
+            f"'{name}' may have its timestamps in {', '.join(found)}, but those of a mapping are read from its key "
+            f"'time': give them there, or the bare values, with to_numpy(), if the index holds no times",
+            variable=name,
+        )
+
+
+def is_labelled(data: Any) -> bool:
+    """Return whether data is an object of xarray, whose arrays have coordinates."""
+    return hasattr(type(data), "indexes") and hasattr(type(data), "coords")
 
 
 def _times_in_index(index: Any) -> list[str]:

@@ -195,6 +195,8 @@ def test_the_data_of_the_caller_is_not_shared():
          "a dict has several columns for 'x': 'x [V]', 'x [A]'; say which are meant with columns= or names="),
         (lambda: rtamt.read(pd.DataFrame([[1, 2]], columns=["x", "x"])),
          "the pandas frame has two columns called 'x'; rename one of them"),
+        (lambda: rtamt.read(pd.DataFrame([[1, 2]], columns=[1, "1"])),
+         "the pandas frame has two columns called '1'; rename one of them"),
         (lambda: rtamt.read({"x": ([0.0], [1]), "y": (DATES[:1], [1])}),
          "some signals of a dict have dates for times and others numbers: use one of them for all"),
     ],
@@ -311,3 +313,62 @@ def test_a_value_of_several_lines_is_shown_in_one():
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("x >= 0").evaluate(frame)
     assert "\n" not in str(error.value)
+
+
+INDEXES = {
+    "its index": [pd.Index(STAMPS), pd.DatetimeIndex(DATES), pd.to_timedelta(STAMPS, unit="s")],
+    "its index 'time'": [pd.Index([0, 100, 200], name="time")],
+}
+
+
+@pytest.mark.parametrize("gap", [False, True], ids=["whole", "with a gap"])
+@pytest.mark.parametrize(
+    ("series", "named"),
+    [
+        *((pd.Series(X, index=index), named) for named, indexes in INDEXES.items() for index in indexes),
+        (xr.DataArray(X, coords={"time": STAMPS}, dims="time"), "its index 'time'"),
+    ],
+)
+def test_a_series_with_timestamps_in_its_index_is_not_taken_to_have_none(series, named, gap):
+    spec = rtamt.parse("x >= 3")
+    monitor = spec.monitor()
+    sentence = (
+        f"'x' may have its timestamps in {named}, but those of a mapping are read from its key 'time': give them "
+        f"there, or the bare values, with to_numpy(), if the index holds no times"
+    )
+    if gap:
+        series = series.where(series > 4)
+    for evaluate in (spec.evaluate, monitor.update_many, rtamt.read):
+        with pytest.raises(rtamt.TraceError) as error:
+            evaluate({"x": series})
+        assert str(error.value) == sentence
+    assert spec.evaluate({"x": series.to_numpy()[:1]}).robustness == 2
+    assert spec.evaluate({"time": STAMPS[:1], "x": series[:1]}).robustness == 2
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_data_of_xarray_is_not_evaluated_without_its_coordinates(time):
+    data = xr.Dataset({"x": ("time", X)}, {"time": ("time", [0, 500, 1000], {"units": "ms"})})
+    spec = rtamt.parse("always[0:1](x >= 5)", time=time)
+    for given, kind in ((data, "Dataset"), (data["x"], "DataArray")):
+        for evaluate in (spec.evaluate, spec.monitor().update_many):
+            with pytest.raises(rtamt.TraceError) as error:
+                evaluate(given)
+            assert str(error.value) == f"expected data, got an xarray {kind}; write rtamt.read(data)"
+    assert spec.evaluate(rtamt.read(data)).robustness == -1
+
+
+def test_timestamps_of_xarray_are_found_in_every_coordinate_of_a_dimension():
+    data = xr.Dataset({"x": ("row", X)}, {"time": ("row", STAMPS)})
+    assert rtamt.read(data)["x"].times.tolist() == STAMPS
+    with pytest.raises(rtamt.TraceError, match="has a column that may hold the timestamps: 'row'"):
+        rtamt.read(xr.Dataset({"x": ("row", X)}, {"row": STAMPS}))
+    assert rtamt.read(xr.Dataset({"x": ("row", X)}, {"row": [7, 8, 9]})).channel("x").times is None
+
+
+@pytest.mark.parametrize("name", ["elapsed_ms", "simMs", "millis", "clock ms", "clock_msec"])
+def test_the_unit_at_the_end_of_the_name_of_a_chosen_time_column_is_read(name):
+    trace = rtamt.read({name: [0, 100, 200], "x": X}, time=name)
+    assert trace["x"].times.tolist() == STAMPS
+    assert trace.notes == (f"'{name}' is in ms, by its name",)
+    assert rtamt.read({name: [0, 100, 200], "x": X}, time=name, time_unit="us")["x"].times[1] == 0.0001

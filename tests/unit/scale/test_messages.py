@@ -37,6 +37,7 @@ def test_samples_in_json():
     assert reader(key="car").read(message(car="a"), None).key == "a"
     assert reader(key="car").read(message(car=-7), b"car-1").key == "-7"
     assert reader(time="at", unit="ms").read(message(at=1500), b"a").time == 1.5
+    assert reader(time="at_ms").read(message(at_ms=1500), b"a").time == 1.5
     assert read.read(message(time="1970-01-01T00:01:00Z"), b"a").time == 60.0
     assert read.read(b'{"stamp": 3, "speed": 1, "brake.value": 2}', b"a") == ("a", 3.0, (1.0, 2.0))
 
