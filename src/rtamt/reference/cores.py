@@ -30,7 +30,7 @@ class Core(NamedTuple):
     horizons: Mapping[int, int | None]
 
 
-class _Identity:
+class Identity:
     """A formula as this very object: equal formulas have different positions in the text."""
 
     __slots__ = ("formula",)
@@ -42,7 +42,7 @@ class _Identity:
         return id(self.formula)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Identity) and other.formula is self.formula
+        return isinstance(other, Identity) and other.formula is self.formula
 
 
 def core_of(formula: Formula, step: Fraction, *, continuous: bool = False) -> Core:
@@ -53,11 +53,11 @@ def core_of(formula: Formula, step: Fraction, *, continuous: bool = False) -> Co
     >>> str(core_of(parse_formula("x >= 3 -> y <= 2"), Fraction(1)).formula)
     '-(x - 3) or 2 - y'
     """
-    return _core(_Identity(formula), step, continuous)
+    return _core(Identity(formula), step, continuous)
 
 
 @lru_cache(_KEPT)
-def _core(same: _Identity, step: Fraction, continuous: bool) -> Core:
+def _core(same: Identity, step: Fraction, continuous: bool) -> Core:
     if continuous:
         check_dense(same.formula)
     core = desugar(ground(same.formula, step, continuous=continuous))

@@ -87,6 +87,34 @@ def behind(node: Apply, end: int | None) -> int | None:
     return None if reach is None else reach + op.before
 
 
+def window_in_steps(node: Apply, step: Fraction) -> tuple[int, int | None]:
+    """Return the bounds of a node's interval in whole steps of so many seconds; one that was left out is [0, inf).
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> window_in_steps(parse_formula("once[0.2:1](x >= 3)"), Fraction(1, 10))
+    (2, 10)
+    """
+    if node.interval is None:
+        return 0, None
+    end = node.interval.end
+    return _whole(node.interval.begin, step), None if end is None else _whole(end, step)
+
+
+def window_in_quarters(node: Apply, tick: Fraction) -> tuple[int, int | None]:
+    """Return the same in quarters of a tick; what reads one tick without an interval has that."""
+    if node.interval is None and node.op.one_tick:
+        return QUARTERS, QUARTERS
+    begin, end = window_in_steps(node, tick)
+    return begin * QUARTERS, None if end is None else end * QUARTERS
+
+
+def _whole(seconds: Fraction, step: Fraction) -> int:
+    numerator, denominator = seconds.as_integer_ratio()
+    above, below = step.as_integer_ratio()
+    return numerator * below // (denominator * above)
+
+
 def arguments_of(node: Apply, begin: int, end: int | None, period: Fraction) -> tuple[Any, ...]:
     """Return the arguments of an operator's definition after its operands in discrete time.
 
@@ -181,7 +209,7 @@ def signal_of(node: Apply, operands: tuple[Steps, ...], begin: int, end: int | N
         except Exception as error:
             raise raised(node, error) from error
     times = sorted({t for x in operands for t in x.times})
-    columns = [np.array([x.at(t) for t in times]) for x in operands]
+    columns = [np.array(x.over(times)) for x in operands]
     return merged(times, values_of(node, columns, len(times), (), "instant").tolist())
 
 

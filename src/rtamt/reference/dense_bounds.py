@@ -7,19 +7,20 @@ Elsewhere only the declared range is known, until no more samples arrive: then t
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from math import inf, isnan
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.definitions.dense import QUARTERS, Steps, merged
 from rtamt.language.definitions.enclosures import Enclosure
-from rtamt.language.formula import Apply, Const, Formula, Var, fold
+from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.records import Sum
 from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference.cores import core_of, inside_predicates
-from rtamt.reference.definition_adapter import signal_of
+from rtamt.reference.definition_adapter import signal_of, window_in_quarters
 from rtamt.reference.dense_robustness import last_read
 from rtamt.reference.discrete_bounds import ANYTHING, Range, componentwise, pointwise
 from rtamt.rewrite.desugar import written
@@ -41,7 +42,7 @@ class StepBounds(NamedTuple):
 
     def at(self, tick: int) -> Range:
         """Return the bounds at a tick, not before the first of ``times``."""
-        i = int(np.searchsorted(self.times, tick, "right")) - 1
+        i = bisect_right(self.times, tick) - 1
         return self.lower[i], self.upper[i]
 
 
@@ -135,13 +136,14 @@ def bounds(
     signals = {name: _signal(name, known, origin, started=start is not None) for name in known.samples}
     complete = None if start is None else known.complete
     last = known.newest * QUARTERS
-    read = last_read(core, last, tick)
+    read = last_read(core, last, tick) if known.finished else {}
 
     def final(node: Formula) -> float:
         """Return the last instant, in quarters, whose value is final, and in the trace or read at its end."""
-        depth, limit = ahead[id(node)], read[id(node)]
         if known.finished:
+            limit = read[id(node)]
             return inf if limit is None else limit
+        depth = ahead[id(node)]
         if complete is None or depth is None:
             return -inf
         return min(last, (complete - depth) * QUARTERS)
@@ -164,15 +166,31 @@ def bounds(
         return defined
 
     with np.errstate(all="ignore"):
-        lower, upper = fold(core, step)
+        found = fold(core, step)
     if report is not None:
         report(Parts(origin, tuple(own)))
+    return _in_ticks(found)
+
+
+def bounds_of_parts(formula: Formula, known: DenseKnowledge, tick: Fraction) -> dict[Formula, StepBounds]:
+    """Return [L, U] of every part of the core of a formula, as :func:`bounds` does of the whole.
+
+    >>> from fractions import Fraction
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> soon, known = parse_formula("eventually[0:2](x >= 3)"), DenseKnowledge({"x": ([0], [4], [4])}, {"x": (0, 5)})
+    >>> {str(part): found.lower for part, found in bounds_of_parts(soon, known, Fraction(1)).items()}
+    {'x': (4.0, 0), '3': (3.0,), 'x - 3': (1.0, -3.0), 'eventually[0:2](x - 3)': (1.0, -3.0)}
+    """
+    reported: list[Parts] = []
+    bounds(formula, known, tick, report=reported.append)
+    nodes = postorder(core_of(formula, tick, continuous=True).formula)
+    return {node: _in_ticks(found) for node, found in zip(nodes, reported[0].bounds, strict=True)}
+
+
+def _in_ticks(signal: _Signal) -> StepBounds:
+    lower, upper = signal
     times = sorted({*lower.times, *upper.times})
-    return StepBounds(
-        tuple(t // QUARTERS for t in times),
-        tuple(lower.at(t) for t in times),
-        tuple(upper.at(t) for t in times),
-    )
+    return StepBounds(tuple(t // QUARTERS for t in times), tuple(lower.over(times)), tuple(upper.over(times)))
 
 
 def least(parts: Sequence[StepBounds]) -> StepBounds:
@@ -221,7 +239,7 @@ def _signal(name: str, known: DenseKnowledge, origin: int, *, started: bool) -> 
     for column in (1, 2):
         whole = Steps(tuple(each[0] * QUARTERS for each in samples), tuple(each[column] for each in samples))
         later = [t for t in whole.times if t > origin]
-        steps.append(merged([origin, *later], [whole.at(t) for t in (origin, *later)]))
+        steps.append(merged([origin, *later], whole.over((origin, *later))))
     return _Signal(*steps)
 
 
@@ -252,13 +270,13 @@ def _apply(
     if node.op.extension is not None:
         times = sorted({t for x in below for steps in x for t in steps.times})
         operands = tuple(
-            Enclosure(*(np.array([steps.at(t) for t in times]) for steps in signal)) for signal in below
+            Enclosure(np.array(lower.over(times)), np.array(upper.over(times))) for lower, upper in below
         )
         lower, upper = pointwise(node, operands)
         return _Signal(merged(times, lower.tolist()), merged(times, upper.tolist()))
     if not isinstance(node.op.kernel, Sum):  # of pulses: the certain ones, and the possible ones
         componentwise(node)
-    window = (*_window(node, tick), tick)
+    window = (*window_in_quarters(node, tick), tick)
     return _Signal(
         signal_of(node, tuple(x.lower for x in below), *window),
         signal_of(node, tuple(x.upper for x in below), *window),
@@ -269,11 +287,11 @@ def _defined(
     value: _Signal, node: Formula, formula: Formula, certain: Callable[[int], bool], tick: Fraction
 ) -> _Signal:
     """Raise the error for a value that certainly does not exist; one that is not certain may be anything."""
-    times = sorted({*value.lower.times, *value.upper.times})
-    pairs = [(value.lower.at(t), value.upper.at(t)) for t in times]
-    wrong = [i for i, pair in enumerate(pairs) if any(map(isnan, pair))]
-    if not wrong:
+    if not any(map(isnan, value.lower.values)) and not any(map(isnan, value.upper.values)):
         return value
+    times = sorted({*value.lower.times, *value.upper.times})
+    pairs = list(zip(value.lower.over(times), value.upper.over(times), strict=True))
+    wrong = [i for i, pair in enumerate(pairs) if any(map(isnan, pair))]
     for i in wrong:
         if certain(times[i]):
             seconds = float(times[i] * tick / QUARTERS)
@@ -281,11 +299,3 @@ def _defined(
     for i in wrong:
         pairs[i] = (-inf, inf)
     return _Signal(merged(times, [low for low, _ in pairs]), merged(times, [high for _, high in pairs]))
-
-
-def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
-    """Return the bounds of a node's interval in quarters of a tick; one that was left out is [0, inf)."""
-    if node.interval is None:
-        return (QUARTERS, QUARTERS) if node.op.one_tick else (0, None)
-    begin, end = node.interval.begin, node.interval.end
-    return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS

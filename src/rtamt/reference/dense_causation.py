@@ -20,7 +20,8 @@ from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference.cores import core_of
-from rtamt.reference.dense_bounds import DenseKnowledge, bounds
+from rtamt.reference.definition_adapter import window_in_quarters
+from rtamt.reference.dense_bounds import DenseKnowledge, bounds_of_parts
 from rtamt.rewrite.early import at_one_instant, connects
 from rtamt.signals.outcomes import Causation
 
@@ -75,9 +76,19 @@ def causation(
     core = core_of(formula, tick, continuous=True).formula
     start = now.start
     assert start is not None
+    limits = bounds_of_parts(formula, now, tick)
+    was: dict[Formula, StepBounds] | None = None
     found: dict[Formula, _Sides] = {}
     for node in _parts(core):
-        found[node] = _sides(node, [found[each] for each in _operands(node)], before, now, tick)
+        operands = [found[each] for each in _operands(node)]
+        if operands:
+            found[node] = _of_operator(node, operands, limits[node], tick)
+        elif at_one_instant(node):
+            found[node] = _known_by(_new(node, before, now), limits[node])
+        else:
+            if was is None:
+                was = bounds_of_parts(formula, _unseen(now) if before is None else before, tick)
+            found[node] = _moved(limits[node], was[node])
     good, bad = found[core]
     times = sorted({t for steps in (good.sat, bad.sat, good.limit) for t in steps.times})
     return StepCauses(
@@ -114,21 +125,24 @@ def _parts(core: Formula) -> list[Formula]:
     return [node for node in dict.fromkeys(postorder(core)) if node in wanted]
 
 
-def _sides(
-    node: Formula, operands: list[_Sides], before: DenseKnowledge | None, now: DenseKnowledge, tick: Fraction
-) -> _Sides:
-    limits = _limits(bounds(node, now, tick))
-    if not isinstance(node, Apply) or not operands:
-        if at_one_instant(node):
-            new = _new(node, before, now)
-            good, bad = (_Side(_where(limit, lambda t, _: new.at(t) > 0, new), limit) for limit in limits)
-            return good, bad
-        was = _limits(bounds(node, _unseen(now) if before is None else before, tick))
-        good, bad = (_Side(_increase(limit, old), limit) for limit, old in zip(limits, was, strict=True))
-        return good, bad
+def _known_by(new: Steps, found: StepBounds) -> _Sides:
+    """Return the sides of a predicate of one instant, which the event has made known where ``new`` is 1."""
+    good, bad = (_Side(_where(limit, lambda t, _: new.at(t) > 0, new), limit) for limit in _limits(found))
+    return good, bad
+
+
+def _moved(found: StepBounds, was: StepBounds) -> _Sides:
+    """Return the sides of a predicate of several instants, from its bounds and those before the event."""
+    pairs = zip(_limits(found), _limits(was), strict=True)
+    good, bad = (_Side(_increase(limit, old), limit) for limit, old in pairs)
+    return good, bad
+
+
+def _of_operator(node: Formula, operands: list[_Sides], found: StepBounds, tick: Fraction) -> _Sides:
+    assert isinstance(node, Apply)
     if isinstance(node.op.kernel, Pointwise) and node.op.kernel.opcode == "neg":
         return operands[0][1], operands[0][0]
-    window = _window(node, tick)
+    limits, window = _limits(found), window_in_quarters(node, tick)
     good, bad = (
         _Side(_cause_of(node, side, [each[side] for each in operands], limits[side], window), limits[side])
         for side in (0, 1)
@@ -171,14 +185,6 @@ def _where(limit: Steps, moved: Callable[[int, float], bool], *others: Steps) ->
 def _increase(limit: Steps, before: Steps) -> Steps:
     """Return a bound where the event has raised it, and nothing elsewhere."""
     return _where(limit, lambda t, value: value > before.at(t), before)
-
-
-def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
-    """Return the bounds of an operator in quarters of a tick; one that was left out is [0, inf)."""
-    if node.interval is None:
-        return 0, None
-    begin, end = node.interval.begin, node.interval.end
-    return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS
 
 
 def _cause_of(

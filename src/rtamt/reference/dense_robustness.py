@@ -21,7 +21,7 @@ from rtamt.language.undefined_value import UndefinedAtTickError
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
-from rtamt.reference.definition_adapter import check_dense_meaning, signal_of
+from rtamt.reference.definition_adapter import check_dense_meaning, signal_of, window_in_quarters
 from rtamt.rewrite.check import check_dense
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import ground
@@ -248,15 +248,8 @@ def _apply(node: Formula, below: tuple[Steps, ...], trace: _Trace) -> Steps:
         return trace.signals[node.name]
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
-    return signal_of(node, below or (Steps((trace.start,), (0.0,)),), *_window(node, trace.tick), trace.tick)
-
-
-def _window(node: Apply, tick: Fraction) -> tuple[int, int | None]:
-    """Return the bounds of a node's interval in quarters of a tick; one that was left out is [0, inf)."""
-    if node.interval is None:
-        return (QUARTERS, QUARTERS) if node.op.one_tick else (0, None)
-    begin, end = node.interval.begin, node.interval.end
-    return int(begin / tick) * QUARTERS, None if end is None else int(end / tick) * QUARTERS
+    operands = below or (Steps((trace.start,), (0.0,)),)
+    return signal_of(node, operands, *window_in_quarters(node, trace.tick), trace.tick)
 
 
 def _with_dense_meaning(formula: Formula, tick: Fraction) -> Formula:
@@ -282,7 +275,7 @@ def _ahead(node: Formula, tick: Fraction) -> int | None:
     """Return how far ahead an operator itself reads its operands, in quarters of a tick; None: unboundedly."""
     if not isinstance(node, Apply) or node.op.tense is not Tense.FUTURE or node.op.bounds is Bounds.NONE:
         return 0
-    return _window(node, tick)[1]
+    return window_in_quarters(node, tick)[1]
 
 
 def last_read(formula: Formula, last: int, tick: Fraction) -> Limits:

@@ -22,7 +22,7 @@ from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.modules import np
 from rtamt.reference.cores import core_of, inside_predicates
-from rtamt.reference.definition_adapter import arguments_of
+from rtamt.reference.definition_adapter import arguments_of, window_in_steps
 from rtamt.rewrite.desugar import written
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def bounds(
         nonlocal inside
         value = _apply(node, below, known, period)
         wrong = np.isnan(value.lower) | np.isnan(value.upper)
-        if wrong.any():
+        if np.count_nonzero(wrong):
             depth = ahead[id(node)]
             final = known.n if known.finished else 0 if depth is None else closed - depth
             # Known exactly, or not better later.
@@ -157,10 +157,10 @@ def _apply(node: Formula, below: tuple[Enclosure, ...], known: Knowledge, period
     if node.op.extension is not None:
         return pointwise(node, tuple(_padded(x, _longest(below)) for x in below))
     if isinstance(node.op.kernel, Sum):
-        sums = summed(below[0], *_window(node, period), known)
+        sums = summed(below[0], *window_in_steps(node, period), known)
         return _timed(sums, period) if node.op.timed else sums
     componentwise(node)
-    window = arguments_of(node, *_window(node, period), period)
+    window = arguments_of(node, *window_in_steps(node, period), period)
     if known.finished:
         return _by_bound(node, below, window)
     # Operands are constant after their last entry. So is the result: of an operator of the future from
@@ -286,11 +286,3 @@ def _reach(node: Apply, window: tuple[int | None, ...]) -> tuple[int, int]:
         assert node.op.reach is not None
         reach = node.op.reach
     return (reach, 0) if node.op.tense is Tense.PAST else (0, reach)
-
-
-def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:
-    """Return the bounds of a node's interval in samples; one that was left out is [0, inf)."""
-    if node.interval is None:
-        return 0, None
-    end = node.interval.end
-    return int(node.interval.begin / period), None if end is None else int(end / period)

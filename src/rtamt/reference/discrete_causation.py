@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Window
 from rtamt.reference.cores import core_of
+from rtamt.reference.definition_adapter import window_in_steps
 from rtamt.reference.discrete_bounds import bounds
 from rtamt.rewrite.early import at_one_instant, connects
 from rtamt.signals.outcomes import Causation
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from fractions import Fraction
 
+    from rtamt.language.definitions.enclosures import Enclosure
     from rtamt.reference.discrete_bounds import Knowledge
 
 #: One operand at one sample.
@@ -53,20 +55,21 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | Non
     core = core_of(formula, period).formula
     reach = sum(_reach(node, period) + 1 for node in postorder(core))
     m = known.n + reach if m is None else m
-    causes = _Causes(known, period, m + known.n + reach)
+    causes = _Causes(formula, known, period, m + known.n + reach)
     return [causes.at(core, t) for t in range(m)]
 
 
 class _Causes:
     """The recursion over sub-formulas and samples; ``end`` is a sample after all that can matter."""
 
-    def __init__(self, known: Knowledge, period: Fraction, end: int) -> None:
-        self._known = known
+    def __init__(self, formula: Formula, known: Knowledge, period: Fraction, end: int) -> None:
+        self._formula, self._known = formula, known
         self._before = known.until(known.n - 1)
         self._period = period
         self._end = end
         self._found: dict[_Part, Causation] = {}
-        self._bounds: dict[tuple[Formula, int], list[tuple[float, float]]] = {}
+        #: Of all sub-formulas, after so many samples.
+        self._bounds: dict[int, dict[Formula, list[tuple[float, float]]]] = {}
 
     def at(self, node: Formula, t: int) -> Causation:
         found = self._found.get((node, t))
@@ -114,23 +117,28 @@ class _Causes:
 
     def _limits(self, node: Formula, t: int, known: Knowledge | None = None) -> tuple[float, float]:
         known = known or self._known
-        if (node, known.n) not in self._bounds:
-            found = bounds(node, known, self._period)
-            self._bounds[node, known.n] = list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
-        every = self._bounds[node, known.n]
+        if known.n not in self._bounds:
+            parts: list[Enclosure] = []
+            bounds(self._formula, known, self._period, parts=parts)
+            nodes = postorder(core_of(self._formula, self._period).formula)
+            self._bounds[known.n] = {
+                each: list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
+                for each, found in zip(nodes, parts, strict=True)
+            }
+        every = self._bounds[known.n][node]
         return every[min(t, len(every) - 1)]
 
     def _window(self, node: Apply, t: int) -> Iterable[int]:
         if node.op.tense is Tense.NONE:
             return (t,)
-        begin, end = _interval(node, self._period)
+        begin, end = window_in_steps(node, self._period)
         if node.op.tense is Tense.FUTURE:
             return range(t + begin, self._end if end is None else t + end + 1)
         return range(0 if end is None else max(t - end, 0), t - begin + 1)
 
     def _targets(self, node: Apply, t: int) -> Iterable[tuple[int, range]]:
         """Return the samples at which the second operand may hold, each with those at which the first must."""
-        begin, end = _interval(node, self._period)
+        begin, end = window_in_steps(node, self._period)
         if isinstance(node.op.kernel, Since):
             return [(u, range(u + 1, t + 1)) for u in self._window(node, t)]
         if node.op.tense is Tense.FUTURE:
@@ -144,16 +152,9 @@ def _in_time(node: Formula) -> bool:
     return isinstance(node, Apply) and node.op.tense is not Tense.NONE
 
 
-def _interval(node: Apply, period: Fraction) -> tuple[int, int | None]:
-    if node.interval is None:
-        return 0, None
-    begin, end = node.interval.begin, node.interval.end
-    return int(begin / period), None if end is None else int(end / period)
-
-
 def _reach(node: Formula, period: Fraction) -> int:
     """Return how far an operator reads at most, of unbounded ones how far it has to wait."""
     if not _in_time(node) or not isinstance(node, Apply) or node.op.bounds is Bounds.NONE:
         return 1
-    begin, end = _interval(node, period)
+    begin, end = window_in_steps(node, period)
     return begin if end is None else end

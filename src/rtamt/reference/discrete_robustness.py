@@ -18,7 +18,7 @@ from rtamt.language.operators import Bounds, Sum, Tense
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
-from rtamt.reference.definition_adapter import arguments_of, values_of
+from rtamt.reference.definition_adapter import arguments_of, values_of, window_in_steps
 from rtamt.rewrite.desugar import desugar, spelled_out
 from rtamt.rewrite.ground import ground, grounds
 
@@ -261,23 +261,15 @@ def _apply(node: Formula, below: tuple[Array, ...], stretch: _Stretch) -> Array:
     if not isinstance(node, Apply):
         raise TypeError(f"not a formula: {node!r}")
     return values_of(
-        node, below, n, arguments_of(node, *_window(node, stretch.period), stretch.period), "sample"
+        node, below, n, arguments_of(node, *window_in_steps(node, stretch.period), stretch.period), "sample"
     )
-
-
-def _window(node: Apply, period: Fraction) -> tuple[int, int | None]:
-    """Return the bounds of a node's interval in samples; one that was left out is [0, inf)."""
-    if node.interval is None:
-        return 0, None
-    end = node.interval.end
-    return int(node.interval.begin / period), None if end is None else int(end / period)
 
 
 def _sum_widths(formula: Formula, period: Fraction) -> Iterator[int]:
     """Yield the width of the window of every bounded sum; the mean is one."""
     for node in postorder(desugar(formula)):
         if isinstance(node, Apply) and isinstance(node.op.kernel, Sum):
-            begin, end = _window(node, period)
+            begin, end = window_in_steps(node, period)
             if end is not None:
                 yield end - begin + 1
 
@@ -289,7 +281,7 @@ def _reaches(formula: Formula, period: Fraction, tense: Tense) -> dict[int, int 
     def step(node: Formula, below: tuple[int | None, ...]) -> int | None:
         own: int | None = 0
         if isinstance(node, Apply) and node.op.tense is tense:
-            own = node.op.reach if node.op.bounds is Bounds.NONE else _window(node, period)[1]
+            own = node.op.reach if node.op.bounds is Bounds.NONE else window_in_steps(node, period)[1]
             if own is not None:
                 own += node.op.before
         deepest = None if None in below else max((b for b in below if b is not None), default=0)

@@ -37,20 +37,26 @@ def on_grid(formula: Formula, before: DenseKnowledge, now: DenseKnowledge, tick:
     ``before`` and ``now``: what is known before and after the event, with which the trace has started.
     """
     core = core_of(formula, tick, continuous=True).formula
-    return _Grid(core, before, now, tick).of(core)
+    return _Grid(formula, core, before, now, tick).of(core)
 
 
 class _Grid:
-    def __init__(self, core: Formula, before: DenseKnowledge, now: DenseKnowledge, tick: Fraction) -> None:
+    def __init__(
+        self, formula: Formula, core: Formula, before: DenseKnowledge, now: DenseKnowledge, tick: Fraction
+    ) -> None:
         start = now.start
         assert start is not None
         self._start, self._before, self._now, self._tick = start, before, now, tick
+        self._formula = formula
+        self._parts: dict[int, dict[Formula, StepBounds]] = {}  # by the identity of what is known
         last = max(max(int(times[-1]), now.until(name)) for name, (times, _, _) in now.samples.items())
         self._size = last - start + 2 + 2 * sum(map(self._reach, postorder(core)))
         self._found: dict[Formula, list[Causation]] = {}
 
     def _bounds(self, node: Formula, known: DenseKnowledge) -> list[tuple[float, float]]:
-        found: StepBounds = dense_bounds.bounds(node, known, self._tick)
+        if id(known) not in self._parts:
+            self._parts[id(known)] = dense_bounds.bounds_of_parts(self._formula, known, self._tick)
+        found = self._parts[id(known)][node]
         first = self._start if known.start is not None else 0
         return [found.at(first + k) for k in range(self._size)]
 

@@ -7,13 +7,14 @@ Times are ticks; runs are half-open, from ``begin`` up to and without ``end``.
 from __future__ import annotations
 
 import pickle
-from functools import partial
+from functools import lru_cache, partial
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.compiler.graph import FOREVER, NEVER
 from rtamt.engine.backend import RefusedError
 from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.reference.cores import Identity
 from rtamt.reference.dense_bounds import DenseKnowledge, Parts, StepBounds, bounds, least
 from rtamt.reference.dense_causation import causation
 from rtamt.reference.dense_causation import least as least_caused
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from rtamt.reference.dense_causation import StepCauses
     from rtamt.signals.outcomes import Causation
     from rtamt.signals.runs import Decided, Pair, Run
+
+#: Of how many formulas the bounds before any sample are remembered.
+_KEPT = 256
 
 #: The minimum of formulas, each over the trace of some variables.
 Output: TypeAlias = "Sequence[tuple[Formula, tuple[str, ...]]]"
@@ -94,10 +98,13 @@ class PythonDenseEarlyMonitor:
         self._tick, self._lateness, self._decides = tick, lateness, verdicts
         self._came = _Came(({},) * len(self._names), (0,) * len(self._names))
         self._reports = (_Report(),) * (len(outputs) - hidden)
-        self._found: list[StepBounds | None] | None = None  # of all formulas, for all that came
+        # Of all formulas, and at the start, for all that came.
+        self._found: list[StepBounds | None] | None = None
+        self._start: Pair | None = None
         # The bounds of all parts of each of them, which are kept where an operation has no value yet.
         self._earlier: tuple[tuple[Parts, ...], ...] = tuple(
-            tuple(self._unseen(each, names) for each, names in output) for output in outputs
+            tuple(_unseen(Identity(each), names, self._limits(names), tick) for each, names in output)
+            for output in outputs
         )
 
     # ---- samples ---------------------------------------------------------------------------------
@@ -137,14 +144,11 @@ class PythonDenseEarlyMonitor:
             for before, each in zip(self._reports, found[self._hidden :], strict=True)
         )
         self._before, self._came, self._found, self._causes = self._came, came, found, {}
+        self._start = None
         self._earlier = tuple(earlier)
 
-    def _unseen(self, formula: Formula, names: tuple[str, ...]) -> Parts:
-        """Return the bounds of the parts of a formula before any sample."""
-        known = DenseKnowledge(dict.fromkeys(names, ((), (), ())), self._ranges)
-        found: list[Parts] = []
-        bounds(formula, known, self._tick, report=found.append)
-        return found[0]
+    def _limits(self, names: tuple[str, ...]) -> tuple[Pair, ...]:
+        return tuple(self._ranges[name] for name in names)
 
     def _knowledge(self, came: _Came) -> DenseKnowledge:
         samples, closed = {}, {}
@@ -301,7 +305,9 @@ class PythonDenseEarlyMonitor:
 
     def at_start(self) -> Pair:
         """The bounds at the start of the trace, for each formula at the start of its own trace."""
-        return _at_starts(self._parts(0, self._came))
+        if self._start is None:
+            self._start = _at_starts(self._parts(0, self._came))
+        return self._start
 
     def _caused(self, formula: int) -> StepCauses | None:
         """Return the causation of the last event; None before the start of the trace."""
@@ -365,7 +371,18 @@ class PythonDenseEarlyMonitor:
         """Restore the state of a monitor that was made with the same arguments."""
         kept = pickle.loads(state)  # noqa: S301 - its own
         self._before, self._came, self._reports, self._earlier = kept
-        self._found, self._causes = None, {}
+        self._found, self._start, self._causes = None, None, {}
+
+
+@lru_cache(_KEPT)
+def _unseen(same: Identity, names: tuple[str, ...], limits: tuple[Pair, ...], tick: Fraction) -> Parts:
+    """Return the bounds of the parts of a formula before any sample; copies of monitors begin with the same."""
+    ranges = dict(zip(names, limits, strict=True))
+    found: list[Parts] = []
+    bounds(
+        same.formula, DenseKnowledge(dict.fromkeys(names, ((), (), ())), ranges), tick, report=found.append
+    )
+    return found[0]
 
 
 def _at_starts(parts: Sequence[StepBounds]) -> Pair:

@@ -6,6 +6,7 @@ Every query evaluates all samples so far: it is slow, and needs memory for the w
 from __future__ import annotations
 
 import pickle
+from functools import lru_cache
 from math import floor, inf, isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from rtamt.compiler.graph import FOREVER
 from rtamt.engine.backend import RefusedError
 from rtamt.language.definitions.enclosures import Enclosure
 from rtamt.lazy.modules import np
+from rtamt.reference.cores import Identity
 from rtamt.reference.discrete_bounds import Knowledge, bounds
 from rtamt.reference.discrete_causation import NOTHING, causation
 from rtamt.signals.outcomes import Causation, Change, Interval
@@ -24,6 +26,21 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
     Pair = tuple[float, float]
+
+
+#: Of how many formulas the bounds before any sample are remembered.
+_KEPT = 256
+
+
+@lru_cache(_KEPT)
+def _unseen(
+    same: Identity, names: tuple[str, ...], limits: tuple[Pair, ...], period: Fraction
+) -> list[Enclosure]:
+    """Return the bounds of all parts of a formula before any sample; copies of monitors begin with the same."""
+    columns = {name: Enclosure(np.empty(0), np.empty(0)) for name in names}
+    parts: list[Enclosure] = []
+    bounds(same.formula, Knowledge(columns, 0, dict(zip(names, limits, strict=True))), period, parts=parts)
+    return parts
 
 
 class PythonEarlyMonitor:
@@ -62,8 +79,12 @@ class PythonEarlyMonitor:
         self._decided: list[list[tuple[int, float, bool, int]]] = [[] for _ in self._outputs]
         self._reports: list[list[Any]] = [[] for _ in self._outputs]
         #: The bounds of all parts of each formula, which are kept where an operation has no value yet.
-        self._earlier: list[list[Enclosure]] = [[] for _ in (self._start, *self._outputs)]
-        self._narrow()
+        limits = tuple(ranges)
+        *outputs, start = (
+            _unseen(Identity(each), self._names, limits, period) for each in (*self._outputs, self._start)
+        )
+        self._earlier = [start, *outputs]
+        self._answer_anew()
 
     @property
     def state_bytes(self) -> int:
@@ -211,19 +232,24 @@ class PythonEarlyMonitor:
     def _caused(self, formula: Formula, sample: int) -> Pair:
         if not self.samples:
             return inf, -inf
+        found = self._causation_of(formula, every=sample > 0)
+        each = found[min(sample, len(found) - 1)]
+        return each.violation, each.satisfaction
+
+    def _causation_of(self, formula: Formula, *, every: bool) -> list[Causation]:
+        """Return what the newest sample causes at the start, or at every sample; the last entry is for all later."""
         found = self._causation.get(id(formula), [])
-        if sample >= len(found):
-            until = max(sample, self.newest) if sample else 0  # the start is often all that is requested
-            found = self._causation[id(formula)] = causation(
-                formula, self._knowledge(), self._period, until + 1
-            )
-        return found[sample].violation, found[sample].satisfaction
+        if len(found) < 1 + every:
+            m = None if every else 1  # the start is often all that is requested
+            found = causation(formula, self._knowledge(), self._period, m)
+            self._causation[id(formula)] = found
+        return found
 
     def caused(self, output: int) -> list[tuple[int, int, float, float]]:
         """The same as runs (first, last, violation, satisfaction), where there is any."""
         if not self.samples:
             return []
-        found = causation(self._outputs[output], self._knowledge(), self._period)
+        found = self._causation_of(self._outputs[output], every=True)
         if self.finished:
             found = found[: self.newest + 1]
         runs: list[tuple[int, int, float, float]] = []

@@ -50,14 +50,27 @@ class Steps(NamedTuple):
         """Return the value at an instant ``t``, which must not precede the first of ``times``."""
         return self.values[bisect_right(self.times, t) - 1]
 
+    def over(self, instants: Iterable[int]) -> list[float]:
+        """Return the values at several instants.
+
+        >>> Steps((0, 8), (1.0, 2.0)).over([0, 7, 8])
+        [1.0, 1.0, 2.0]
+        """
+        times, values = self.times, self.values
+        return [values[bisect_right(times, t) - 1] for t in instants]
+
 
 def merged(times: Iterable[int], values: Iterable[float]) -> Steps:
     """Return the same function without the times at which its value does not change."""
-    kept: list[tuple[int, float]] = []
+    kept_times: list[int] = []
+    kept: list[float] = []
+    before: float | None = None
     for time, value in zip(times, values, strict=True):
-        if not kept or value != kept[-1][1]:
-            kept.append((time, value))
-    return Steps(tuple(t for t, _ in kept), tuple(v for _, v in kept))
+        if value != before:
+            kept_times.append(time)
+            kept.append(value)
+            before = value
+    return Steps(tuple(kept_times), tuple(kept))
 
 
 def critical(operands: Iterable[Steps], a: int, b: int | None, before: int = 0) -> list[int]:

@@ -44,11 +44,11 @@ def _behind(t: int, a: int, b: int | None) -> range:
 
 
 def _sup(x: Array, window: range) -> float:
-    return float(x[window.start : window.stop].max(initial=-inf)) if window else -inf
+    return float(np.maximum.reduce(x[window.start : window.stop], initial=-inf)) if window else -inf
 
 
 def _inf(x: Array, window: range) -> float:
-    return float(x[window.start : window.stop].min(initial=inf)) if window else inf
+    return float(np.minimum.reduce(x[window.start : window.stop], initial=inf)) if window else inf
 
 
 def eventually(x: Array, a: int, b: int | None) -> Array:

@@ -55,8 +55,15 @@ def extended(
     definition: Callable[..., Array], extension: Callable[..., Enclosure], operands: Sequence[Enclosure]
 ) -> Enclosure:
     """Apply an operator to bounds; where all operands are known exactly, the result is its value."""
-    exact: NDArray[np.bool_] = np.logical_and.reduce([x.exact for x in operands])
+    exact = operands[0].exact
+    for operand in operands[1:]:
+        exact = exact & operand.exact
+    known = np.count_nonzero(exact)
+    if not known:
+        return Enclosure(*extension(*operands))
     point = definition(*(x.lower for x in operands))
+    if known == len(exact):
+        return Enclosure(point, point)
     lower, upper = extension(*operands)
     return Enclosure(np.where(exact, point, lower), np.where(exact, point, upper))
 
