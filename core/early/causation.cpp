@@ -54,7 +54,8 @@ void Causes::check(const BoundsEngine& engine, const BoundsAtStart& at_start) {
         const Item::Kind kind = at_start.item(i).kind;
         for (const std::uint32_t ref : {start.a, start.b})
             require(ref == none || earlier(ref, causes_.size()));
-        require((start.b == none || start.a != none) && (start.before < i || start.rest == none));
+        require(start.b == none || start.a != none);
+        require(start.before < i || (start.before == none && start.rest == none));
         require(start.rest == none || (start.rest < i && start.b != none &&
                                        at_start.item(start.rest).kind == Item::Kind::until));
         require(start.a != none || (kind != Item::Kind::all && kind != Item::Kind::some));

@@ -200,6 +200,11 @@ std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::fi
         rests = engine_->ended(outputs_, end, &failure);
     }
     if (failure) return *failure;
+    for (std::size_t i = 0; i < rests.size() && !decides_; ++i) {
+        if (rests[i].first > std::min(kept_[i], end)) // after a forged state alone
+            throw std::invalid_argument("This is not the state of a monitor of this program: it "
+                                        "has no values where the end of the trace reads some.");
+    }
     End last;
     finished_ = true;
     if (decides_) {
@@ -348,6 +353,11 @@ void DiscreteMonitor::transfer(Snapshot& snapshot) {
     checked::tick(snapshot, closed_, -1);
     checked::tick(snapshot, samples_);
     snapshot.item(finished_);
+    if (times_.newest() < 0) {
+        snapshot.require(samples_ == 0 && closed_ < 0);
+    } else {
+        snapshot.require(samples_ > 0 && closed_ == closed_after(times_.newest()));
+    }
     // What counts samples counts the same ones.
     if (engine_) snapshot.require(times_.newest() == engine_->seen());
     if (zone_) snapshot.require(times_.newest() == zone_->newest());

@@ -341,6 +341,7 @@ void Monitor::restore(const nb::bytes& state) {
 void Monitor::transfer(Snapshot& snapshot) {
     executor_.transfer(snapshot);
     clock_.transfer(snapshot);
+    snapshot.require(clock_.timestamps().count() == static_cast<std::size_t>(executor_.samples()));
     snapshot.values(previous_.data(), previous_.size());
 }
 

@@ -253,6 +253,11 @@ def no_specification(given: object) -> UsageError:
     )
 
 
+def changed_state() -> UsageError:
+    """Return the error for a state of a monitor that contradicts itself."""
+    return UsageError("this is not the state of a monitor of this formula: it was changed after it was saved")
+
+
 def choices(name: object, known: Iterable[str], noun: str) -> str:
     """Return the nearest known name, then the known names with the nearest first; a long list is cut.
 

@@ -12,6 +12,7 @@ from rtamt.compiler.causation import compile_causes
 from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Session, TickDefinition
 from rtamt.engine.native import core
+from rtamt.errors import changed_state
 from rtamt.language.parameters import with_values
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.tuples import NamedTuple
@@ -154,7 +155,7 @@ class EarlyProgram(EarlySession):
             if step < len(graph.origins):
                 return with_values([graph.origins[step]], values)[0]
             step -= len(graph.origins)
-        raise IndexError(step)
+        raise changed_state()
 
 
 class EarlyDefinition(EarlySession, TickDefinition):

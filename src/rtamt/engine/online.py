@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from fractions import Fraction
 
-from rtamt.errors import UsageError, did_you_mean
+from rtamt.errors import UsageError, changed_state, did_you_mean
 from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Formula
 from rtamt.language.printing.printer import excerpt
@@ -227,7 +227,10 @@ class OnlineMonitor:
             )
         self.__dict__.update(remembered)
         backend = self._session.open()
-        backend.restore(of_backend)
+        try:
+            backend.restore(of_backend)
+        except ValueError:
+            raise changed_state() from None
         self._connect(backend)
         if self._episodes is not None:
             self._episodes = [tracker.copied() for tracker in self._episodes]

@@ -324,7 +324,7 @@ class MonitorStates:
         twin = copy(self._new)
         try:
             twin._resume((twin._session.fingerprint, remembered, of_back_end))
-        except ValueError:
+        except (UsageError, ValueError):
             raise damaged("it has no state of this program") from None
         return twin
 

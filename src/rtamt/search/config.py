@@ -35,6 +35,7 @@ from rtamt.errors import StlError, UsageError, choices, did_you_mean, shown
 from rtamt.extras import library
 from rtamt.files import open_text
 from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.search.inputs import PiecewiseConstant, PiecewiseLinear, Pulse, Range, Sine, Step
 from rtamt.search.problem import Problem
 from rtamt.specification_loader import load, parse
@@ -56,6 +57,8 @@ KINDS: Mapping[str, Any] = MappingProxyType({
 
 _TOP = ("specification", "formula", "plant", "duration", "inputs", "parameters", "search", "outputs", "step")
 _SPECIFICATION = ("period", "unit", "time", "resolution", "semantics", "backend", "constants")
+#: A key of more parts than any setting has: parsers of TOML take quadratic time for it.
+_DEEP_KEY = lazy_pattern(r"""(?:\.[ \t]*(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*){64}""")
 _SEARCH = ("optimizer", "budget", "seed", "workers", "record", "stop")
 
 
@@ -72,7 +75,10 @@ def load_search(path: str | os.PathLike[str]) -> Search:
     place = Path(path)
     try:
         with open_text(place, "utf-8") as file:
-            data = _toml().loads(file.read())
+            text = file.read()
+        if _DEEP_KEY.search(text):
+            raise UsageError(f"{path}: it has a key of more than 64 parts")
+        data = _toml().loads(text)
     except OSError as error:
         raise UsageError(f"cannot read '{path}': {error.strerror}") from error
     except RecursionError:

@@ -1,10 +1,13 @@
-"""The states of monitors of a fleet; that restored ones continue: tests/laws/test_fleet_monitor_laws.py."""
+"""The states of monitors of a fleet. That restored ones continue: tests/laws/test_fleet_monitor_laws.py.
+
+Forged ones: tests/fuzz/test_forged_states.py.
+"""
 
 from __future__ import annotations
 
 import datetime as dt
-import struct
-import zlib
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +15,7 @@ import pytest
 
 import rtamt
 from rtamt.fleet.collectors import COLLECTORS
-from rtamt.fleet.monitor_state import REMEMBERED
+from rtamt.fleet.monitor_state import REMEMBERED, MonitorStates
 
 SPEC = rtamt.parse("always[0:2](x >= 3)")
 PAIR = rtamt.parse("require A: once[0:2](x >= 3); require B: always[0:1](y >= 3)")
@@ -116,32 +119,11 @@ def test_states_of_python_have_no_format() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "case", ["evidence", "corrections", "episodes", "requirements with different variables"]
-)
-def test_a_forged_state_is_refused_or_does_no_harm(case: str) -> None:
-    spec, made, times = CASES[case]
-    state = bytearray(taken(case, 4).snapshot()[:-4])
-    refused = 0
-    for place in range(16, len(state), 7):
-        for value in (0, 0xFF, state[place] ^ 1):
-            forged = bytearray(state)
-            forged[place] = value
-            try:
-                fleet = rtamt.Fleet.restore(
-                    spec, bytes(forged + struct.pack("<I", zlib.crc32(forged))), **made
-                )
-            except rtamt.UsageError:
-                refused += 1
-                continue
-            try:
-                values = [1.0] * len(fleet)
-                fleet.update_many(
-                    fleet.keys(), times[4:5] * len(fleet), dict.fromkeys(spec.input_names, values)
-                )
-                for key in ("a", "b"):
-                    monitor: Any = fleet.monitor(key)
-                    monitor.finish()
-            except (rtamt.StlError, IndexError, ValueError):
-                refused += 1
-    assert refused > 50
+def test_the_page_on_the_format_states_the_version_of_the_back_ends() -> None:
+    page = Path(__file__).parents[3] / "docs" / "reference" / "fleet-state.md"
+    (stated,) = re.findall(
+        r"\| version of the back ends, (\d+): .*; (\d+) on machines", page.read_text("utf-8")
+    )
+    version = MonitorStates(SPEC.monitor(verdict="eager"), {}).version
+    assert version in {int(stated[0]), int(stated[1])}
+    assert int(stated[1]) == int(stated[0]) + 2**16

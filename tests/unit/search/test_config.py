@@ -111,6 +111,15 @@ def test_a_file_that_is_nested_too_deeply(problem):
     assert str(caught.value) == f"{problem}: it is nested too deeply"
 
 
+@pytest.mark.parametrize("part", ["a", '"a"', "'a b' ", "1"])
+def test_a_file_with_a_key_of_very_many_parts(problem, part):
+    """It took minutes: parsers of TOML take quadratic time."""
+    problem.write_text(".".join([part] * 200_000) + " = 1")
+    with pytest.raises(UsageError) as caught:
+        load_search(problem)
+    assert str(caught.value) == f"{problem}: it has a key of more than 64 parts"
+
+
 def test_a_file_that_is_not_there():
     with pytest.raises(UsageError, match=r"cannot read 'none.toml': No such file or directory"):
         load_search("none.toml")

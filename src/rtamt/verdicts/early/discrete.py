@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rtamt.engine import SlowPath, inner_of
-from rtamt.errors import TraceError
+from rtamt.errors import TraceError, changed_state
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
 from rtamt.signals.data_errors import missing_variable, unknown_variable
@@ -161,6 +161,8 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             return self._backend.finish()
         except self._undefined as error:
             raise self._no_value(error) from None
+        except ValueError:
+            raise changed_state() from None
 
     def _as_given(self, found: Any) -> Any:
         """Return a result of the back end with times in the caller's format."""
