@@ -180,6 +180,8 @@ std::optional<GivenColumns> GivenColumns::of(const NumPy& numpy, const nb::handl
     if (nb::object found = item_of(data, time); found.is_valid()) {
         given.times.emplace(numpy, std::move(found));
         if (given.times->count() != given.count) return std::nullopt;
+    } else if (std::cmp_greater(PyDict_Size(data.ptr()), names.size())) {
+        return std::nullopt; // one of the others may hold the timestamps
     }
     return given;
 }

@@ -89,7 +89,7 @@ def _sample(
 ) -> Iterator[Mapping[str, Any]]:
     """Yield chunks on their own time base: the values of all signals every ``period``."""
     assert period is not None
-    sampler = Sampler(spec.input_names, period, reading.how, oldest_held(spec, reading))
+    sampler = Sampler(spec.input_names, period, reading.how, oldest_held(spec, reading), spec.types)
     for chunk in chunks:
         channels = {name: chunk.channel(name) for name in chunk}
         known = sampler.take(

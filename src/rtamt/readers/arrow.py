@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from contextlib import suppress
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import TraceError
 from rtamt.lazy.modules import np
 from rtamt.readers.ahead import ahead
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import CHUNK, Field, Source, Table, library
+from rtamt.signals.time_columns import is_stamps
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -167,10 +171,29 @@ def _fields(schema: Any, arrow: Any, dated: Collection[str]) -> tuple[Field, ...
         unit = (said.get(b"unit") or said.get(b"units") or b"").decode(errors="replace")
         axis = column.name == _INDEX and types.is_floating(type_)
         fields.append(Field(field.column, field.name, unit or field.unit, kind, axis=axis))
-    return tuple(fields)
+    return (*_described_times(schema), *fields)
+
+
+def _described_times(schema: Any) -> tuple[Field, ...]:
+    """Return the timestamps that are a range in the notes of pandas on its index, and no column.
+
+    A table keeps these notes when rows are left out, so that they are not to be relied on.
+    """
+    with suppress(AttributeError, KeyError, TypeError, ValueError):
+        for index in json.loads(schema.metadata[b"pandas"])["index_columns"]:
+            if isinstance(index, dict) and index["name"] not in (None, *schema.names):
+                field = field_of(str(index["name"]), "number")
+                return (field,) if is_stamps(field.name) else ()
+    return ()
 
 
 def _raws(table: Any, wanted: Sequence[Field]) -> list[Raw]:
+    for field in wanted:
+        if field.column not in table.column_names:
+            raise TraceError(
+                f"the timestamps '{field.column}' are a pandas index that was saved without its values: save "
+                f"frame.reset_index(), or read without timestamps (time='', --time-column '')"
+            )
     return [_raw(table.column(field.column)) for field in wanted]
 
 

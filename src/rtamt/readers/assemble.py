@@ -367,7 +367,8 @@ def _channels(
             first_gap, table = row, times
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
         alias = field.alias if name == field.name else ""
-        made[name] = Channel(mine, numbers, unit, field.column, first_gap, table, alias)
+        stepped = field.type is not None
+        made[name] = Channel(mine, numbers, unit, field.column, first_gap, table, alias, stepped)
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
         made[TIME] = Channel(times, in_seconds(times), "s", TIME)

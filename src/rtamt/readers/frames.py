@@ -144,7 +144,7 @@ def _pandas(frame: Any) -> Source:
             str(name): index.get_level_values(i) for i, name in enumerate(index.names) if name is not None
         }
         columns = {name: _pandas_column(each.to_series()) for name, each in levels.items()} | columns
-    elif type(index).__name__ != "RangeIndex":
+    elif type(index).__name__ != "RangeIndex" or is_stamps(field_of(str(index.name)).name):
         name = str(index.name) if index.name is not None else "index"
         dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
         # A column that has the name of timestamps comes first, as in an evaluation of the frame.

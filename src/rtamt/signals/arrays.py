@@ -20,7 +20,7 @@ from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
 from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
-from rtamt.signals.time_columns import check_frame, check_index, is_labelled
+from rtamt.signals.time_columns import check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -96,8 +96,8 @@ def columns_of(
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
-    if TIME not in keys:
-        check_indexes(data, keys, names)
+    elif TIME not in keys:
+        check_mapping(data, TIME, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
     times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
@@ -120,13 +120,6 @@ def is_mapping(data: Any) -> bool:
     A dataset of xarray is none: as a mapping it lacks its coordinates, such as the timestamps.
     """
     return data.__class__ is dict or (isinstance(data, Mapping) and not is_labelled(data))
-
-
-def check_indexes(data: Any, keys: Sequence[str], names: Sequence[str]) -> None:
-    """Raise :class:`TraceError` if data without timestamps has series whose index may hold them."""
-    for name in names:
-        if name in keys:
-            check_index(data[name], name)
 
 
 def array(values: Any, name: str, first: int = 0, *, copy: bool = True) -> FloatArray:

@@ -14,7 +14,8 @@ from rtamt.errors import TraceError, UsageError, did_you_mean, shown
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.modules import np
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, WithTimeBases, check_indexes, is_mapping, number_of
+from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping, number_of
+from rtamt.signals.time_columns import check_mapping
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,8 +124,8 @@ def fill_gaps(data: Any, names: Sequence[str], *, own_time_bases: bool) -> tuple
             filled[name] = times, _fill_gaps(values, name, missing)
         return filled, missing
     keys = list(data) if is_mapping(data) else list(data.columns)
-    if TIME not in keys:
-        check_indexes(data, keys, names)
+    if is_mapping(data) and TIME not in keys:
+        check_mapping(data, TIME, names)
     kept = [key for key in keys if key == TIME or key in names or is_mapping(data)]
     return {key: _fill_gaps(data[key], key, missing) if key in names else data[key] for key in kept}, missing
 

@@ -13,7 +13,7 @@ from rtamt.signals.listing import show_time
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -75,7 +75,7 @@ class Sampler:
     """Takes signals in chunks, each with its own samples, and gives their values at the instants of a grid.
 
     The grid is that of :func:`grid_of`; an instant is reported once every signal has a sample there, or later.
-    ``hold_for``: as for :func:`resampled`.
+    ``hold_for``: as for :func:`resampled`. ``stepped``: the signals that are held whatever ``how``.
     """
 
     def __init__(
@@ -84,7 +84,9 @@ class Sampler:
         period: str | float | Fraction,
         how: str,
         hold_for: Fraction | None = None,
+        stepped: Collection[str] = (),
     ) -> None:
+        self._stepped = stepped
         self._step, self._how, self._hold_for = duration(period), how, hold_for
         self._pending: dict[str, tuple[Times, FloatArray]] = {}
         self._names = names
@@ -149,7 +151,8 @@ class Sampler:
         grid = _grid(self._start + first * self._step, self._step, count, dtype)
         found = {}
         for name, (times, values) in self._pending.items():
-            found[name], _ = resampled(name, times, values, grid, self._how, self._hold_for, self._step)
+            how = "hold" if name in self._stepped else self._how
+            found[name], _ = resampled(name, times, values, grid, how, self._hold_for, self._step)
             place = int(np.searchsorted(times, grid[-1], side="right")) - 1
             self._pending[name] = times[place:], values[place:]
         return grid, found

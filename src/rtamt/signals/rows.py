@@ -9,6 +9,7 @@ from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.signals.arrays import TIME, as_array, is_mapping
 from rtamt.signals.data_errors import missing_variable
+from rtamt.signals.time_columns import check_mapping
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -42,6 +43,8 @@ class Rows:
             raise TraceError(
                 f"expected a mapping from variable to an array of shape (traces, samples), got {type(data).__name__}"
             )
+        if TIME not in data:
+            check_mapping(data, TIME, names)
         columns = {}
         for name in names:
             if name not in data:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
+from rtamt.lazy.modules import dt
 from rtamt.lazy.patterns import lazy_pattern
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 
@@ -37,6 +38,8 @@ _BRACKETS = lazy_pattern(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
 #: Units that are also names of time columns; 's' and 'ms' are too ambiguous.
 _UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
+#: The beginning of the text of a date.
+_DATED = lazy_pattern(r"\s*\d{4}-\d{2}-\d{2}(?!\d)")
 _WORDS = lazy_pattern(r"[A-Z]?[a-zµμ]+|[A-Z]+(?![a-z])")
 
 
@@ -111,6 +114,23 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
         )
 
 
+def check_mapping(data: Mapping[Any, Any], time: str, names: Collection[str]) -> None:
+    """Raise :class:`TraceError` if a mapping without the key ``time`` may have its timestamps elsewhere.
+
+    They may be under a key with another name of timestamps, or in the index of a series; ``names``: the variables.
+    """
+    heads = {name.split(".")[0] for name in names}
+    for key in data:
+        if key in names or key in heads:
+            check_index(data[key], str(key))
+        elif is_stamps(split_unit(str(key))[0]):
+            raise TraceError(
+                f"the data may have its timestamps in '{key}', but those of a mapping are read from its key '{time}': "
+                f"rename the key, or read the data with rtamt.read, which takes other names and units",
+                variable=time,
+            )
+
+
 def check_index(values: Any, name: str) -> None:
     """Raise :class:`TraceError` if values have an index that may hold their timestamps, which nothing reads.
 
@@ -138,10 +158,9 @@ def _times_in_index(index: Any) -> list[str]:
     if getattr(index, "nlevels", 1) > 1:
         return [f"its index '{name}'" for name in index.names if _is_called_so(name)]
     name = getattr(index, "name", None)
-    dated = type(index).__name__ in ("DatetimeIndex", "TimedeltaIndex", "PeriodIndex")
     # Rows are numbered by integers: what is measured is no number of a row.
     measured = getattr(getattr(index, "dtype", None), "kind", "") == "f"
-    if not (dated or measured or _is_called_so(name)):
+    if not (measured or _is_called_so(name) or _are_dated(index)):
         return []
     return ["its index" if name is None else f"its index '{name}'"]
 
@@ -152,5 +171,17 @@ def _is_called_so(name: Any) -> bool:
 
 def _may_hold_times(column: str, values: Any) -> bool:
     name, _ = split_unit(column)
+    return is_stamps(name) or may_be_stamps(name) or _are_dated(values)
+
+
+def _are_dated(values: Any) -> bool:
+    """Return whether values are dates or durations, or texts or objects of which the first is one."""
     kind = str(getattr(values, "dtype", "")).lower()
-    return is_stamps(name) or may_be_stamps(name) or kind.startswith(("date", "time", "duration", "period"))
+    if kind.startswith(("date", "time", "duration", "period")):
+        return True
+    if not kind.startswith(("object", "str", "large_string")):
+        return False
+    first = next(iter(values), None)
+    return isinstance(first, dt.date | dt.timedelta) or (
+        isinstance(first, str) and _DATED.match(first) is not None
+    )

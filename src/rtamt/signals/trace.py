@@ -45,6 +45,7 @@ class Channel:
     ``unit``: the unit of the values, as the source writes it. ``column``: the name of the signal in the source.
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
     than those of its ``table``; both None where it has all. ``alias``: another name, which listings leave out.
+    ``stepped``: whether there is nothing between two values, as of truths and members of enumerations.
     """
 
     times: Times | None
@@ -54,6 +55,7 @@ class Channel:
     first_gap: int | None = None
     table: Times | None = None
     alias: str = ""
+    stepped: bool = False
 
 
 class Trace(WithTimeBases):
@@ -297,7 +299,8 @@ class Trace(WithTimeBases):
 
         ``how``: ``"hold"``, the last value before or at an instant (what dense time means; up to the
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
-        earliest last sample). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
+        earliest last sample; signals that were read as Booleans or enumerations, with ``types=`` of :func:`rtamt.read`,
+        are held). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
         left out and listed in :attr:`losses`. A time that the rounding of a double puts just behind an instant, such
         as 3 * 0.1 s, counts as that instant. ``hold_for``: the maximum age of a held value; an older one is an error.
 
@@ -332,7 +335,8 @@ class Trace(WithTimeBases):
         losses: list[str] = []
         for name, channel in self._channels.items():
             assert channel.times is not None
-            values, left_out = resampled(name, channel.times, channel.values, grid, how, hold_for, step)
+            mine = "hold" if channel.stepped else how
+            values, left_out = resampled(name, channel.times, channel.values, grid, mine, hold_for, step)
             losses += left_out
             channels[name] = replace(channel, times=grid, values=values, first_gap=None, table=None)
         return self.with_channels(channels, losses)

@@ -122,3 +122,34 @@ def test_constants_of_a_message_are_read_by_name(tmp_path):
     trace = rtamt.read(bag.path, columns=["v"], names={"v": "/verdict.verdict"}, types=spec.types)
     # 0 and 3 are no constants of these names: they equal no member, also where a member has that code.
     assert trace["v"].values.tolist() == [3, 2, 0, 3]
+
+
+LINEAR = """
+enum Mode { MANUAL, AUTO = 2, RTL = 4 }
+input Mode mode
+input bool armed
+input float x
+require A: always(mode != AUTO)
+require B: always(armed or x <= 4)
+"""
+STEPS = "time,mode,armed,x\n0,MANUAL,true,8\n1,RTL,false,4\n2,MANUAL,false,0\n"
+
+
+def test_linear_resampling_holds_members_of_enumerations_and_booleans(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(STEPS, encoding="utf-8")
+    spec = rtamt.parse(LINEAR, period="500ms")
+    trace = rtamt.read(path, types=spec.types).resample("500ms", how="linear")
+    assert trace["mode"].values.tolist() == [0, 0, 4, 4, 0]
+    assert trace["armed"].values.tolist() == [1, 1, 0, 0, 0]
+    assert trace["x"].values.tolist() == [8, 6, 4, 2, 0]
+    assert spec.evaluate(trace).satisfied
+
+
+@pytest.mark.parametrize("early", [(), ("--early",)])
+def test_commands_hold_them_in_linear_resampling(tmp_path, capsys, early):
+    log, spec = tmp_path / "log.csv", tmp_path / "spec.stl"
+    log.write_text(STEPS, encoding="utf-8")
+    spec.write_text(LINEAR, encoding="utf-8")
+    assert main(["check", str(spec), str(log), "--resample", "500ms", "--how", "linear", *early]) == 0
+    assert "2 satisfied" in capsys.readouterr().out

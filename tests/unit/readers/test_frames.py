@@ -226,6 +226,10 @@ LEVELS = pd.MultiIndex.from_product([["car"], [0.0, 0.5]], names=["vehicle", "ti
         (pd.DataFrame({"x": [1, -1]}, index=pd.Index([0, 500], name="time [ms]")), "its index 'time [ms]'"),
         (pd.DataFrame({"x": [1, -1]}, index=LEVELS), "its index 'time'"),
         (pd.DataFrame({"time": [0, 1], "t [ms]": [0, 500], "x": [1, -1]}), "'t [ms]'"),
+        (pd.DataFrame({"when": ["2024-05-01 10:00", "2024-05-01 10:01"], "x": [1, -1]}), "'when'"),
+        (pl.DataFrame({"when": ["2024-05-01T10:00", "2024-05-01T10:01"], "x": [1, -1]}), "'when'"),
+        (pd.DataFrame({"x": [1, -1]}, index=["2024-05-01 10:00", "2024-05-01 10:01"]), "its index"),
+        (pd.DataFrame({"x": [1, -1]}, index=[dt.timedelta(0), dt.timedelta(1)]), "its index"),
     ],
 )
 def test_a_frame_that_is_evaluated_directly_is_not_taken_to_have_no_time(frame, named, time):
@@ -372,3 +376,47 @@ def test_the_unit_at_the_end_of_the_name_of_a_chosen_time_column_is_read(name):
     assert trace["x"].times.tolist() == STAMPS
     assert trace.notes == (f"'{name}' is in ms, by its name",)
     assert rtamt.read({name: [0, 100, 200], "x": X}, time=name, time_unit="us")["x"].times[1] == 0.0001
+
+
+@pytest.mark.parametrize("name", ["t", "timestamp", "Time", "time_ms", "stamp [us]"])
+def test_timestamps_of_a_dict_that_are_not_called_time_are_not_ignored(name):
+    spec = rtamt.parse("x >= 3")
+    sentence = (
+        f"the data may have its timestamps in '{name}', but those of a mapping are read from its key 'time': rename "
+        f"the key, or read the data with rtamt.read, which takes other names and units"
+    )
+    for evaluate in (spec.evaluate, spec.evaluate, spec.monitor().update_many):
+        with pytest.raises(rtamt.TraceError) as error:
+            evaluate({name: STAMPS, "x": X})
+        assert str(error.value) == sentence
+    with pytest.raises(rtamt.TraceError) as error:
+        spec.evaluate_batch({name: [STAMPS], "x": [X]})
+    assert str(error.value) == sentence
+    assert spec.evaluate({name: STAMPS, "time": STAMPS, "x": X}).robustness == 2
+    assert spec.evaluate({"speed": STAMPS, "x": X}).robustness == 2
+
+
+def test_a_variable_with_the_name_of_timestamps_is_a_variable():
+    assert rtamt.parse("t >= 3").evaluate({"t": X, "speed": X}).robustness == 2
+    assert rtamt.parse('input float x = "t"\nx >= 3').evaluate({"t": X, "speed": X}).robustness == 2
+    with pytest.raises(rtamt.TraceError, match="may have its timestamps in 't'"):
+        rtamt.parse("x >= 3").evaluate({"t": X, "x": X})
+
+
+def test_a_range_that_is_the_index_of_a_frame_holds_its_timestamps():
+    index = pd.RangeIndex(0, 300, 100, name="time_ms")
+    for data in (pd.DataFrame({"x": X}, index), pd.Series(X, index, name="x")):
+        assert rtamt.read(data)["x"].times.tolist() == STAMPS
+    assert rtamt.read(pd.DataFrame({"x": X}, pd.RangeIndex(0, 6, 2))).channel("x").times is None
+    table = pa.Table.from_pandas(pd.DataFrame({"x": X}, index))
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(table)
+    assert str(error.value) == (
+        "the timestamps 'time_ms' are a pandas index that was saved without its values: save frame.reset_index(), or "
+        "read without timestamps (time='', --time-column '')"
+    )
+    assert rtamt.read(table, columns=["x"], time="")["x"].values.tolist() == X
+    assert (
+        rtamt.read(table.append_column("clock", pa.array(STAMPS)), columns=["x"], time="clock")["x"].times[1]
+        == 0.1
+    )

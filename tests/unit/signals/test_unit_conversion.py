@@ -13,6 +13,7 @@ from rtamt.signals.unit_conversion import Conversion, conversion_of, converted
 
 CASES = [
     ("km/h", "m/s", Fraction(5, 18), 0),
+    ("kmph", "m/s", Fraction(5, 18), 0),
     ("m/s", "km/h", Fraction(18, 5), 0),
     ("degC", "K", 1, Fraction(27315, 100)),
     ("°F", "°C", Fraction(5, 9), Fraction(-160, 9)),
@@ -32,7 +33,8 @@ def test_conversions_are_exact(recorded, declared, scale, offset):
 
 
 @pytest.mark.parametrize(
-    ("recorded", "declared"), [("m", "m"), ("m / s", "m/s"), ("m/s²", "m/s^2"), ("N*m", "J")]
+    ("recorded", "declared"),
+    [("m", "m"), ("m / s", "m/s"), ("m/s²", "m/s^2"), ("N*m", "J"), ("km/h", "kmph")],
 )
 def test_the_same_unit_changes_nothing(recorded, declared):
     values = np.array([-0.0, 1.5])

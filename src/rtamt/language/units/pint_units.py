@@ -70,7 +70,9 @@ def is_none(unit: str) -> bool:
 @lru_cache(maxsize=1)
 def registry() -> Any:
     """Return the units of pint, with exact factors."""
-    return library("pint", "converting units", "units").UnitRegistry(non_int_type=Fraction)
+    units = library("pint", "converting units", "units").UnitRegistry(non_int_type=Fraction)
+    units.define("@alias kilometer_per_hour = kmph")  # pint would read kmph as 1000 mph
+    return units
 
 
 @lru_cache(maxsize=512)
