@@ -14,6 +14,7 @@ from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Formula, Parameter, Span, Var, postorder
+from rtamt.language.operators import Fixity
 from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy.patterns import lazy_pattern
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 _FUNCTIONS = ("abs", "sqrt", "exp", "min", "max", "sin", "cos", "tan", "floor", "ceil", "mod", "sign")
 
+#: Its parser splits a formula at "or" first, then at "=>", and at the first of equal operators: a or b => c is
+#: a or (b => c).
 BREACH = Dialect(
     "Breach",
     (
@@ -33,11 +36,11 @@ BREACH = Dialect(
         Word("not", "not"),
         Word("always", "alw_ alw always always_"),
         Word("eventually", "ev_ ev eventually eventually_"),
-        Word("until", "until_ until"),
+        Word("until", "until_ until", fixity=Fixity.RIGHT),
         Word("once", "once_ once"),
         Word("historically", "hist_ hist historically historically_"),
         Word("and", "and"),
-        Word("or", "or"),
+        Word("or", "or", 10),
         Word("implies", "->"),
     ),
     characters={"=>": "->"},
@@ -66,6 +69,7 @@ _STATEMENT = lazy_pattern(
 _VALUE = lazy_pattern(
     r"\s*(?P<name>[A-Za-z_]\w*)\s*=\s*(?P<value>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 )
+_NESTING = lazy_pattern(r"[()]|=>|\b(?:and|or|until)\b|\buntil_\[")
 #: Operators without an interval have no underscore.
 _UNBOUNDED = lazy_pattern(r"\b(alw|ev|once|hist|until)_(?!\[)")
 _NOTE = (
@@ -166,6 +170,10 @@ def _formula(
             source,
             Span(*shifted.span()),
         )
+    if _mixes_untils(source):
+        raise SpecificationError(
+            "Breach splits a formula at 'until' before 'until_': put one of them in parentheses", source, None
+        )
     variables = {*signals, *(match["name"] for match in _AT.finditer(source))}
     plain = _AT.sub(lambda match: f"{match['name']}   ", source)
     try:
@@ -174,6 +182,23 @@ def _formula(
         )
     except SpecificationError as error:
         raise SpecificationError(error.message, source, error.span) from None
+
+
+def _mixes_untils(source: str) -> bool:
+    """Return whether a chain has 'until' with and without an interval: one binds tighter than the other in Breach."""
+    chains: list[set[str]] = [set()]
+    for match in _NESTING.finditer(source):
+        if match[0] == "(":
+            chains.append(set())
+        elif match[0] == ")":
+            del chains[max(1, len(chains) - 1) :]
+        elif match[0].startswith("until"):
+            chains[-1].add(match[0])
+            if len(chains[-1]) > 1:
+                return True
+        else:
+            chains[-1].clear()
+    return False
 
 
 def write_breach(spec: Specification, _component: str | None = None) -> Conversion:
@@ -199,6 +224,8 @@ def write_breach(spec: Specification, _component: str | None = None) -> Conversi
         try:
             _require_numbers(nodes)
             text = _UNBOUNDED.sub(r"\1 ", BREACH.write(requirement.formula, parameters=True))
+            if _mixes_untils(text):
+                raise InexpressibleError("Breach reads 'until' and 'until_' in one chain in another order")
         except InexpressibleError as error:
             rejected.append(Rejection(requirement.name, str(error)))
             continue

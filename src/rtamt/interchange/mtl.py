@@ -12,7 +12,7 @@ from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Apply, Interval, Var, fold, postorder
-from rtamt.language.operators import STL
+from rtamt.language.operators import STL, Fixity
 from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
@@ -46,7 +46,7 @@ MTL = Dialect(
         Word("unless", "W", 60),
         Word("and", "& and"),
         Word("or", "| or"),
-        Word("implies", "-> →"),
+        Word("implies", "-> →", fixity=Fixity.LEFT),
         Word("iff", "<-> iff"),
         Word("xor", "^ xor"),
     ),

@@ -223,3 +223,41 @@ def test_a_period_is_declared_and_its_multiples_are_bounds(read, text: str, boun
         f"0.75 s in '{bound}' is not a whole number of periods of 0.5 s",
     )
     assert rtamt.parse(read(text).text).period is None
+
+
+@pytest.mark.parametrize(
+    ("breach", "here"),
+    [
+        ("{a} or {b} => {c}", "{a} or ({b} -> {c})"),
+        ("({a} or {b}) => {c}", "({a} or {b}) -> {c}"),
+        ("{a} => {b} or {c}", "({a} -> {b}) or {c}"),
+        ("{a} and {b} => {c}", "{a} and {b} -> {c}"),
+        ("{a} => {b} => {c}", "{a} -> ({b} -> {c})"),
+        ("{a} until {b} until {c}", "{a} until ({b} until {c})"),
+    ],
+)
+def test_operators_of_breach_bind_as_in_its_parser(breach: str, here: str) -> None:
+    found = read_breach("R := " + breach.format(**{name: f"({name}[t] > 0)" for name in "abc"}))
+    formula = rtamt.parse(found.text).formula
+    assert formula == rtamt.parse(here.format(a="(a > 0)", b="(b > 0)", c="(c > 0)")).formula
+    written = write_breach(rtamt.parse(found.text))
+    assert rtamt.parse(read_breach(written.text).text).formula == formula
+
+
+def test_chains_of_until_with_and_without_an_interval_need_parentheses_in_breach() -> None:
+    (rejected,) = read_breach("R := x[t] > 1 until_[0,1] y[t] > 1 until z[t] > 1").rejected
+    assert rejected.reason.splitlines()[0] == (
+        "Breach splits a formula at 'until' before 'until_': put one of them in parentheses"
+    )
+    found = read_breach("R := x[t] > 1 until_[0,1] (y[t] > 1 until z[t] > 1)")
+    assert str(rtamt.parse(found.text).formula) == "x > 1 until[0:1] (y > 1 until z > 1)"
+    assert not read_breach("R := x[t] > 1 until_[0,1] y[t] > 1 and z[t] > 1 until x[t] > 2").rejected
+    (rejected,) = write_breach(rtamt.parse("x > 1 until[0:1] (y > 1 until z > 1)")).rejected
+    assert rejected.reason == "Breach reads 'until' and 'until_' in one chain in another order"
+
+
+def test_implications_of_py_metric_temporal_logic_associate_to_the_left() -> None:
+    bools = "bool a\nbool b\nbool c\n"
+    formula = rtamt.parse(bools + "(a -> b) -> c").formula
+    assert rtamt.parse(read_mtl("(a -> b -> c)").text).formula == formula
+    assert write_mtl(rtamt.parse(bools + "require R: a -> b -> c")).text.strip() == "R: (a -> (b -> c))"
