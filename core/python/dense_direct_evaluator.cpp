@@ -38,8 +38,10 @@ template <class Item>
 } // namespace
 
 DenseDirectEvaluator::DenseDirectEvaluator(std::vector<nb::str> names, nb::str time, double rate,
-                                           std::int64_t extra, const nb::list& stages)
-    : names_(std::move(names)), time_(std::move(time)), rate_(rate), extra_(extra) {
+                                           std::int64_t extra, const nb::list& stages,
+                                           const nb::object& signal)
+    : names_(std::move(names)), time_(std::move(time)), rate_(rate), extra_(extra),
+      signal_(signal, {"_times", "_values"}) {
     for (const nb::handle each : stages) {
         const auto given = nb::cast<nb::tuple>(each);
         Stage stage{parse(nb::cast<nb::bytes>(given[0]), Domain::dense),
@@ -142,12 +144,12 @@ nb::object DenseDirectEvaluator::run(const nb::handle& data) {
         found->append(end, found->values()[found->count() - 1]);
     }
     const std::size_t points = found->count();
-    const auto result = new_bytes(16 * points);
-    auto* times = column<double>(result.ptr(), 0);
+    const NewArray times = numpy_.make(points);
+    const NewArray values = numpy_.make(points);
     for (std::size_t i = 0; i < points; ++i)
-        times[i] = static_cast<double>(found->times()[i]) / rate_;
-    std::copy_n(found->values(), points, column<double>(result.ptr(), points));
-    return nb::make_tuple(memory, counts, result);
+        times.values()[i] = static_cast<double>(found->times()[i]) / rate_;
+    std::copy_n(found->values(), points, values.values());
+    return nb::make_tuple(memory, counts, signal_.made({times.array, values.array}));
 }
 
 // Nothing where a value is undefined.
@@ -188,14 +190,15 @@ std::optional<EventList> DenseDirectEvaluator::evaluate(std::vector<Events>& sig
 void add_dense_direct_evaluator(const nb::module_& m) {
     nb::class_<DenseDirectEvaluator>(m, "DenseDirectEvaluator",
                                      "Reads, checks and evaluates a recording in one call.")
-        .def(nb::init<std::vector<nb::str>, nb::str, double, std::int64_t, const nb::list&>(),
+        .def(nb::init<std::vector<nb::str>, nb::str, double, std::int64_t, const nb::list&,
+                      const nb::object&>(),
              nb::arg("names"), nb::arg("time"), nb::arg("rate"), nb::arg("extra"),
-             nb::arg("stages"))
+             nb::arg("stages"), nb::arg("signal"))
         .def("run", &DenseDirectEvaluator::run, nb::arg("data").none(),
              "Evaluate a dict of signals; return ticks and values of each variable in a bytearray, "
-             "the numbers of their samples, and seconds and values of the result in another. None "
-             "if "
-             "anything has to be converted, is wrong, or has no value.");
+             "the numbers of their samples, and the signal of the result. None if anything has to "
+             "be "
+             "converted, is wrong, or has no value.");
 }
 
 } // namespace rtamt::python

@@ -7,6 +7,7 @@
 
 #include "../dense/executor.hpp"
 #include "recording.hpp"
+#include "result_class.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -27,9 +28,10 @@ class DenseDirectEvaluator {
     // `rate`: ticks in a second, a whole number below 2^53. `stages`: of each the program, the
     // places of its signals, and the scans over its outputs: their kinds and operands. The
     // variables come first, then the scans in order. Only the last stage has no scans, and it has
-    // one output. `extra`: for how many ticks after the end the other stages run.
+    // one output. `extra`: for how many ticks after the end the other stages run. `signal`: the
+    // class of the robustness.
     DenseDirectEvaluator(std::vector<nb::str> names, nb::str time, double rate, std::int64_t extra,
-                         const nb::list& stages);
+                         const nb::list& stages, const nb::object& signal);
 
     ~DenseDirectEvaluator() {
         for (const Stage& stage : stages_)
@@ -41,8 +43,7 @@ class DenseDirectEvaluator {
     DenseDirectEvaluator& operator=(DenseDirectEvaluator&&) = delete;
 
     // A tuple of the ticks and values of each variable in a bytearray, the numbers of their
-    // samples, and the seconds and values of the result in another; None for data that are not
-    // evaluated here.
+    // samples, and the signal of the result; None for data that are not evaluated here.
     [[nodiscard]] nb::object run(const nb::handle& data);
 
   private:
@@ -67,6 +68,7 @@ class DenseDirectEvaluator {
     double rate_;
     std::int64_t extra_;
     std::vector<Stage> stages_;
+    ResultClass<2> signal_;
     NumPy numpy_;
 
     [[nodiscard]] std::optional<std::vector<Samples>> samples_in(const nb::handle& data) const;

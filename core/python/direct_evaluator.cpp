@@ -2,8 +2,6 @@
 
 #include "arrays.hpp"
 #include "offline.hpp"
-#include "recording.hpp"
-#include "result_class.hpp"
 
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
@@ -55,9 +53,9 @@ class Rows {
 } // namespace
 
 DirectEvaluator::DirectEvaluator(std::vector<nb::str> names, nb::str time, const Admitted& admitted,
-                                 const nb::list& stages, nb::object threads)
+                                 const nb::list& stages, nb::object threads, SignalClasses classes)
     : names_(std::move(names)), time_(std::move(time)), admitted_(admitted),
-      threads_(std::move(threads)) {
+      threads_(std::move(threads)), classes_(std::move(classes)) {
     using Scans = std::vector<nb::tuple>;
     for (const nb::handle each : stages) {
         const auto given = nb::cast<nb::tuple>(each);
@@ -83,25 +81,29 @@ nb::object DirectEvaluator::run(const nb::handle& data) {
     }
     const std::size_t count = given->count;
     const std::size_t width = names_.size();
-    const std::size_t timed = given->times ? 1 : 0;
     if (!given->times && !admitted_.given && admitted_.period != 1.0) return nb::none();
-    const Rows rows(numpy_, width + timed + 1, count);
-    if (given->times) {
-        const std::span<double> seconds(rows.row(width), count);
-        if (!given->times->copy(seconds.data()) || !ordered(seconds, {}) ||
-            (!admitted_.given && inferred_period(seconds) != admitted_.period) ||
-            !regular(seconds, {}, admitted_.period, admitted_.tolerance)) {
-            return nb::none();
-        }
-    }
+    const std::size_t timed = given->times ? 1 : 0;
+    const Rows rows(numpy_, width + timed, count);
+    if (given->times && !read_times(*given->times, {rows.row(width), count})) return nb::none();
     std::vector<const double*> columns;
     columns.reserve(width);
     for (std::size_t i = 0; i < width; ++i) {
         if (!given->columns[i].copy(rows.row(i))) return nb::none();
         columns.push_back(rows.row(i));
     }
-    if (!evaluate(columns, count, rows.row(width + timed))) return nb::none();
-    return nb::make_tuple(rows.object(), count, timed != 0);
+    const NewArray values = numpy_.make(count);
+    if (!evaluate(columns, count, values.values())) return nb::none();
+    const auto& kind = timed != 0 ? classes_.stored_times : classes_.regular_times;
+    const nb::object times =
+        kind.made({nb::int_(count), timed != 0 ? rows.object() : classes_.period, nb::none()});
+    return nb::make_tuple(rows.object(), count, timed != 0,
+                          classes_.signal.made({times, values.array}));
+}
+
+bool DirectEvaluator::read_times(const Given& given, std::span<double> seconds) const {
+    return given.copy(seconds.data()) && ordered(seconds, {}) &&
+           (admitted_.given || inferred_period(seconds) == admitted_.period) &&
+           regular(seconds, {}, admitted_.period, admitted_.tolerance);
 }
 
 // Whether all values are defined.
@@ -147,11 +149,10 @@ void add_direct_evaluator(nb::module_& m) {
     m.def(
         "instance_maker",
         [](const nb::type_object& type, const std::array<std::string, 3>& slots) {
-            const ResultClass<3> made(type, {slots[0].c_str(), slots[1].c_str(), slots[2].c_str()});
-            return nb::cpp_function([made](nb::handle a, nb::handle b, nb::handle c) {
-                nb::object instance = nb::steal(made.make({a, b, c}));
-                if (!instance.is_valid()) throw nb::python_error();
-                return instance;
+            const ResultClass<3> result(type,
+                                        {slots[0].c_str(), slots[1].c_str(), slots[2].c_str()});
+            return nb::cpp_function([result](nb::handle a, nb::handle b, nb::handle c) {
+                return result.made({a, b, c});
             });
         },
         nb::arg("kind"), nb::arg("slots"),
@@ -163,18 +164,25 @@ void add_direct_evaluator(nb::module_& m) {
             "__init__",
             [](DirectEvaluator* self, std::vector<nb::str> names, nb::str time, double period,
                bool given, double tolerance, std::size_t fewest, std::size_t most,
-               const nb::list& stages, nb::object threads) {
-                new (self) DirectEvaluator(std::move(names), std::move(time),
-                                           {period, given, tolerance, fewest, most}, stages,
-                                           std::move(threads));
+               const nb::list& stages, nb::object threads, const nb::object& signal,
+               const nb::object& regular_times, const nb::object& stored_times,
+               nb::object exact_period) {
+                new (self) DirectEvaluator(
+                    std::move(names), std::move(time), {period, given, tolerance, fewest, most},
+                    stages, std::move(threads),
+                    {ResultClass<2>(signal, {"_times", "_values"}),
+                     ResultClass<3>(regular_times, {"_count", "_period", "_array"}),
+                     ResultClass<3>(stored_times, {"_count", "_rows", "_array"}),
+                     std::move(exact_period)});
             },
             nb::arg("names"), nb::arg("time"), nb::arg("period"), nb::arg("given"),
             nb::arg("tolerance"), nb::arg("fewest"), nb::arg("most"), nb::arg("stages"),
-            nb::arg("threads"))
+            nb::arg("threads"), nb::arg("signal"), nb::arg("regular_times"),
+            nb::arg("stored_times"), nb::arg("exact_period"))
         .def("run", &DirectEvaluator::run, nb::arg("data").none(),
-             "Evaluate a dict of columns; return memory, count, and whether there are timestamps. "
-             "None if anything has to be converted, is wrong, or has no value. The memory, a "
-             "bytearray or a list of arrays, has the columns, the timestamps and the values.");
+             "Evaluate a dict of columns; return memory, count, whether there are timestamps, and "
+             "the signal. None if anything has to be converted, is wrong, or has no value. The "
+             "memory, a bytearray or a list of arrays, has the columns and the timestamps.");
 }
 
 } // namespace rtamt::python

@@ -9,10 +9,13 @@
 
 #include "evaluator.hpp"
 #include "numpy.hpp"
+#include "recording.hpp"
+#include "result_class.hpp"
 
 #include <nanobind/nanobind.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,18 +32,27 @@ struct Admitted {
     std::size_t most;
 };
 
+// What the robustness is returned as: the class of signals, those of timestamps one period apart
+// and of timestamps in memory, and the period as a fraction.
+struct SignalClasses {
+    ResultClass<2> signal;
+    ResultClass<3> regular_times;
+    ResultClass<3> stored_times;
+    nb::object period;
+};
+
 class DirectEvaluator {
   public:
     // `stages`: of each the Evaluator, the places of its columns, and the scans over its outputs:
     // their kinds and operands. The variables come first, then the scans in order. Only the last
     // stage has no scans, and it has one output.
     DirectEvaluator(std::vector<nb::str> names, nb::str time, const Admitted& admitted,
-                    const nb::list& stages, nb::object threads);
+                    const nb::list& stages, nb::object threads, SignalClasses classes);
 
-    // A tuple of the memory, the number of samples, and whether there are timestamps; None for data
-    // that are not evaluated here. The memory has rows of as many doubles as there are samples: the
-    // columns, the timestamps if there are any, and the values. It is a bytearray or, where rows
-    // are long, a list of arrays.
+    // A tuple of the memory, the number of samples, whether there are timestamps, and the signal;
+    // None for data that are not evaluated here. The memory has rows of as many doubles as there
+    // are samples: the columns, and the timestamps if there are any. It is a bytearray or, where
+    // rows are long, a list of arrays.
     [[nodiscard]] nb::object run(const nb::handle& data);
 
   private:
@@ -60,8 +72,10 @@ class DirectEvaluator {
     Admitted admitted_;
     std::vector<Stage> stages_;
     nb::object threads_;
+    SignalClasses classes_;
     NumPy numpy_;
 
+    [[nodiscard]] bool read_times(const Given& given, std::span<double> seconds) const;
     [[nodiscard]] bool evaluate(std::vector<const double*>& columns, std::size_t count,
                                 double* values) const;
 };

@@ -40,6 +40,13 @@ class ResultClass {
         return made.release().ptr();
     }
 
+    // Throws nb::python_error where that fails.
+    [[nodiscard]] nb::object made(const std::array<nb::handle, count>& values) const {
+        nb::object instance = nb::steal(make(values));
+        if (!instance.is_valid()) throw nb::python_error();
+        return instance;
+    }
+
   private:
     nb::object type_;
     allocfunc allocate_;

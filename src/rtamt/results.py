@@ -88,13 +88,11 @@ class Result(_Slots):
     @property
     def signal(self) -> Signal:
         """ρ at every sample; in dense time at every change and at the end: ``.times`` and ``.values``."""
-        fields = self.__dict__
-        if "_signal" not in fields:
-            assert self._found is not None
-            reading, found = self._found
-            fields["_signal"] = reading.signal(found)
-        signal: Signal = fields["_signal"]
-        return signal
+        if self._found is None:
+            signal: Signal = self.__dict__["_signal"]
+            return signal
+        reading, found = self._found
+        return reading.signal(found)
 
     @property
     def _size(self) -> int:

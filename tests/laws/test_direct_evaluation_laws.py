@@ -15,6 +15,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.signals.signal import Signal
 from tests.laws.test_recording_laws import bits, columns, outcome, stamps
 from tests.support.strategies import formulas
 
@@ -83,9 +84,9 @@ def test_a_requirement_is_satisfied_if_it_is_never_violated(text: str, data: dic
     assert outcome(lambda: result.satisfied) == outcome(lambda: rtamt.first_violation(result) is None)
 
 
-def evaluate_twice(text: str, data: Any) -> rtamt.Result:
+def evaluate_twice(text: str, data: Any, time: str = "discrete") -> rtamt.Result:
     """Return the result of the second evaluation, which is direct."""
-    spec = rtamt.parse(text)
+    spec = rtamt.parse(text, time=time)
     spec.evaluate(data)
     direct = spec.__dict__["_direct"]
     assert direct[0](data if isinstance(data, dict) else direct[1](data, spec.input_names)) is not None
@@ -105,6 +106,18 @@ def test_plain_frames_are_evaluated_directly(library: Any) -> None:
     assert facts(evaluate_twice(FORMULAS[1], library.DataFrame(data))) == facts(
         rtamt.parse(FORMULAS[1]).evaluate(data)
     )
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_the_signal_of_a_result_is_one_object_with_the_times_of_the_trace(time: str) -> None:
+    data = {"time": np.arange(9) * 0.5, "x": np.linspace(0, 2, 9)}
+    result = evaluate_twice("once[0:1](x >= 1)", data, time=time)
+    assert result.signal is result.signal
+    assert type(result.signal) is Signal
+    if time == "discrete":
+        assert np.shares_memory(result.signal.times, result.trace.times)
+        with pytest.raises(ValueError, match="read-only"):
+            result.trace.times[0] = 1.0
 
 
 @pytest.mark.parametrize("n", [10, 50_000])
@@ -132,7 +145,9 @@ def test_units_and_semantics_belong_to_a_result_that_is_found_directly() -> None
 
 def test_a_result_that_is_found_directly_is_pickled() -> None:
     result = evaluate_twice(FORMULAS[2], {"x": np.arange(4.0), "time": np.arange(4) * 0.25})
-    assert facts(pickle.loads(pickle.dumps(result))) == facts(result)
+    copied = pickle.loads(pickle.dumps(result))
+    copied.signal.times.flags.writeable = False  # pickle forgets it of every array
+    assert facts(copied) == facts(result)
 
 
 def test_threads_share_a_specification_that_evaluates_directly() -> None:

@@ -1,10 +1,14 @@
 """The compiled back end: runs serialised programs over samples, in discrete or dense time."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from fractions import Fraction
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rtamt.signals.sampling_period import RegularTimes, StoredTimes
+from rtamt.signals.signal import Signal
 
 _Events: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]
 # Of each call: a capsule "rtamt.kernel" or what makes a driver, its interval (-1: no end), seconds in a
@@ -613,12 +617,17 @@ class DirectEvaluator:
         most: int,
         stages: list[tuple[Evaluator, list[int], list[tuple[str, list[int]]]]],
         threads: Callable[[], int] | None,
+        signal: type[Signal],
+        regular_times: type[RegularTimes],
+        stored_times: type[StoredTimes],
+        exact_period: Fraction,
     ) -> None: ...
-    def run(self, data: Any) -> tuple[bytearray | list[NDArray[np.float64]], int, bool] | None:
+    def run(self, data: Any) -> tuple[bytearray | list[NDArray[np.float64]], int, bool, Signal] | None:
         """Evaluate a dict of columns.
 
-        Return memory, the number of samples, and whether there are timestamps. The memory has rows of doubles: the
-        columns, the timestamps and the values. None for data that has to be converted, is wrong, or makes no value.
+        Return them, and the timestamps if there are any, as rows of a bytearray or as a list of arrays; the number of
+        samples, whether there are timestamps, and the robustness. None for data that has to be converted, is wrong, or
+        makes no value.
         """
 
 class DenseDirectEvaluator:
@@ -635,11 +644,12 @@ class DenseDirectEvaluator:
         rate: float,
         extra: int,
         stages: list[tuple[bytes, list[int], list[tuple[str, list[int]]]]],
+        signal: type[Signal],
     ) -> None: ...
-    def run(self, data: Any) -> tuple[bytearray, list[int], bytearray] | None:
+    def run(self, data: Any) -> tuple[bytearray, list[int], Signal] | None:
         """Evaluate a dict of signals.
 
-        Return ticks and values of each variable, the numbers of their samples, and seconds and values of the result.
+        Return ticks and values of each variable, the numbers of their samples, and the robustness.
         None for data that has to be converted, is wrong, or makes no value.
         """
 

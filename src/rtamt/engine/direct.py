@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 class Reading(Protocol):
-    """Creates the objects of a direct evaluation on first use."""
+    """Reads what a direct evaluation found; the recording is created on demand."""
 
     def trace(self, found: Any) -> DomainTrace:
         """Return the recording."""
 
     def signal(self, found: Any) -> Signal:
-        """Return the robustness."""
+        """Return the robustness, the same object each time."""
 
     def samples(self, found: Any) -> int:
         """Return the number of samples of all variables, or of each where they have the same."""

@@ -26,6 +26,7 @@ from rtamt.signals.counting import quotients
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.sampling_period import (
     TOLERANCE,
+    DeferredTimes,
     RegularTimes,
     check_increasing,
     check_regular,
@@ -130,7 +131,7 @@ DISCRETE = Discrete()
 class DiscreteTrace(DomainTrace):
     """A finished recording in discrete time: one column of ``len(times)`` samples for each variable."""
 
-    _times: FloatArray | RegularTimes
+    _times: FloatArray | DeferredTimes
     columns: Mapping[str, FloatArray]
     period: Fraction
     #: Whether the period was inferred from the timestamps.
@@ -153,7 +154,7 @@ class DiscreteTrace(DomainTrace):
     def times(self) -> FloatArray:
         """Seconds; of dates, since 1970."""
         times = self._times
-        return times.array if isinstance(times, RegularTimes) else times
+        return times.array if isinstance(times, DeferredTimes) else times
 
     @property
     def domain(self) -> Discrete:
@@ -251,7 +252,7 @@ class DiscreteTrace(DomainTrace):
     def signals(self, values: Sequence[FloatArray]) -> list[Signal]:
         """See :class:`DomainTrace`; all signals share its timestamps, which cannot be written."""
         times: Any = self._times if self.original is None else self.original
-        if not isinstance(times, RegularTimes) and times.flags.writeable:
+        if not isinstance(times, DeferredTimes) and times.flags.writeable:
             times = times.view()
             times.flags.writeable = False
         return [Signal(times, column) for column in values]

@@ -22,19 +22,13 @@ if TYPE_CHECKING:
 TOLERANCE = 0.1
 
 
-class RegularTimes:
-    """Timestamps one period apart from 0 s on, which are computed on first use.
+class DeferredTimes:
+    """Timestamps in seconds that become an array on first use; the array cannot be written."""
 
-    >>> RegularTimes(3, Fraction(1, 2)).array
-    array([0. , 0.5, 1. ])
-    """
+    __slots__ = ("_array", "_count")
 
-    __slots__ = ("_array", "_count", "_period")
-
-    def __init__(self, count: int, period: Fraction) -> None:
-        self._count = count
-        self._period = period
-        self._array: FloatArray | None = None
+    _array: FloatArray | None
+    _count: int
 
     def __len__(self) -> int:
         return self._count
@@ -44,14 +38,54 @@ class RegularTimes:
 
     @property
     def array(self) -> FloatArray:
-        """The timestamps in seconds; they cannot be written."""
+        """The timestamps."""
         if self._array is None:
-            times = np.arange(self._count, dtype=np.float64)
-            if self._period != 1:
-                times *= float(self._period)
+            times = self._made()
             times.flags.writeable = False
             self._array = times
         return self._array
+
+    def _made(self) -> FloatArray:
+        raise NotImplementedError
+
+
+class RegularTimes(DeferredTimes):
+    """Timestamps one period apart from 0 s on.
+
+    >>> RegularTimes(3, Fraction(1, 2)).array
+    array([0. , 0.5, 1. ])
+    """
+
+    __slots__ = ("_period",)
+
+    def __init__(self, count: int, period: Fraction) -> None:
+        self._count = count
+        self._period = period
+        self._array = None
+
+    def _made(self) -> FloatArray:
+        times = np.arange(self._count, dtype=np.float64)
+        if self._period != 1:
+            times *= float(self._period)
+        return times
+
+
+class StoredTimes(DeferredTimes):
+    """Timestamps that are the last row of a recording: of a bytearray, or a list of arrays."""
+
+    __slots__ = ("_rows",)
+
+    def __init__(self, count: int, rows: Any) -> None:
+        self._count = count
+        self._rows = rows
+        self._array = None
+
+    def _made(self) -> FloatArray:
+        rows = self._rows
+        if rows.__class__ is list:
+            array: FloatArray = rows[-1].view()
+            return array
+        return np.frombuffer(rows, np.float64)[-self._count :]
 
 
 def merged(times: Sequence[NDArray[Any]]) -> NDArray[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals.sampling_period import RegularTimes
+from rtamt.signals.sampling_period import DeferredTimes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,15 +26,15 @@ class Signal:
 
     __slots__ = ("_times", "_values")
 
-    def __init__(self, times: NDArray[Any] | RegularTimes, values: FloatArray) -> None:
+    def __init__(self, times: NDArray[Any] | DeferredTimes, values: FloatArray) -> None:
         self._times: Any = times
         self._values = values
 
     @property
     def times(self) -> NDArray[Any]:
         """The times: in seconds, or in the caller's format."""
-        times: NDArray[Any] | RegularTimes = self._times
-        return times.array if isinstance(times, RegularTimes) else times
+        times: NDArray[Any] | DeferredTimes = self._times
+        return times.array if isinstance(times, DeferredTimes) else times
 
     @property
     def values(self) -> FloatArray:

@@ -72,14 +72,14 @@ class Evaluator:
                 places[scan.name] = len(places)
         if scale.ticks_in_1 is None:
             return None
-        evaluator = core().DenseDirectEvaluator(names, TIME, scale.ticks_in_1, self._settled, stages)
+        evaluator = core().DenseDirectEvaluator(names, TIME, scale.ticks_in_1, self._settled, stages, Signal)
         return Direct(evaluator.run, lambda *_given: None, Reading(names, scale))
 
 
 class Reading(NamedTuple):
     """The reading settings of the core's ``DenseDirectEvaluator``: variables, and times in seconds.
 
-    What it returns is ``found``: memory of the samples, their numbers, and memory of the result.
+    What it returns is ``found``: memory of the samples, their numbers, and the robustness.
     """
 
     names: tuple[str, ...]
@@ -96,11 +96,9 @@ class Reading(NamedTuple):
         return DenseTrace(columns, self.scale)
 
     def signal(self, found: Any) -> Signal:
-        """Return the values: a point for every change, and one at the end."""
-        memory = found[2]
-        half = len(memory) // 2
-        times = np.frombuffer(memory, np.float64, half // 8)
-        return Signal(times, np.frombuffer(memory, np.float64, half // 8, half))
+        """Return the robustness: a point for every change, and one at the end."""
+        signal: Signal = found[2]
+        return signal
 
     def samples(self, found: Any) -> int:
         """Return the number of samples of all variables."""

@@ -16,6 +16,8 @@ from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
 from rtamt.lazy.modules import np
 from rtamt.signals.arrays import TIME
+from rtamt.signals.sampling_period import RegularTimes, StoredTimes
+from rtamt.signals.signal import Signal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -101,8 +103,9 @@ class Evaluator:
             return None
         sizes = (n, n) if n <= self._longest else (self._longest + 1, sys.maxsize)
         given = domain.period is not None
+        classes = Signal, RegularTimes, StoredTimes, trace.period
         evaluator = core().DirectEvaluator(
-            names, TIME, float(trace.period), given, domain.tolerance, *sizes, stages, threads
+            names, TIME, float(trace.period), given, domain.tolerance, *sizes, stages, threads, *classes
         )
         return Direct(evaluator.run, frame_columns, Reading(names, trace.period, given))
 

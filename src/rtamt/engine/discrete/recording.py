@@ -12,13 +12,13 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME
 from rtamt.signals.discrete import Discrete, DiscreteTrace
 from rtamt.signals.sampling_period import RegularTimes
-from rtamt.signals.signal import Signal
 from rtamt.signals.time_columns import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.signal import Signal
 
 _SECOND = Fraction(1)
 #: The numbers of a frame that may all be copied to read some of them.
@@ -96,8 +96,7 @@ def _library_of(kind: type) -> str | None:
 class Reading(NamedTuple):
     """The reading settings of the core's ``DirectEvaluator``: variables, period, and whether it was given.
 
-    What it returns is ``found``: memory in rows, the number of samples, and whether there are timestamps. Arrays are
-    made of it when they are requested.
+    What it returns is ``found``: the columns, the number of samples, whether there are timestamps, and the robustness.
     """
 
     names: tuple[str, ...]
@@ -105,20 +104,15 @@ class Reading(NamedTuple):
     given: bool
 
     def trace(self, found: Any) -> DiscreteTrace:
-        """Return the recording."""
-        _, count, timed = found
-        columns = {name: _row(found, place) for place, name in enumerate(self.names)}
-        times = _row(found, -2) if timed else RegularTimes(count, self.period)
-        return DiscreteTrace(times, columns, self.period, timed and not self.given)
+        """Return the recording, with the timestamps of the robustness."""
+        memory, count, timed, signal = found
+        columns = {name: _row(memory, count, place) for place, name in enumerate(self.names)}
+        return DiscreteTrace(signal._times, columns, self.period, timed and not self.given)
 
     def signal(self, found: Any) -> Signal:
-        """Return the values; as everywhere, the timestamps cannot be written."""
-        _, count, timed = found
-        if not timed:
-            return Signal(RegularTimes(count, self.period), _row(found, -1))
-        times = _row(found, -2).view()
-        times.flags.writeable = False
-        return Signal(times, _row(found, -1))
+        """Return the robustness."""
+        signal: Signal = found[3]
+        return signal
 
     def samples(self, found: Any) -> int:
         """Return the number of samples of each variable."""
@@ -126,13 +120,11 @@ class Reading(NamedTuple):
         return count
 
 
-def _row(found: Any, place: int) -> FloatArray:
-    memory, count, _ = found
+def _row(memory: Any, count: int, place: int) -> FloatArray:
     if memory.__class__ is list:
         array: FloatArray = memory[place]
         return array
-    first = 8 * count * place
-    return np.frombuffer(memory, np.float64, count, first if place >= 0 else len(memory) + first)
+    return np.frombuffer(memory, np.float64, count, 8 * count * place)
 
 
 @lru_cache(64)
