@@ -3,9 +3,11 @@
 =============  ==========================================================================
 module         purpose
 =============  ==========================================================================
-lower          formula to instructions: value numbering, lags, alignment of operands
+lower          formulas to instructions
+emission       the instructions so far: value numbering, lags, alignment of operands
+order          the order in which the operands of operators are lowered, and recipes followed
 time_lowering  what lowering decides by the time domain
-places         the instructions of formulas, for programs that report sub-formulas
+places         the core formulas of instructions, for messages and programs that report sub-formulas
 plan           formulas to one program (online) or a sequence of programs (offline)
 stored         plans without formulas, which bytes can carry
 slices         parts of a program: the instructions that some of its outputs need

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections import Counter
 from math import isfinite, isinf
 
-from rtamt.language.formula import Parameter
+from rtamt.compiler.places import Origins, Places
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.compiler.program import Instruction, Program
-    from rtamt.language.formula import Formula
 
 #: Windows and delays, and what they are over the negated operand.
 _OPPOSITE = {
@@ -54,15 +53,35 @@ def hoist(program: Program) -> Program:
 
 def _moves(program: Program) -> dict[int, _Move]:
     """Return the instructions to move, each of them equal to another one then."""
-    windows = [(place, ins) for place, ins in enumerate(program.instructions) if ins.opcode in _OPPOSITE]
-    alike = Counter(
-        (ins.n, ins.lag) for _, ins in windows
-    )  # only these can become equal: in most programs none
-    found = [(place, ins) for place, ins in windows if alike[ins.n, ins.lag] > 1]
+    found = [(place, program.instructions[place]) for place in _alike(program)]
     moves = {place: move for place, ins in found if (move := _move(program, ins)).operations}
     readers = Counter(move.window for move in moves.values())
     readers.update(ins for _, ins in found if ins in readers)
     return {place: move for place, move in moves.items() if readers[move.window] > 1}
+
+
+def _alike(program: Program) -> list[int]:
+    """Return the windows and delays that can become equal to another one: in most programs none."""
+    by_length: dict[tuple[int, int], list[int]] = {}
+    for place, (opcode, _, _, n, _, lag) in enumerate(program.instructions):
+        if opcode in _OPPOSITE:
+            by_length.setdefault((n, lag), []).append(place)
+    found: list[int] = []
+    for windows in by_length.values():
+        if len(windows) > 1:
+            roots = [_root(program, place) for place in windows]
+            seen = Counter(roots)
+            found += [place for place, root in zip(windows, roots, strict=True) if seen[root] > 1]
+    return sorted(found)
+
+
+def _root(program: Program, window: int) -> int:
+    """Return what the operand of a window is without all negations, sums and differences with constants."""
+    place = program.instructions[window].a
+    assert place is not None
+    while (before := _variable(program, place)) is not None:
+        place = before
+    return place
 
 
 def _move(program: Program, ins: Instruction) -> _Move:
@@ -86,55 +105,58 @@ def _move(program: Program, ins: Instruction) -> _Move:
 
 def _variable(program: Program, place: int) -> int | None:
     """Return the operand of a negation, or of a sum or difference with a finite constant, that is no constant."""
-    ins = program.instructions[place]
-    if ins.opcode == "neg":
-        return ins.a
-    if ins.opcode not in ("add", "sub"):
+    opcode, a, b, *_ = program.instructions[place]
+    if opcode == "neg":
+        return a
+    if opcode not in ("add", "sub"):
         return None
-    assert ins.a is not None
-    assert ins.b is not None
-    fixed = [_is_finite_constant(program, each) for each in (ins.a, ins.b)]
-    if fixed == [False, True]:
-        return ins.a
-    return ins.b if fixed == [True, False] else None
+    assert a is not None
+    assert b is not None
+    fixed = _is_finite_constant(program, b)
+    if fixed == _is_finite_constant(program, a):
+        return None
+    return a if fixed else b
 
 
 def _is_finite_constant(program: Program, place: int) -> bool:
     ins = program.instructions[place]
-    return ins.opcode == "const" and isfinite(ins.x) and not isinstance(program.origins[place], Parameter)
+    return ins.opcode == "const" and isfinite(ins.x) and place not in program.parametric
 
 
 def _move_instructions(program: Program, moves: dict[int, _Move]) -> Program:
     """Return the program with these instructions moved, and without operations that nothing reads any more."""
     unread = _unread(program, moves)
     instructions: list[Instruction] = []
-    origins: list[Formula | None] = []
+    sources: list[int] = []  # for each instruction, the one of the old program that it was made from
     places: dict[int, int] = {}  # of instructions of the old program in the new one
     index_of: dict[Instruction, int] = {}
 
-    def emit(ins: Instruction, origin: Formula | None) -> int:
+    def emit(ins: Instruction, source: int) -> int:
         # A parameter is never merged with another constant.
         index = None if ins.opcode == "const" else index_of.get(ins)
         if index is None:
             index = index_of[ins] = len(instructions)
             instructions.append(ins)
-            origins.append(origin)
+            sources.append(source)
         return index
 
-    for place, (ins, origin) in enumerate(zip(program.instructions, program.origins, strict=True)):
+    for place, ins in enumerate(program.instructions):
         if place in unread:
             continue
         move = moves.get(place, _Move(ins, ()))
-        value = emit(_reading(move.window, places), origin)
+        value = emit(_reading(move.window, places), place)
         for each in move.operations:
-            value = emit(_of(program, each, value, places, ins.lag), origin)
+            value = emit(_of(program, each, value, places, ins.lag), place)
         places[place] = value
     return replace(
         program,
         instructions=tuple(instructions),
-        origins=tuple(origins),
+        origins=Origins(lambda: [program.origins[source] for source in sources]),
         outputs=tuple(places[output] for output in program.outputs),
-        value_of={formula: places[place] for formula, place in program.value_of.items() if place in places},
+        value_of=Places(
+            lambda: [(formula, places[old]) for formula, old in program.value_of.items() if old in places]
+        ),
+        parametric={places[old]: name for old, name in program.parametric.items() if old in places},
         calls=tuple(
             replace(site, operands=tuple(places[each] for each in site.operands)) for site in program.calls
         ),

@@ -1,8 +1,8 @@
-"""Core formula to instructions: value numbering, lags, and the delays that align operands.
+"""Formulas to instructions.
 
-One function per kernel shape of the operator table, and a call for every operator without a kernel; no
-operator is named here. Time is counted in steps: samples, or ticks where signals have values between
-samples; what differs between the two is in ``time_lowering.py``.
+One function per kernel shape of the operator table, and a call for every operator without a kernel; no operator is
+named here. Instructions are numbered, and operands aligned, in ``emission.py``. Time is counted in steps: samples, or
+ticks where signals have values between samples; what differs between the two is in ``time_lowering.py``.
 """
 
 from __future__ import annotations
@@ -11,17 +11,21 @@ from abc import ABC, abstractmethod
 from fractions import Fraction
 from math import inf
 
-from rtamt.compiler.places import Places
+from rtamt.compiler.emission import Emission
+from rtamt.compiler.order import is_derived, order_of
+from rtamt.compiler.places import Origins, Places
 from rtamt.compiler.program import CallSite, Instruction, Program, instruction
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
 from rtamt.language.shares import rank_of
-from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
+    from rtamt.compiler.order import Group, Order
     from rtamt.language.operators import Kernel
+    from rtamt.language.records import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
 
 _IDENTITY = {"max": -inf, "min": inf}
@@ -40,8 +44,8 @@ def seconds_per_step(step: Fraction) -> tuple[tuple[str, float], ...]:
     return ("mul", float(step.numerator)), ("div", float(step.denominator))
 
 
-class Lowering(ABC):
-    """The instructions so far; emitting an existing instruction returns its index."""
+class Lowering(Emission, ABC):
+    """Emits the instructions of formulas."""
 
     #: The width of the window [0, 0].
     point: int
@@ -53,55 +57,123 @@ class Lowering(ABC):
         inputs: tuple[str, ...],
         clip: int | None,
     ) -> None:
+        super().__init__()
         self.domain = domain
         self.period = period
         self.ratio = period.as_integer_ratio()
         self.inputs = inputs
         self.places = {name: place for place, name in enumerate(inputs)}
         self.clip = clip
-        self.instructions: list[Instruction] = []
-        self.origins: list[Formula | None] = []
-        self.index_of: dict[Instruction, int] = {}
+        self.formulas: tuple[Formula, ...] = ()
         self.parameters: dict[Parameter, int] = {}
-        self.lowered: list[tuple[Formula, int]] = []
+        #: The index of each node, by its identity.
+        self.found: dict[int, int] = {}
+        self.orders: dict[Operator, Order] = {}
         self.calls: dict[CallSite, int] = {}
         #: Whether an instruction has a smaller lag than the horizon of its formula.
         self.known_early = False
 
-    def program(self, outputs: tuple[int, ...]) -> Program:
-        """Return the program; instructions that no output needs are kept, since they may fail or be queried."""
+    @property
+    def expanded(self) -> bool:
+        """Whether an operator of the formulas has been expanded."""
+        return any(map(is_derived, self.orders))
+
+    def program(self, outputs: tuple[int, ...], cores: Callable[[], Lowering]) -> Program:
+        """Return the program; instructions that no output needs are kept, since they may fail or be queried.
+
+        ``cores``: the lowering of the formulas in core operators.
+        """
         return Program(
-            tuple(self.instructions),
+            tuple(map(instruction, self.instructions)),
             self.inputs,
             outputs,
             self.period,
-            Places(self.lowered),
-            tuple(self.origins),
+            Places(lambda: cores().places_of_nodes()),
+            Origins(lambda: cores().origins),
             self.domain,
             tuple(self.calls),
+            parametric={place: parameter.name for parameter, place in self.parameters.items()},
         )
 
+    def places_of_nodes(self) -> Iterator[tuple[Formula, int]]:
+        """Yield the nodes of the formulas, and the instruction of each."""
+        for node in postorder(*self.formulas):
+            yield node, self.found[id(node)]
+
     def lower(self, formulas: Sequence[Formula]) -> list[int]:
-        """Emit the instructions of formulas, operands first, and return the index of each formula's last one."""
+        """Emit the instructions of formulas, operands first, and return the index of each formula's last one.
+
+        Operators that are expanded and have a recipe are expanded here: the instructions and their order are those of
+        the expansion. Others must have been expanded before.
+        """
         # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
-        found: dict[int, int] = {}
-        nodes = postorder(*formulas)
-        for node in nodes:
-            if not isinstance(node, Apply):
-                found[id(node)] = self._lower_leaf(node)
+        self.formulas, found = tuple(formulas), self.found
+        orders, pointwise = self.orders, self.pointwise
+        stack: list[Any] = [*formulas[::-1]]  # nodes; None where what the next task reads has been found
+        tasks: list[tuple[Apply, Any, list[int] | None]] = []
+        while stack:
+            node = stack.pop()
+            if node is None:
+                node, task, parts = tasks.pop()
+                if parts is not None:
+                    found[id(node)] = self._lower_group(node, task, parts)
+                elif task is not None:
+                    opcode, first, second = task
+                    args = node.args
+                    a, b = found[id(args[first])], None if second is None else found[id(args[second])]
+                    found[id(node)] = pointwise(opcode, node, a, b)
+                else:
+                    operands = self.align([found[id(arg)] for arg in node.args])
+                    found[id(node)] = self._lower_apply(node, node.op.kernel, operands)
+            elif id(node) in found:
                 continue
-            kernel, args = node.op.kernel, [found[id(arg)] for arg in node.args]
-            if isinstance(kernel, Pointwise):  # most
-                found[id(node)] = self.pointwise(node, kernel, *args)
+            elif node.__class__ is Apply:
+                args = node.args
+                try:
+                    alone, groups = orders[node.op]
+                except KeyError:
+                    alone, groups = orders[node.op] = order_of(node.op)
+                if groups:
+                    parts = [-1] * len(args)
+                    for group in groups[::-1]:
+                        tasks.append((node, group, parts))
+                        stack.append(None)
+                        stack += [args[place] for place in group.reads[::-1]]
+                    continue
+                tasks.append((node, alone, None))
+                stack.append(None)
+                if alone is None:
+                    stack += args[::-1]
+                else:
+                    _, first, second = alone
+                    if second is not None:
+                        stack.append(args[second])
+                    stack.append(args[first])
             else:
-                found[id(node)] = self._lower_apply(node, kernel, self.align(args))
-        self.lowered += zip(nodes, found.values(), strict=True)
+                found[id(node)] = self._lower_leaf(node)
         return [found[id(formula)] for formula in formulas]
 
+    def _lower_group(self, node: Apply, group: Group, parts: list[int]) -> int:
+        """Emit steps of a recipe, and return the index of the last one; ``parts``: of its operands and steps so far."""
+        for place in group.reads:
+            parts[place] = self.found[id(node.args[place])]
+        for core, places, _ in group.steps:
+            if not isinstance(core, Apply):
+                parts.append(self._lower_leaf(core))
+                continue
+            kernel, operands = core.op.kernel, [parts[place] for place in places]
+            if isinstance(kernel, Pointwise):
+                parts.append(self.pointwise(kernel.opcode, node, *operands))
+            else:
+                parts.append(self._lower_apply(core, kernel, self.align(operands)))
+        return parts[-1]
+
     def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
-        """Return the index of an operator over aligned operands that is not pointwise."""
-        if isinstance(kernel, Window):
+        """Return the index of an operator over aligned operands."""
+        if isinstance(kernel, Window):  # most
             return self.window(node, kernel, args[0])
+        if isinstance(kernel, Pointwise):
+            return self.pointwise(kernel.opcode, node, *args)
         if isinstance(kernel, Sum):
             return self.sum(node, args[0])
         if isinstance(kernel, Rank):
@@ -120,72 +192,22 @@ class Lowering(ABC):
         """Return the index of a variable or a constant."""
         if isinstance(node, Var):
             assert not node.bound, "quantifiers are resolved before"
-            return self.emit(instruction(("input", None, None, self.places[node.name], 0.0, 0)), node)
+            return self.emit(("input", None, None, self.places[node.name], 0.0, 0), node)
         assert isinstance(node, Const)
         if isinstance(node, Parameter):
             # Never merged with another constant: its value may be changed.
             known = self.parameters.get(node)
             if known is None:
-                known = self.parameters[node] = self.append(Instruction("const", x=node.value), node)
+                known = self.parameters[node] = self.append(("const", None, None, 0, node.value, 0), node)
             return known
-        return self.emit(instruction(("const", None, None, 0, node.value, 0)), node)
+        return self.emit(("const", None, None, 0, node.value, 0), node)
 
-    # ---- emitting --------------------------------------------------------------------------------
-
-    def emit(self, instruction: Instruction, origin: Formula) -> int:
-        """Return the index of an instruction, adding it if necessary."""
-        new = len(self.origins)
-        index = self.index_of.setdefault(instruction, new)
-        if index == new:
-            self.instructions.append(instruction)
-            self.origins.append(origin)
-        return index
-
-    def append(self, instruction: Instruction, origin: Formula) -> int:
-        """Add an instruction and return its index."""
-        self.instructions.append(instruction)
-        self.origins.append(origin)
-        return len(self.origins) - 1
-
-    def lag(self, index: int) -> int:
-        """Return the lag of an instruction in steps."""
-        return self.instructions[index].lag
-
-    def is_const(self, index: int) -> bool:
-        """Return whether an instruction is a constant, which needs no delay."""
-        return self.instructions[index].opcode == "const"
-
-    def align(self, indices: list[int]) -> list[int]:
-        """Delay operands until all have the largest lag; constants have no lag."""
-        if len(indices) < 2:
-            return indices
-        lags = [self.instructions[index].lag for index in indices]
-        lag = max(lags)
-        return [i if own == lag else self.delayed(i, lag) for i, own in zip(indices, lags, strict=True)]
-
-    def delayed(self, index: int, lag: int) -> int:
-        """Return the same value known later: slots move, time does not."""
-        return index if self.is_const(index) else self.late(index, lag)
-
-    def late(self, index: int, lag: int) -> int:
-        """Return the same value known at ``lag``, also for a constant."""
-        behind = lag - self.lag(index)
-        if behind == 0:
-            return index
-        origin = self.origins[index]
-        assert origin is not None
-        return self.emit(instruction(("shift", index, None, behind, 0.0, lag)), origin)
-
-    def moved(self, index: int, distance: int, fill: float, lag: int, origin: Formula) -> int:
-        """Return the operand ``distance`` samples ago, ``fill`` where that sample does not exist."""
-        return self.emit(Instruction("shift", index, n=distance, x=fill, lag=lag), origin)
+    # ---- intervals in steps ------------------------------------------------------------------------
 
     def whole(self, bound: Fraction) -> int:
         """Return a bound in steps."""
-        (a, b), (c, d) = (
-            bound.as_integer_ratio(),
-            self.ratio,
-        )  # a division of fractions costs ten times as much
+        a, b = bound.as_integer_ratio()
+        c, d = self.ratio  # a division of fractions costs ten times as much
         count, rest = divmod(a * d, b * c)
         assert rest == 0, "bounds are checked before compilation"
         return count
@@ -208,13 +230,14 @@ class Lowering(ABC):
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
-    def pointwise(self, node: Apply, kernel: Pointwise, a: int, b: int | None = None) -> int:
-        """Lower an operator on values at one instant."""
-        lag = self.instructions[a].lag
-        if b is not None and (other := self.instructions[b].lag) != lag:
+    def pointwise(self, opcode: str, origin: Formula, a: int, b: int | None = None) -> int:
+        """Lower an operator on values at one instant, over operands that need not be aligned."""
+        instructions = self.instructions
+        lag = instructions[a][5]
+        if b is not None and (other := instructions[b][5]) != lag:
             a, b = self.align([a, b])
             lag = max(lag, other)
-        return self.emit(instruction((kernel.opcode, a, b, 0, 0.0, lag)), node)
+        return self.emit((opcode, a, b, 0, 0.0, lag), origin)
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:
         """Lower the largest or smallest value in a window."""
@@ -273,7 +296,7 @@ class Lowering(ABC):
             most = operand.value * width
             if 0 <= most <= 2**53:  # exact in any order
                 return self.counting(x, most, lag, origin)
-        return self.emit(instruction((f"slide_{reduce}", x, None, width, 0.0, lag)), origin)
+        return self.emit((f"slide_{reduce}", x, None, width, 0.0, lag), origin)
 
     def counting(self, x: int, most: float, lag: int, origin: Formula) -> int:
         """Return the sum over a window of a whole number: the sum so far, but no more than of a whole window."""

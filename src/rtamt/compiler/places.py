@@ -1,28 +1,28 @@
-"""The instructions of formulas, for programs that report sub-formulas."""
+"""The core formulas of instructions, for messages and for programs that report sub-formulas."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator
 
     from rtamt.language.formula import Formula
 
 
 class Places(Mapping["Formula", int]):
-    """A mapping from formulas to instructions that hashes the formulas on first use: few programs need it.
+    """A mapping from formulas to instructions that is computed on first use: few programs need it.
 
     >>> from rtamt.language.formula import Var
-    >>> places = Places([(Var("x"), 0), (Var("y"), 1)])
+    >>> places = Places(lambda: [(Var("x"), 0), (Var("y"), 1)])
     >>> places[Var("y")], len(places)
     (1, 2)
     """
 
-    def __init__(self, pairs: Sequence[tuple[Formula, int]]) -> None:
+    def __init__(self, pairs: Callable[[], Iterable[tuple[Formula, int]]]) -> None:
         self._pairs = pairs
 
     def __getitem__(self, formula: Formula) -> int:
@@ -36,4 +36,33 @@ class Places(Mapping["Formula", int]):
 
     @cached_property
     def _found(self) -> dict[Formula, int]:
-        return dict(self._pairs)
+        return dict(self._pairs())
+
+
+class Origins(Sequence["Formula | None"]):
+    """The formula of each instruction, computed on first use.
+
+    >>> from rtamt.language.formula import Var
+    >>> origins = Origins(lambda: [Var("x"), None])
+    >>> origins[0], len(origins)
+    (<formula x>, 2)
+    """
+
+    def __init__(self, origins: Callable[[], Iterable[Formula | None]]) -> None:
+        self._origins = origins
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._found[place]
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and self._found == tuple(other)
+
+    def __hash__(self) -> int:
+        return hash(self._found)
+
+    @cached_property
+    def _found(self) -> tuple[Formula | None, ...]:
+        return tuple(self._origins())

@@ -7,6 +7,7 @@ first over the whole trace and scanned backwards, and the result becomes an addi
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 
 from rtamt.compiler.passes import passed
 from rtamt.compiler.time_lowering import lowering_of
@@ -18,11 +19,13 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
+from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
+    from rtamt.compiler.lower import Lowering
     from rtamt.compiler.program import Program
     from rtamt.signals.time_domain_interface import TimeDomain
 
@@ -84,7 +87,9 @@ def compile_program(
     domain: type[TimeDomain] = Discrete,
     without: Collection[str] = (),
 ) -> Program:
-    """Compile core formulas (see ``desugar``) with bounded future to one program.
+    """Compile formulas with bounded future to one program.
+
+    Those of their operators that are not core operators (see ``desugar``) have recipes (``rewrite.recipes``).
 
     ``period`` is the sampling period, in dense time the length of a tick (seconds). ``inputs`` fixes
     the order of the inputs; by default the variables in order of appearance. ``clip`` is the number
@@ -100,6 +105,24 @@ def compile_program(
     """
     if inputs is None:
         inputs = _read_by(outputs)
+    lowering, indices = _lowered(outputs, period, inputs, clip, domain)
+
+    def cores() -> Lowering:
+        if not lowering.expanded:
+            return lowering
+        return _lowered(merged(outputs), period, inputs, clip, domain)[0]
+
+    return passed(lowering.program(tuple(indices), cache(cores)), without)
+
+
+def _lowered(
+    outputs: Sequence[Formula],
+    period: Fraction,
+    inputs: tuple[str, ...],
+    clip: int | None,
+    domain: type[TimeDomain],
+) -> tuple[Lowering, list[int]]:
+    """Return a lowering of formulas, and the index of the value of each."""
     lowering = lowering_of(domain)(domain, period, inputs, clip)
     indices = lowering.lower(outputs)
     if clip is None and lowering.known_early:  # online: each output is known at its horizon all the same
@@ -108,7 +131,7 @@ def compile_program(
             index if depth is None else lowering.late(index, int(depth / period))
             for index, depth in zip(indices, depths, strict=True)
         ]
-    return passed(lowering.program(tuple(indices)), without)
+    return lowering, indices
 
 
 def compile_plan(

@@ -15,14 +15,12 @@ from __future__ import annotations
 import struct
 import zlib
 from functools import cached_property, partial
-from itertools import repeat
 from math import isnan
 from types import MappingProxyType
 
 from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.passes import bits_of, without_of
 from rtamt.errors import UsageError, shown
-from rtamt.language.formula import Parameter
 from rtamt.language.parameters import with_values
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.dataclasses import dataclass, field, replace
@@ -33,7 +31,7 @@ from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.language.formula import Apply, Formula
@@ -148,7 +146,7 @@ class Program:
     outputs: tuple[int, ...]
     period: Fraction
     value_of: Mapping[Formula, int] = field(default_factory=lambda: MappingProxyType({}))
-    origins: tuple[Formula | None, ...] = ()
+    origins: Sequence[Formula | None] = ()
     domain: type[TimeDomain] = Discrete
     calls: tuple[CallSite, ...] = ()
     metadata: Metadata | None = None
@@ -156,6 +154,8 @@ class Program:
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     #: Passes of the core that are left out (``passes.py``).
     without: frozenset[str] = frozenset()
+    #: The instructions of parameters, each with its name.
+    parametric: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
     #: Whether no sample takes longer than others, whatever the windows.
     worst_case: bool = False
 
@@ -167,9 +167,8 @@ class Program:
     def with_parameters(self, values: Mapping[str, float]) -> Program:
         """Return the program with values of parameters."""
         instructions = list(self.instructions)
-        for place, origin in enumerate(self.origins):
-            if isinstance(origin, Parameter) and instructions[place].opcode == "const":
-                instructions[place] = instructions[place]._replace(x=values[origin.name])
+        for place, name in self.parametric.items():
+            instructions[place] = instructions[place]._replace(x=values[name])
         return replace(self, instructions=tuple(instructions), parameters=values)
 
     def place_of(self, formula: Formula) -> int:
@@ -226,12 +225,11 @@ class Program:
             int(self.worst_case),
         )
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
-        if self.instructions:
-            opcodes, first, second, *others = zip(*self.instructions, strict=True)
-            a, b = (
-                [NO_OPERAND if place is None else place for place in places] for places in (first, second)
-            )
-            parts += map(_RECORD.pack, map(_CODES.__getitem__, opcodes), a, b, repeat(0), *others)
+        codes, pack, none = _CODES, _RECORD.pack, NO_OPERAND
+        parts += [
+            pack(codes[opcode], none if a is None else a, none if b is None else b, 0, n, x, lag)
+            for opcode, a, b, n, x, lag in self.instructions
+        ]
         parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
         body = b"".join(parts)
         return body + struct.pack("<I", zlib.crc32(body))

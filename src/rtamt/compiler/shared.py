@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from rtamt.compiler.order import is_lowerable
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
-from rtamt.language.contents import leaves_of
+from rtamt.language.contents import leaves_of, operators_of
 from rtamt.language.formula import Formula, Parameter
 from rtamt.language.parameters import with_values
 from rtamt.lazy.dataclasses import dataclass, replace
@@ -72,7 +73,7 @@ class Shape:
     ) -> Program:
         """Compile the formulas for a monitor; arguments as for :func:`compile_program`."""
         if not self.values:
-            return compile_program(self.expanded(), period, inputs, domain=domain, without=without)
+            return compile_program(_lowerable(self.formulas), period, inputs, domain=domain, without=without)
         return _program(self.formulas, period, inputs, domain, without).with_parameters(self.values)
 
     def plan(
@@ -109,6 +110,12 @@ class Shape:
 _kept = lru_cache(_KEPT)(merged)
 
 
+def _lowerable(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
+    """Return formulas that lowering can expand: the same ones unless an operator has to be expanded before."""
+    operators = operators_of(*formulas)
+    return formulas if all(map(is_lowerable, operators)) else merged(formulas)
+
+
 @lru_cache(_KEPT)
 def _program(
     formulas: tuple[Formula, ...],
@@ -117,7 +124,7 @@ def _program(
     domain: type[TimeDomain],
     without: frozenset[str],
 ) -> Program:
-    return compile_program(_kept(formulas), period, inputs, domain=domain, without=without)
+    return compile_program(_lowerable(formulas), period, inputs, domain=domain, without=without)
 
 
 @lru_cache(_KEPT)

@@ -68,5 +68,6 @@ def sliced(program: Program, outputs: Sequence[int], kept_inputs: Collection[str
             {formula: place[i] for formula, i in program.value_of.items() if i in place}
         ),
         origins=tuple([program.origins[i] for i in kept]) if program.origins else (),
+        parametric=MappingProxyType({place[i]: name for i, name in program.parametric.items() if i in place}),
         metadata=metadata,
     )

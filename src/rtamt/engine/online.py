@@ -44,8 +44,11 @@ def grounded(
     domain: TimeDomain, formula: Formula, text: str | None, watch: Sequence[Watched]
 ) -> tuple[Formula, list[Watched]]:
     """Return a formula and the watched formulas as they are evaluated; raise errors of the time domain."""
-    for watched in (Watched("", formula, text), *watch):
-        domain.check(watched.formula, watched.text)
+    changed = domain.check(formula, text) is not formula
+    for watched in watch:
+        changed |= domain.check(watched.formula, watched.text) is not watched.formula
+    if not changed:
+        return formula, [*watch]
     formula, *others = domain.ground(formula, *(watched.formula for watched in watch))
     return formula, [replace(each, formula=other) for each, other in zip(watch, others, strict=True)]
 

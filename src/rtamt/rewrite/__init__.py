@@ -14,6 +14,7 @@ merge               equal parts become one node
 partial             operations that may have no value, and numbers for which each has one
 pastify             bounded future to past (the paper's Definition 4)
 presence            ``valid(x)`` where samples may be missing
+recipes             the expansions of built-in operators, whatever the operands
 semantics           replace predicates according to a semantics; the table of semantics
 truth               formulas as conditions, +inf or -inf under every semantics
 structure           split a formula into predicates, minimum and maximum

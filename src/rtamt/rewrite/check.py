@@ -11,7 +11,7 @@ from rtamt.language.formula import Apply, Const, Formula, Interval, children, po
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.printing.printer import interval_text
 from rtamt.language.shares import ShareKind, rank_of
-from rtamt.language.units.durations import format_duration, is_less
+from rtamt.language.units.durations import format_duration
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
@@ -73,8 +73,10 @@ def check_bounds(
     """
     a, b = step.as_integer_ratio()
     for node in contents(spelled_out(formula)).timed:
-        assert node.interval is not None
-        for bound in (node.interval.begin, node.interval.end):
+        interval = node.interval
+        assert interval is not None
+        counts: list[int] = []
+        for bound in (interval.begin, interval.end):
             if bound is None:
                 continue
             c, d = bound.as_integer_ratio()
@@ -85,25 +87,25 @@ def check_bounds(
                     f"{format_duration(bound)} is not a whole number of {unit.steps} of {format_duration(step)}; "
                     f"change the bound or the {unit.step}",
                     text,
-                    node.interval.span or node.span,
+                    interval.span or node.span,
                 )
             if count > unit.most:
                 raise BoundError(
                     f"{format_duration(bound)} is {_short(count)} {unit.steps} of {format_duration(step)}, "
                     f"more than can be counted; shorten the bound, leave it open with inf, or choose {unit.longer}",
                     text,
-                    node.interval.span or node.span,
+                    interval.span or node.span,
                 )
-        whole = closed(node.interval, step)
-        if whole.end is not None and is_less(whole.end, whole.begin):
+            counts.append(count)
+        if len(counts) == 2 and counts[1] - interval.end_open < counts[0] + interval.begin_open:
             raise BoundError(
-                f"the interval {interval_text(node.interval)} is empty: with a {unit.setting} of "
+                f"the interval {interval_text(interval)} is empty: with a {unit.setting} of "
                 f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",
                 text,
-                node.interval.span or node.span,
+                interval.span or node.span,
             )
         if node.op.share:
-            _check_share(whole, step, text, unit)
+            _check_share(closed(interval, step), step, text, unit)
     if unit.farthest is not None:
         _check_sums(spelled_out(formula), step, text, unit, unit.farthest)
 

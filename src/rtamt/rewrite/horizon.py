@@ -26,13 +26,15 @@ def horizon(formula: Formula, period: Fraction = Fraction(1)) -> Fraction | None
     """
     formula = spelled_out(formula)
     parts, found = _count_horizons(formula, period)
-    return _seconds(found[id(formula)], parts)
+    return _seconds(found.get(id(formula), 0), parts)
 
 
 def horizons(formula: Formula, period: Fraction) -> dict[int, Fraction | None]:
     """Return the horizon of each sub-formula by its identity; ``formula``: see :func:`spelled_out`."""
     parts, found = _count_horizons(formula, period)
-    return {key: _seconds(depth, parts) for key, depth in found.items()}
+    none = Fraction(0)
+    everywhere = dict.fromkeys(map(id, postorder(formula)), none)
+    return {**everywhere, **{key: _seconds(depth, parts) for key, depth in found.items()}}
 
 
 def _seconds(depth: float, parts: int) -> Fraction | None:
@@ -42,18 +44,18 @@ def _seconds(depth: float, parts: int) -> Fraction | None:
 def _count_horizons(formula: Formula, period: Fraction) -> tuple[int, dict[int, float]]:
     """Return horizons as whole parts of a second, and how many parts a second has: fractions are slow to add.
 
-    They are integers, and inf where they are unbounded.
+    They are integers, and inf where they are unbounded. Nodes without future have none.
     """
-    nodes = postorder(formula)
     ends = [node.interval.end for node in contents(formula).timed if node.interval is not None]
     parts = lcm(period.denominator, *[end.denominator for end in ends if end is not None])
     step = period.numerator * (parts // period.denominator)
-    found: dict[int, float] = dict.fromkeys(map(id, nodes), 0)
-    for node in nodes:
+    found: dict[int, float] = {}
+    known = found.get
+    for node in postorder(formula):
         if isinstance(node, Apply):
             depth: float = 0
             for operand in node.args:
-                below = found[id(operand)]
+                below = known(id(operand), 0)
                 if below > depth:  # noqa: PLR1730 - max() takes three times as long
                     depth = below
             if node.op.tense is _FUTURE:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import copysign
 
 from rtamt.language.formula import Apply, Const, Formula, Var, postorder
-from rtamt.language.operators import Bounds, builtin
-from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import expand, spelled_out_each
+from rtamt.rewrite.recipes import recipe_of
 from rtamt.rewrite.truth import rebuilt
 
 if TYPE_CHECKING:
@@ -17,17 +15,7 @@ if TYPE_CHECKING:
 
     from rtamt.language.formula import Interval
     from rtamt.language.records import Operator
-
-
-class _Recipe(NamedTuple):
-    """The expansion of an operator without an interval, whatever its operands.
-
-    ``constants``: the numbers in it. ``steps``: each a core operator and the places of its operands, among those of the
-    expanded operator, the constants and the steps before. The last of all these is the result.
-    """
-
-    constants: tuple[Formula, ...]
-    steps: tuple[tuple[Operator, tuple[int, ...]], ...]
+    from rtamt.rewrite.recipes import Step
 
 
 def merged(formulas: Sequence[Formula]) -> tuple[Formula, ...]:
@@ -56,7 +44,7 @@ class _Nodes:
 
     def __init__(self) -> None:
         self.known: dict[Any, Formula] = {}
-        self._recipes: dict[Operator, _Recipe | None] = {}
+        self._recipes: dict[Operator, tuple[Step, ...] | None] = {}
 
     def leaf(self, node: Formula) -> Formula:
         """Return the node for a variable or a constant."""
@@ -68,17 +56,20 @@ class _Nodes:
         try:
             recipe = self._recipes[op]
         except KeyError:
-            recipe = self._recipes[op] = _recipe(op)
+            recipe = self._recipes[op] = recipe_of(op)
         if recipe is None or node.interval is not None:
             return self._merged(expand(node, args), {id(arg): arg for arg in args})
         known, span = self.known, node.span
-        parts = [*args, *map(self.leaf, recipe.constants)] if recipe.constants else [*args]
-        for core, places in recipe.steps:
+        parts = [*args]
+        for core, places, _ in recipe:
+            if not isinstance(core, Apply):
+                parts.append(self.leaf(core))
+                continue
             operands = tuple([parts[place] for place in places])
-            key = (core, None, *map(id, operands))
+            key = (core.op, None, *map(id, operands))
             same = known.get(key)
             if same is None:
-                same = known[key] = Apply(core, operands, None, span)
+                same = known[key] = Apply(core.op, operands, None, span)
             parts.append(same)
         return parts[-1]
 
@@ -101,30 +92,6 @@ class _Nodes:
                 found = self.leaf(node)
             done[id(node)] = found
         return found
-
-
-def _recipe(op: Operator) -> _Recipe | None:
-    """Return the recipe of an operator to be expanded; None if its expansion may depend on more than its arity."""
-    if op.bounds is not Bounds.NONE or op.optional or builtin(op.name) is not op:
-        return None
-    return _builtin_recipe(op)
-
-
-@cache
-def _builtin_recipe(op: Operator) -> _Recipe | None:
-    operands = tuple([Var(f"#{place}") for place in range(len(op.operands))])
-    nodes = postorder(expand(Apply(op, operands), operands))
-    places = {id(operand): place for place, operand in enumerate(operands)}
-    rest = [node for node in nodes if id(node) not in places]
-    constants = tuple([node for node in rest if not isinstance(node, Apply)])
-    applied = [node for node in rest if isinstance(node, Apply)]
-    unused = len(nodes) < len(operands) + len(rest)
-    if not rest or unused or any(node.interval is not None for node in applied):
-        return None
-    places |= {id(node): place for place, node in enumerate((*constants, *applied), len(operands))}
-    return _Recipe(
-        constants, tuple([(node.op, tuple([places[id(arg)] for arg in node.args])) for node in applied])
-    )
 
 
 def _of_interval(interval: Interval) -> Hashable:

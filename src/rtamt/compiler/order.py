@@ -1,0 +1,89 @@
+"""The order in which lowering visits the operands of an operator and emits what it is expanded into."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from rtamt.language.formula import Apply
+from rtamt.language.operators import Pointwise, Sort, builtin
+from rtamt.lazy.tuples import NamedTuple
+from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.rewrite.recipes import recipe_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rtamt.language.records import Operator
+    from rtamt.rewrite.recipes import Step
+
+
+class Group(NamedTuple):
+    """Operands of an operator, and the steps of its recipe that are emitted once these are found."""
+
+    reads: tuple[int, ...]
+    steps: tuple[Step, ...]
+
+
+class Order(NamedTuple):
+    """How an operator is lowered.
+
+    ``alone``: the opcode and operands of its one instruction, if it is pointwise or expanded into such an operator.
+    ``groups``: those of an operator that is expanded into several. One without either reads its operands from left to
+    right.
+    """
+
+    alone: tuple[str, int, int | None] | None
+    groups: tuple[Group, ...]
+
+
+def order_of(op: Operator) -> Order:
+    """Return how an operator is lowered; one that is expanded has a recipe.
+
+    >>> from rtamt.language.operators import STL
+    >>> order_of(STL["le"]).alone, len(order_of(STL["implies"]).groups)
+    (('sub', 1, 0), 2)
+    """
+    return _builtin_order(op) if builtin(op.name) is op else _order(op)
+
+
+def is_derived(op: Operator) -> bool:
+    """Return whether an operator is expanded before it has instructions."""
+    return op.kernel is None and op.expansion is not None
+
+
+def is_lowerable(op: Operator) -> bool:
+    """Return whether an operator of a text needs no expansion before lowering."""
+    if op.definition is None or Sort.CONDITION in op.operands:
+        return False
+    return not is_derived(op) or recipe_of(op) is not None
+
+
+def _order(op: Operator) -> Order:
+    recipe = recipe_of(op) if is_derived(op) else None
+    if recipe is None:
+        own = tuple(range(len(op.operands))) if not op.optional else ()
+        return Order(_alone(op, own), ())
+    (node, places, _), *others = recipe
+    alone = _alone(node.op, places) if isinstance(node, Apply) and not others else None
+    return Order(alone, () if alone is not None else _groups(recipe))
+
+
+_builtin_order = cache(_order)
+
+
+def _alone(op: Operator, places: Sequence[int]) -> tuple[str, int, int | None] | None:
+    if not isinstance(op.kernel, Pointwise) or not 1 <= len(places) <= 2:
+        return None
+    first, *second = places
+    return op.kernel.opcode, first, second[0] if second else None
+
+
+def _groups(recipe: Sequence[Step]) -> tuple[Group, ...]:
+    groups: list[Group] = []
+    for step in recipe:
+        if step.reads or not groups:
+            groups.append(Group(step.reads, (step,)))
+        else:
+            reads, steps = groups.pop()
+            groups.append(Group(reads, (*steps, step)))
+    return tuple(groups)
