@@ -11,13 +11,9 @@ from rtamt.engine import Evaluators, Query, engine_of
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
-from rtamt.language.printing.printer import to_text
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
-from rtamt.signals.data_errors import nan_of_members
-from rtamt.signals.sampling import sampled
-from rtamt.signals.trace import Trace
 from rtamt.specification_online import OnlineSpecification
 
 if TYPE_CHECKING:
@@ -142,6 +138,8 @@ class Specification(OnlineSpecification):
     ) -> Result:
         """Return the result of any data; ``plain``: without settings."""
         if self.groups:
+            from rtamt.signals.data_errors import nan_of_members
+
             spec, data = self._over_data(query, data)
             with nan_of_members(self.groups):
                 return spec.evaluate(
@@ -221,6 +219,7 @@ class Specification(OnlineSpecification):
     def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
         """Return the specification over the members of groups that data has, and data with their presence."""
         from rtamt.signals import members
+        from rtamt.signals.trace import Trace
 
         rule = self.sampling
         own_time_bases = query.domain.own_time_bases or (rule is not None and rule.hold)
@@ -235,6 +234,8 @@ class Specification(OnlineSpecification):
 
     def _sample(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
+        from rtamt.signals.sampling import sampled
+
         if self.sampling is None:
             return data
         rule = query.domain.sampling(self.sampling)
@@ -375,6 +376,8 @@ class Specification(OnlineSpecification):
         return Evaluators(self.backend)
 
     def __reduce__(self) -> tuple[Any, ...]:
+        from rtamt.language.printing.printer import to_text
+
         if self.resolved is not None:
             other = self.formula if self.document.replaced else None
             return _over, (*self.resolved, dict(self.parameters), self.document.selected, other)

@@ -14,7 +14,6 @@ from rtamt.language.document import Declaration
 from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.rewrite.presence import channel_of
 from rtamt.specification_recorded import RecordedSpecification
 
 if TYPE_CHECKING:
@@ -84,6 +83,7 @@ class QuantifiedText(RecordedSpecification):
         return {}
 
     def _resolve_over(self, members: Members) -> Self:
+        from rtamt.rewrite.presence import channel_of
         from rtamt.rewrite.quantifiers import resolved_document
 
         roles = dict(self.roles)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 
 from rtamt.errors import UsageError, choices, shown
-from rtamt.files import open_text
 from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.imports import PACKAGED, Library
 from rtamt.language.parsing.specfile import parse_document
@@ -127,6 +126,8 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
     ...     print(rtamt.load(path).name)
     limit
     """
+    from rtamt.files import open_text
+
     given: object = os.fspath(path) if isinstance(path, os.PathLike) else path
     if not isinstance(given, str):
         raise UsageError(f"the path of a specification is {shown(path)}, expected text or a Path")

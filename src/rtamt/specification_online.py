@@ -11,7 +11,6 @@ from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any, Literal, cast, overload
-from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.semantics import apply_semantics
 from rtamt.settings import require_samples, watched_of
 from rtamt.signals.arrays import is_mapping
@@ -231,6 +230,7 @@ class OnlineSpecification(QuantifiedText):
         time_unit: str | None,
     ) -> OnlineMonitor:
         """Return a monitor of quantifiers over dynamic groups."""
+        from rtamt.rewrite.presence import channel_of
         from rtamt.rewrite.quantifier_streams import Splitting  # other monitors do not wait for it
 
         domain = self._domain_for(time, period, tolerance, resolution).online

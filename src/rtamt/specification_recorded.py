@@ -10,14 +10,13 @@ from rtamt.language.quantifiers import Declared
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.signals.binding import Binding
-from rtamt.signals.sampling import without_values
-from rtamt.signals.trace import Trace
 from rtamt.specification_text import SpecificationText
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
     from rtamt.language.parsing.sampling_clause import Sampling
+    from rtamt.signals.trace import Trace
 
 
 #: Missing signals that are named.
@@ -32,6 +31,9 @@ class Optional(NamedTuple):
 
     def lacking(self, names: Collection[str] | Trace) -> dict[str, str]:
         """Return those that a recording with these signals lacks, each with its recorded names as text."""
+        from rtamt.signals.sampling import without_values
+        from rtamt.signals.trace import Trace
+
         aliases = names.aliases if isinstance(names, Trace) else {}
         empty = without_values(names, self.rule) if isinstance(names, Trace) else frozenset()
         recorded = {*names, *aliases}

@@ -11,14 +11,12 @@ from rtamt.errors import UsageError
 from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Formula, outermost
 from rtamt.language.operators import STL, Language
-from rtamt.language.parameters import assigned, bounding, with_values
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.parsing.type_rules import as_formula
-from rtamt.language.printing.printer import excerpt, to_text
-from rtamt.language.units.durations import positive_period
+from rtamt.language.units.durations import NANOSECOND, positive_period
 from rtamt.language.value_types import WHOLE
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
@@ -26,7 +24,6 @@ from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
 from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
-from rtamt.signals.ticks import NANOSECOND
 from rtamt.signals.time_domains import Defaults, time_domain
 
 if TYPE_CHECKING:
@@ -75,6 +72,8 @@ class SpecificationText:
 
     def _repr_html_(self) -> str:
         from html import escape
+
+        from rtamt.language.printing.printer import excerpt
 
         name = f"<b>{escape(self.name)}</b>" if self.name else ""
         rows = [
@@ -172,6 +171,8 @@ class SpecificationText:
         >>> dict(spec.with_parameters(limit=3).parameters)
         {'limit': 3.0}
         """
+        from rtamt.language.parameters import assigned, bounding
+
         current = self.parameters
         require_parameters(values, current)
         types = self.document.types
@@ -197,6 +198,8 @@ class SpecificationText:
 
     def _parsed_with(self, values: Mapping[str, float]) -> Self:
         """Return the specification with values of parameters of which some bound an interval."""
+        from rtamt.language.parameters import bounding
+
         if self.document.replaced:
             names = ", ".join(f"'{name}'" for name in sorted(bounding(self.document) & values.keys()))
             raise UsageError(
@@ -341,6 +344,8 @@ class SpecificationText:
 
     def _named(self, name: str) -> Formula:
         """Return a named sub-specification or requirement, or the formula of any other text, read in its place."""
+        from rtamt.language.parameters import with_values
+
         known = self._known(name)
         if known is not None:
             return known
@@ -366,6 +371,8 @@ class SpecificationText:
         return with_values([formula], self.parameters)[0]
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:
+        from rtamt.language.parameters import with_values
+
         formula = self._named(given) if isinstance(given, str) else with_values([given], self.parameters)[0]
         if not is_number(formula):
             formula = self._apply_semantics(formula, self._semantics(semantics))
@@ -402,4 +409,6 @@ class SpecificationText:
         return self.semantics if semantics is None else semantics_of(semantics)
 
     def __str__(self) -> str:
+        from rtamt.language.printing.printer import to_text
+
         return to_text(self.formula, self.language)

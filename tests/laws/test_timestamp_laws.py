@@ -22,8 +22,9 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.signals.counting import counted, quotients
-from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.ticks import TimeScale
 from tests.support import c_api
 
 if TYPE_CHECKING:

@@ -22,14 +22,14 @@ from rtamt.language.formula import Apply, Const, Var, folds, outermost, postorde
 from rtamt.language.operators import Tense
 from rtamt.language.printing.printer import canonical
 from rtamt.language.printing.writing import EXCERPT
-from rtamt.language.units.durations import UNITS
+from rtamt.language.units.durations import NANOSECOND, UNITS
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense, has_future
 from rtamt.signals import arrays
 from rtamt.signals.counting import all_integers
 from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.dense import record_dense
 from rtamt.signals.sampling_period import TOLERANCE
-from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.ticks import TimeScale
 from rtamt.usage_guard import exclusive
 
 if TYPE_CHECKING:

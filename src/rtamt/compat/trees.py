@@ -13,9 +13,9 @@ from rtamt.compat.discrete_online import StlDiscreteTimeOnlineSpecification
 from rtamt.compat.failures import raises_rtamt
 from rtamt.compat.online import OnlineSpecification
 from rtamt.errors import UsageError
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.rewrite.check import TICKS, check_bounds
 from rtamt.rewrite.horizon import horizon
-from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

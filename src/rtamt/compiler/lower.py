@@ -16,8 +16,8 @@ from rtamt.compiler.order import is_derived, order_of
 from rtamt.compiler.places import Origins, Places
 from rtamt.compiler.program import CallSite, Instruction, Program, instruction
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
+from rtamt.language.lazy_modules import shares
 from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.language.shares import rank_of
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -263,7 +263,7 @@ class Lowering(Emission, ABC):
         assert node.interval is not None
         assert node.interval.end is not None
         assert end is not None
-        k, outside = rank_of(node.interval, self.period, continuous=self.point == 0)
+        k, outside = shares.rank_of(node.interval, self.period, continuous=self.point == 0)
         # Counted from the other end, infinite values outside need not be counted.
         reduce = "min" if outside > 0 else "max"
         nominal = self.whole(node.interval.end - node.interval.begin) + self.point

@@ -14,7 +14,6 @@ from rtamt.compiler.time_lowering import lowering_of
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Formula, Interval, Var, fold, folds, postorder
 from rtamt.language.operators import STL, Until, Window
-from rtamt.language.parameters import with_values
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.check import reads_unbounded_future
@@ -65,6 +64,8 @@ class Plan:
 
     def originals(self) -> Callable[[Formula], Formula]:
         """Return :meth:`original` for many formulas."""
+        from rtamt.language.parameters import with_values
+
         meanings: dict[str, Formula] = {}
 
         def put_back(node: Formula, args: tuple[Formula, ...]) -> Formula:

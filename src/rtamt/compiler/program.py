@@ -18,11 +18,8 @@ from functools import cached_property, partial
 from math import isnan
 from types import MappingProxyType
 
-from rtamt.compiler.metadata import Metadata, damaged
 from rtamt.compiler.passes import bits_of, without_of
 from rtamt.errors import UsageError, shown
-from rtamt.language.parameters import with_values
-from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
@@ -34,6 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.compiler.metadata import Metadata
     from rtamt.language.formula import Apply, Formula
     from rtamt.language.operators import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
@@ -173,11 +171,15 @@ class Program:
 
     def place_of(self, formula: Formula) -> int:
         """Return the instruction of a core sub-formula."""
+        from rtamt.language.parameters import with_values
+
         (shape,) = with_values([formula], dict.fromkeys(self.parameters, 0.0))
         return self.value_of[shape]
 
     def origin_of(self, place: int) -> Formula | None:
         """Return the core sub-formula that an instruction computes."""
+        from rtamt.language.parameters import with_values
+
         origin = self.origins[place]
         return None if origin is None else with_values([origin], self.parameters)[0]
 
@@ -186,6 +188,8 @@ class Program:
 
         ``formulas``: as written, for the message. Raises :class:`UsageError` if it has a sum over a window.
         """
+        from rtamt.language.printing.printer import excerpt
+
         for place, (instruction, origin) in enumerate(zip(self.instructions, self.origins, strict=True)):
             if instruction.opcode == "slide_sum":
                 assert origin is not None
@@ -243,6 +247,8 @@ class Program:
         >>> Program.from_bytes(program.to_bytes()).disassemble() == program.disassemble()
         True
         """
+        from rtamt.compiler.metadata import Metadata, damaged
+
         if not isinstance(code, (bytes, bytearray, memoryview)):
             raise UsageError(
                 f"expected the bytes of a program, as to_bytes() returns them, got {shown(code)}; "
@@ -305,6 +311,8 @@ class Program:
 
 
 def _instruction(index: int, record: tuple[int, int, int, int, int, float, int], inputs: int) -> Instruction:
+    from rtamt.compiler.metadata import damaged
+
     code, a, b, _, n, x, lag = record
     if code >= len(OPCODES):
         raise damaged(f"instruction {index} has the unknown opcode {code}")

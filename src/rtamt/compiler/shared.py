@@ -11,7 +11,6 @@ from rtamt.compiler.order import is_lowerable
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.contents import leaves_of, operators_of
 from rtamt.language.formula import Formula, Parameter
-from rtamt.language.parameters import with_values
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.merge import merged
@@ -45,6 +44,7 @@ class Shape:
         """Return the shape of formulas.
 
         >>> from fractions import Fraction
+        >>> from rtamt.language.parameters import with_values
         >>> from rtamt.language.parsing.parser import parse_formula
         >>> formula = parse_formula("x <= limit", constants={"limit": 4}, parameters=["limit"])
         >>> shapes = [Shape.of(with_values([formula], {"limit": value})) for value in (4.0, 3.0)]
@@ -57,7 +57,11 @@ class Shape:
             if isinstance(node, Parameter) and values.setdefault(node.name, node.value) != node.value:
                 values = {}
                 break
-        return Shape(with_values(formulas, dict.fromkeys(values, 0.0)) if values else tuple(formulas), values)
+        if not values:
+            return Shape(tuple(formulas), values)
+        from rtamt.language.parameters import with_values
+
+        return Shape(with_values(formulas, dict.fromkeys(values, 0.0)), values)
 
     def expanded(self) -> tuple[Formula, ...]:
         """Return the core formulas of these formulas."""

@@ -6,7 +6,6 @@ import sys
 
 from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.formula import Apply
-from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.desugar import written
@@ -166,6 +165,8 @@ def culprit(
     ``error``: the core's ``Undefined``. ``original``: from a formula of the program to its source.
     Raises the error of a custom operator.
     """
+    from rtamt.language.printing.printer import excerpt
+
     formula = program.origin_of(error.args[0])
     assert formula is not None
     if error.__cause__ is not None:

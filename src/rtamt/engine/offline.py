@@ -7,7 +7,6 @@ from functools import cached_property
 from rtamt.engine.engine import engine_of
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.rewrite.presence import channel_of, presences, tracked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -74,6 +73,8 @@ class Evaluators:
 
     def signals(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
+        from rtamt.rewrite.presence import channel_of, presences, tracked
+
         if recording.bounds and (asked := presences(*formulas)):
             formulas = tuple(map(tracked, formulas))
             recording = recording.with_presence({name: channel_of(name) for name in asked})

@@ -8,21 +8,19 @@ from fractions import Fraction
 from rtamt.errors import UsageError, changed_state, did_you_mean
 from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Formula
-from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.horizon import horizon
 from rtamt.signals import arrays
 from rtamt.signals.binding import Binding
-from rtamt.signals.episodes import EpisodeTracker
 from rtamt.usage_guard import UsageGuard, exclusive
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
 
     from rtamt.engine.backend import Session
-    from rtamt.signals.episodes import Episode
+    from rtamt.signals.episodes import Episode, EpisodeTracker
     from rtamt.signals.time_domain_interface import TimeDomain
 
     Self = TypeVar("Self", bound="OnlineMonitor")
@@ -54,6 +52,8 @@ def grounded(
 
 
 def _label(name: str | Formula) -> str:
+    from rtamt.language.printing.printer import excerpt
+
     return excerpt(name) if isinstance(name, Formula) else str(name)
 
 
@@ -102,6 +102,8 @@ class OnlineMonitor:
         self._binding = binding
 
     def _remember_episodes(self, *, continuous: bool) -> None:
+        from rtamt.signals.episodes import EpisodeTracker
+
         self._episodes = [EpisodeTracker(continuous=continuous) for _ in self._formulas]
 
     def episodes(self, name: str | Formula | None = None) -> list[Episode]:

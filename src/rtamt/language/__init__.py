@@ -9,6 +9,7 @@ module           purpose
 operators        the table: every operator of the language, once
 records          the records ``Operator`` and ``Language`` (an immutable set of operators)
 rows             shorthands for rows of the table
+lazy_modules     modules of functions, imported when one of these is called
 expansions       derived operators in terms of simpler ones
 unwritten        operators that no text contains: truths of predicates, parts of expansions
 formula          formulas: three immutable node types

@@ -22,14 +22,6 @@ _LARGEST_CODE = 2**53
 _MOST_DIGITS = len(str(_LARGEST_CODE))
 
 
-def begins_enumeration(parser: NameParser) -> bool:
-    """Return whether an enumeration is declared here: ``enum``, a name and a brace, which no formula begins with."""
-    if parser.texts[parser.index] != "enum":
-        return False
-    first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
-    return first.kind == "name" and first.text == "enum" and second.kind == "name" and third.text == "{"
-
-
 def parse_enumeration(parser: NameParser, types: Collection[str]) -> Enumeration:
     """``enumeration = "enum" , word , "{" , member , { "," , member } , [ "," ] , "}" , [ ";" ]``.
 

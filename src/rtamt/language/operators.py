@@ -17,13 +17,14 @@ from __future__ import annotations
 
 from math import inf
 
-from rtamt.language import expansions as expand
-from rtamt.language.definitions import dense
-from rtamt.language.definitions import discrete as d
-from rtamt.language.definitions import enclosures as e
-from rtamt.language.definitions import functions as f
-from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const
+from rtamt.language.lazy_modules import dense
+from rtamt.language.lazy_modules import discrete as d
+from rtamt.language.lazy_modules import enclosures as e
+from rtamt.language.lazy_modules import expansions as expand
+from rtamt.language.lazy_modules import functions as f
+from rtamt.language.lazy_modules import pointwise as p
+from rtamt.language.lazy_modules import rules as r
 from rtamt.language.records import (
     Ahead,
     Blocks,
@@ -44,8 +45,7 @@ from rtamt.language.records import (
     Until,
     Window,
 )
-from rtamt.language.rows import C, F, N, function, infix, math, prefix
-from rtamt.language.units import rules as r
+from rtamt.language.rows import C, F, N, function, infix, math, prefix, same_unit, slopes
 from rtamt.language.unwritten import EQ, GE, GT, LE, LT, NE, UNWRITTEN
 
 __all__ = [
@@ -89,28 +89,28 @@ STL: Language = Language.of((
              p.false, expansion=lambda _i: Const(-inf)),
     # ---- numbers -----------------------------------------------------------------------------
     function("abs", 1, "Absolute value.", "abs(x) <= 2", latex=r"\left|{0}\right|",
-             definition=p.abs_, kernel=Pointwise("abs"), extension=e.abs_, slopes=e.slopes(0), units=r.kept,
+             definition=p.abs_, kernel=Pointwise("abs"), extension=e.abs_, slopes=slopes(0), units=r.kept,
            phrase="|{0}|"),
     function("sqrt", 1, "Square root.", "sqrt(x) <= 2", latex=r"\sqrt{{{0}}}",
-             definition=p.sqrt, kernel=Pointwise("sqrt", partial=True), extension=e.sqrt, slopes=e.slopes(1),
+             definition=p.sqrt, kernel=Pointwise("sqrt", partial=True), extension=e.sqrt, slopes=slopes(1),
              units=r.root),
     function("exp", 1, "The exponential function.", "exp(x) <= 2",
-             definition=p.exp, kernel=Pointwise("exp"), extension=e.exp, slopes=e.slopes(1), units=r.of_ratio),
+             definition=p.exp, kernel=Pointwise("exp"), extension=e.exp, slopes=slopes(1), units=r.of_ratio),
     function("pow", 2, "The first operand to the power of the second.", "pow(x, 2) <= 4",
              latex=r"{{{0}}}^{{{1}}}", definition=p.pow_, kernel=Pointwise("pow", partial=True),
-             extension=e.pow_, slopes=e.slopes(None, None), units=r.to_the_power),
+             extension=e.pow_, slopes=slopes(None, None), units=r.to_the_power),
     function("log", 2, "The logarithm of the first operand to the base of the second.", "log(x, 10) >= 1",
              latex=r"\log_{{{1}}}({0})", definition=p.log, kernel=Pointwise("log", partial=True),
-             extension=e.log, slopes=e.slopes(None, None), units=r.of_ratio),
+             extension=e.log, slopes=slopes(None, None), units=r.of_ratio),
     function("ln", 1, "The natural logarithm.", "ln(x) >= 0", latex=r"\ln({0})",
-             definition=p.ln, kernel=Pointwise("ln", partial=True), extension=e.ln, slopes=e.slopes(1),
+             definition=p.ln, kernel=Pointwise("ln", partial=True), extension=e.ln, slopes=slopes(1),
              units=r.of_ratio),
     function("min", 2, "The smallest operand.", "min(x, y) >= 0", latex=r"\min({0}, {1})",
-             definition=p.and_, kernel=Pointwise("min"), extension=e.and_, slopes=e.slopes(1, 1), folds=True,
-             units=r.same()),
+             definition=p.and_, kernel=Pointwise("min"), extension=e.and_, slopes=slopes(1, 1), folds=True,
+             units=same_unit()),
     function("max", 2, "The largest operand.", "max(x, y) >= 0", latex=r"\max({0}, {1})",
-             definition=p.or_, kernel=Pointwise("max"), extension=e.or_, slopes=e.slopes(1, 1), folds=True,
-             units=r.same()),
+             definition=p.or_, kernel=Pointwise("max"), extension=e.or_, slopes=slopes(1, 1), folds=True,
+             units=same_unit()),
     math("sin", "Sine of an angle in radians.", "sin(x) <= 1", 0, partial=True, latex=r"\sin({0})", units=r.of_angle),
     math("cos", "Cosine of an angle in radians.", "cos(x) <= 1", 0, partial=True, latex=r"\cos({0})", units=r.of_angle),
     math("tan", "Tangent of an angle in radians.", "tan(x) <= 1", 0, partial=True, latex=r"\tan({0})",
@@ -122,23 +122,23 @@ STL: Language = Language.of((
     math("atan2", "Angle of the point (second, first operand) in radians.", "atan2(y, x) <= 1", 0, 0,
          units=r.direction),
     math("hypot", "Length of a vector with two components.", "hypot(x, y) <= 5", 0, 0,
-         latex=r"\sqrt{{{0}^2 + {1}^2}}", units=r.same()),
+         latex=r"\sqrt{{{0}^2 + {1}^2}}", units=same_unit()),
     math("sinh", "Hyperbolic sine.", "sinh(x) <= 1", 1, latex=r"\sinh({0})", units=r.of_ratio),
     math("cosh", "Hyperbolic cosine.", "cosh(x) <= 2", 0, latex=r"\cosh({0})", units=r.of_ratio),
     math("tanh", "Hyperbolic tangent.", "tanh(x) <= 1", 1, latex=r"\tanh({0})", units=r.of_ratio),
-    math("degrees", "Radians as degrees.", "degrees(x) <= 90", 1, units=r.to_degrees),
-    math("radians", "Degrees as radians.", "sin(radians(x)) <= 1", 1, units=r.to_radians),
-    math("floor", "The greatest whole number that is not above the operand.", "floor(x) == 3", 1,
+    math("degrees", "Radians as degrees.", "degrees(x) <= 90", 1, rising=True, units=r.to_degrees),
+    math("radians", "Degrees as radians.", "sin(radians(x)) <= 1", 1, rising=True, units=r.to_radians),
+    math("floor", "The greatest whole number that is not above the operand.", "floor(x) == 3", 1, rising=True,
          latex=r"\lfloor {0} \rfloor", units=r.kept),
-    math("ceil", "The least whole number that is not below the operand.", "ceil(x) == 3", 1,
+    math("ceil", "The least whole number that is not below the operand.", "ceil(x) == 3", 1, rising=True,
          latex=r"\lceil {0} \rceil", units=r.kept),
-    math("round", "The nearest whole number; halves away from zero.", "round(x) == 3", 1, definition=f.round_,
+    math("round", "The nearest whole number; halves away from zero.", "round(x) == 3", 1, rising=True, definition=f.round_,
          units=r.kept),
-    math("sign", "-1, 0 or 1: the sign of the operand.", "sign(x) == 1", 1, units=r.signs),
+    math("sign", "-1, 0 or 1: the sign of the operand.", "sign(x) == 1", 1, rising=True, units=r.signs),
     math("mod", "The remainder of a division, with the sign of the divisor.", "mod(x, 360) <= 180", 0, None,
          partial=True, units=r.remainder),
     function("clip", 3, "The number of [second, third operand] next to the first; an error where they are reversed.",
-             "clip(x, -1, 1) >= 0", definition=f.clip, expansion=expand.clip, strict=True, units=r.same(),
+             "clip(x, -1, 1) >= 0", definition=f.clip, expansion=expand.clip, strict=True, units=same_unit(),
              fails="the second operand is greater than the third"),
     function("wrap", 3, "The first operand moved into [second, third) by whole multiples of their difference.",
              "wrap(x, -180, 180) <= 90", definition=f.wrap, expansion=expand.wrap, strict=True, units=r.wrapped,
@@ -147,10 +147,10 @@ STL: Language = Language.of((
              "The number after 'then' where the condition holds, else the number after 'else'.",
              "(if x >= 3 then x else y) <= 5", r"\mathbf{{if}}\ {0}\ \mathbf{{then}}\ {1}\ \mathbf{{else}}\ {2}",
              p.if_, expansion=lambda condition, a, b, _i: expand.choice(condition, a, b), strict=True, keeps=(1, 2), source=Source.BRANCH,
-             units=r.same(1, 2),
+             units=same_unit(1, 2),
            phrase="{1} where {0}, else {2}"),
     prefix("neg", "-", 120, "Minus.", "-x >= 2", operands=(N,), result=N, latex="-{0}",
-           definition=p.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=e.slopes(-1), units=r.kept,
+           definition=p.neg, kernel=Pointwise("neg"), extension=e.neg, slopes=slopes(-1), units=r.kept,
            phrase="minus {0}"),
     infix("mul", "*", 110, "Product.", "2 * x <= 3", operands=(N, N), result=N, latex=r"{0} \cdot {1}",
           definition=p.mul, kernel=Pointwise("mul", partial=True), extension=e.mul, slopes=e.of_product,
@@ -161,11 +161,11 @@ STL: Language = Language.of((
           units=r.quotient,
            phrase="{0} divided by {1}"),
     infix("add", "+", 100, "Sum.", "x + y <= 3", operands=(N, N), result=N, latex="{0} + {1}",
-          definition=p.add, kernel=Pointwise("add", partial=True), extension=e.add, slopes=e.slopes(1, 1),
+          definition=p.add, kernel=Pointwise("add", partial=True), extension=e.add, slopes=slopes(1, 1),
           units=r.sums,
            phrase="{0} plus {1}"),
     infix("sub", "-", 100, "Difference.", "x - y <= 3", operands=(N, N), result=N, latex="{0} - {1}",
-          definition=p.sub, kernel=Pointwise("sub", partial=True), extension=e.sub, slopes=e.slopes(1, -1),
+          definition=p.sub, kernel=Pointwise("sub", partial=True), extension=e.sub, slopes=slopes(1, -1),
           units=r.sums,
            phrase="{0} minus {1}"),
     # ---- predicates --------------------------------------------------------------------------
@@ -201,10 +201,10 @@ STL: Language = Language.of((
            definition=p.neg, expansion=lambda a, _i: STL["neg"](a),
            phrase="it is not the case that {0}"),
     infix("and", "and & &&", 40, "Both: the smaller value.", "x >= 3 and y >= 3", latex=r"{0} \wedge {1}",
-          dual="or", definition=p.and_, kernel=Pointwise("min"), extension=e.and_, slopes=e.slopes(1, 1),
+          dual="or", definition=p.and_, kernel=Pointwise("min"), extension=e.and_, slopes=slopes(1, 1),
            phrase="{0} and {1}"),
     infix("or", "or | ||", 30, "At least one: the larger value.", "x >= 3 or y >= 3", latex=r"{0} \vee {1}",
-          dual="and", definition=p.or_, kernel=Pointwise("max"), extension=e.or_, slopes=e.slopes(1, 1),
+          dual="and", definition=p.or_, kernel=Pointwise("max"), extension=e.or_, slopes=slopes(1, 1),
            phrase="{0} or {1}"),
     infix("implies", "-> implies", 20, "If the first then the second: max(-a, b).", "x >= 3 -> y >= 3",
           latex=r"{0} \to {1}", fixity=Fixity.RIGHT,
@@ -266,7 +266,7 @@ STL: Language = Language.of((
     function("mean", 2, "The mean of the samples in the window behind; the second operand where there is none, by default "
              "the first operand at the first sample.", "mean[0:5](x) <= 3", latex="", optional=1, tense=Tense.PAST,
              bounds=Bounds.OPTIONAL, discrete_only=True, why_discrete=_LINE, definition=d.mean,
-             expansion=expand.mean, strict=True, units=r.same(),
+             expansion=expand.mean, strict=True, units=same_unit(),
            phrase="the mean of {0} {I}"),
     function("integral", 1, "The sum over the window behind times the sampling period in seconds.",
              "integral[0:5](x) <= 3", latex=r"\mathrm{{integral}}_{I}({0})", tense=Tense.PAST,
@@ -286,12 +286,12 @@ STL: Language = Language.of((
     function("held", 3, "The first operand when the second was last true; the third, or its first value, where it "
              "never was.", "x - held(x, y >= 3) <= 2", operands=(N, C, N), optional=1, latex="", tense=Tense.PAST,
              reach=None, definition=d.held, dense=dense.held, expansion=expand.held, pastified=expand.past_held, strict=True,
-             keeps=(0, 2), source=Source.HELD, units=r.same(0, 2),
+             keeps=(0, 2), source=Source.HELD, units=same_unit(0, 2),
            phrase="{0} when it was last true that {1}"),
     function("delay", 2, "The first operand d ago; the second, or its first value, where that is before the start.",
              "x - delay[2](x) <= 2", optional=1, latex="", tense=Tense.PAST, bounds=Bounds.DURATION,
              definition=d.delay, dense=dense.delay, expansion=expand.delay, pastified=expand.past_delay, strict=True, keeps=(0, 1), source=Source.DELAYED,
-             units=r.same(),
+             units=same_unit(),
            phrase="{0} of {D} ago"),
     function("ahead", 1, "The operand d ahead; where the trace ends before, its last value.",
              "ahead[2](x) - x <= 2", latex="", tense=Tense.FUTURE, bounds=Bounds.DURATION,

@@ -25,10 +25,10 @@ from types import MappingProxyType
 from rtamt.errors import NameInFormulaError, choices, did_you_mean
 from rtamt.language.contents import leaves_of, operators_of
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, postorder
+from rtamt.language.lazy_modules import rules as unit_rules
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
 from rtamt.language.rows import C, F, N, operator
-from rtamt.language.units import rules as unit_rules
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, ClassVar, Literal
@@ -199,14 +199,6 @@ def quantified(word: str, binder: Binder) -> Operator:
 
 
 # ---- the text ------------------------------------------------------------------------------------
-
-
-def begins_group(parser: FormulaParser) -> bool:
-    """Return whether a group is declared here: ``group``, a name, ``=`` and a text, which no formula begins with."""
-    at = parser.index + (parser.texts[parser.index] in ("input", "output"))
-    if parser.texts[at : at + 3 : 2] != ["group", "="]:
-        return False
-    return parser.tokens[at + 1].kind == "name" and parser.tokens[at + 3].kind == "quoted"
 
 
 def unquoted_pattern(parser: FormulaParser) -> Span | None:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
-from rtamt.language.definitions import enclosures as e
-from rtamt.language.definitions import function_enclosures as fe
-from rtamt.language.definitions import functions as f
+from rtamt.language.lazy_modules import dimensions
+from rtamt.language.lazy_modules import function_enclosures as fe
+from rtamt.language.lazy_modules import functions as f
 from rtamt.language.records import (
     Fixity,
     Operator,
     Pointwise,
     Sort,
 )
-from rtamt.lazy.typing import Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rtamt.language.units.rules import UnitRule
 
 #: The sorts of operands and results.
 N, F, C = Sort.NUMBER, Sort.FORMULA, Sort.CONDITION
@@ -57,12 +62,35 @@ def prefix(name: str, spellings: str, power: int, doc: str, example: str, **more
     return Operator(name, tuple(spellings.split()), Fixity.PREFIX, power, doc=doc, example=example, **more)
 
 
+def slopes(*known: int | None) -> Callable[..., tuple[int | None, ...]]:
+    """Return a function from the values of constant operands to the monotonicity of the result in each operand.
+
+    1: nondecreasing; -1: nonincreasing; 0: neither, and the extension is still as narrow as possible
+    if no variable occurs twice; None: the extension may be wider than that.
+    """
+    return lambda *_constants: known
+
+
+def same_unit(*which: int) -> UnitRule:
+    """Return the rule of operators whose operands, or those of these numbers, have one unit, that of the result."""
+    return partial(dimensions.agree, which=which)
+
+
 def math(
-    name: str, doc: str, example: str, *slopes: int | None, definition: Any = None, **more: Any
+    name: str,
+    doc: str,
+    example: str,
+    *known: int | None,
+    definition: Any = None,
+    rising: bool = False,
+    **more: Any,
 ) -> Operator:
-    """Return a mathematical function; its definition, extension and opcode have its name."""
+    """Return a mathematical function; its definition and opcode have its name, and its extension unless ``rising``.
+
+    ``known``: see :func:`slopes`. ``rising``: it is nondecreasing, and computed without error or rounded correctly.
+    """
     definition = definition or getattr(f, name)
-    more["extension"] = getattr(fe, name, None) or fe.rising(definition)
+    more["extension"] = partial(fe.rising, definition) if rising else getattr(fe, name)
     more["kernel"] = Pointwise(name, more.pop("partial", False))
     more["strict"] = True
-    return function(name, len(slopes), doc, example, definition=definition, slopes=e.slopes(*slopes), **more)
+    return function(name, len(known), doc, example, definition=definition, slopes=slopes(*known), **more)

@@ -15,8 +15,8 @@ from bisect import bisect_right
 from functools import lru_cache
 from math import isinf
 
-from rtamt.language.expansions import choice
 from rtamt.language.formula import Const, Formula, Span
+from rtamt.language.lazy_modules import expansions
 from rtamt.language.operators import STL
 from rtamt.language.parsing.lexer import NAME, quoted
 from rtamt.language.records import Fixity, Operator, Sort
@@ -78,7 +78,9 @@ class Table:
             return values[begin]
         middle = (begin + end) // 2
         above = reaches(x, Const(self.xs[middle]))
-        return choice(above, self._tree(x, values, middle, end), self._tree(x, values, begin, middle))
+        return expansions.choice(
+            above, self._tree(x, values, middle, end), self._tree(x, values, begin, middle)
+        )
 
     def _line(self, x: Formula, place: int) -> Formula:
         """Return the line from a point to the next one, and the values of these before and after."""
@@ -108,15 +110,6 @@ def table_operator(name: str, table: Table) -> Operator:
         strict=True,
         maker=(table_operator, (name, table)),
     )
-
-
-def begins_table(parser: NameParser) -> bool:
-    """Return whether a table is declared here: ``table``, a name, ``=`` and a brace, which no formula begins with."""
-    if parser.texts[parser.index] != "table":
-        return False
-    first, second, *rest = (*parser.tokens[parser.index : parser.index + 4], *[parser.tokens[-1]] * 3)[:4]
-    named = first.kind == "name" and first.text == "table" and second.kind in ("name", "quoted")
-    return named and [token.text for token in rest] == ["=", "{"]
 
 
 def parse_table(parser: NameParser) -> Operator:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from rtamt.errors import EvaluationError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Blocks, Compiled
-from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -27,6 +26,8 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
     >>> str(undefined(parse_formula("x / y"), at_sample(3, 0.3)))[:48]
     "'x / y' has no value at sample 3, time 0.3 s: it"
     """
+    from rtamt.language.printing.printer import excerpt
+
     if isinstance(formula, Apply) and _is_the_users(formula):
         return EvaluationError(
             f"the operator '{formula.op.name}' gave NaN: '{excerpt(formula)}' has no value at {where}; "
@@ -51,6 +52,8 @@ class UndefinedAtTickError(EvaluationError):
 
 def meaning_of(formula: Formula) -> str:
     """Return what :func:`undefined_text` needs of a formula of built-in operators, as text."""
+    from rtamt.language.printing.printer import excerpt
+
     why = formula.op.fails if isinstance(formula, Apply) else ""
     return f"'{excerpt(formula)}'\n{why or _WHY}"
 

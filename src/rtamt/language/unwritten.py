@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from math import inf
 
-from rtamt.language.definitions import dense
-from rtamt.language.definitions import discrete as d
-from rtamt.language.definitions import enclosures as e
-from rtamt.language.definitions import function_enclosures as fe
-from rtamt.language.definitions import functions as f
-from rtamt.language.definitions import pointwise as p
 from rtamt.language.formula import Const, Formula
+from rtamt.language.lazy_modules import dense
+from rtamt.language.lazy_modules import discrete as d
+from rtamt.language.lazy_modules import enclosures as e
+from rtamt.language.lazy_modules import function_enclosures as fe
+from rtamt.language.lazy_modules import functions as f
+from rtamt.language.lazy_modules import pointwise as p
 from rtamt.language.records import (
     Bounds,
     Fixity,
@@ -20,17 +20,16 @@ from rtamt.language.records import (
     Sum,
     Tense,
 )
-from rtamt.language.rows import C, F, N, function, infix, operator, prefix
+from rtamt.language.rows import C, F, N, function, infix, operator, prefix, slopes
 from rtamt.lazy.typing import Any
 
 
 def _truth(code: str, spelling: str, symbol: str, definition: Any, **more: Any) -> Operator:
     if not more:
-        slopes = e.slopes(0, 0) if code == "eq" else e.slopes(1, -1)
         more = {
             "kernel": Pointwise(f"holds_{code}"),
             "extension": getattr(e, f"holds_{code}"),
-            "slopes": slopes,
+            "slopes": slopes(0, 0) if code == "eq" else slopes(1, -1),
         }
     doc, example = f"+inf where a {spelling} b, else -inf.", f"x {spelling} 3"
     latex = f"{{0}} {symbol} {{1}}"
@@ -68,7 +67,7 @@ _TRUTHS = (GT, GE, EQ, LE, LT, NE, TRUTH)
 AT_LEAST = function(
     "at_least", 2, "The first operand, which must be at least the second.", "at_least(x, 3) > 5",
     definition=f.at_least, kernel=Pointwise("at_least", partial=True), extension=fe.at_least,
-    slopes=e.slopes(1, 0),
+    slopes=slopes(1, 0),
 )  # fmt: skip
 
 #: Whether the member of a group is present, from its channel: +inf or -inf under every semantics.

@@ -5,6 +5,7 @@ module       purpose
 ===========  ======================================================================
 typing       names of annotations, without the module :mod:`typing`
 modules      :mod:`numpy` and :mod:`datetime`, imported when they are first used
+functions    functions of modules that are imported when one of them is called
 patterns     regular expressions, compiled when they are first used
 dataclasses  data classes, whose methods are made when they are first called
 tuples       named tuples, whose constructor is compiled once a class has instances

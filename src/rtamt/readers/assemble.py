@@ -6,6 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, choices, did_you_mean
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.lazy import dataclasses
 from rtamt.lazy.modules import np
 from rtamt.readers.gaps import Gaps
@@ -14,7 +15,7 @@ from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_sample
-from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.ticks import TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 
 if TYPE_CHECKING:

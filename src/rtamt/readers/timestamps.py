@@ -12,13 +12,13 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units.durations import UNITS, in_seconds
+from rtamt.language.units.durations import NANOSECOND, UNITS, in_seconds
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_masked, is_number
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
-from rtamt.signals.ticks import NANOSECOND, TimeScale
+from rtamt.signals.ticks import TimeScale
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, unit_called, unit_of
 
 if TYPE_CHECKING:

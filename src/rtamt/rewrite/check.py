@@ -9,8 +9,6 @@ from rtamt.errors import BoundError, SpecificationError
 from rtamt.language.contents import contents
 from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
-from rtamt.language.printing.printer import interval_text
-from rtamt.language.shares import ShareKind, rank_of
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.rewrite.desugar import spelled_out
@@ -98,6 +96,8 @@ def check_bounds(
                 )
             counts.append(count)
         if len(counts) == 2 and counts[1] - interval.end_open < counts[0] + interval.begin_open:
+            from rtamt.language.printing.printer import interval_text
+
             raise BoundError(
                 f"the interval {interval_text(interval)} is empty: with a {unit.setting} of "
                 f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",
@@ -112,6 +112,9 @@ def check_bounds(
 
 def _check_share(interval: Interval, step: Fraction, text: str | None, unit: BoundUnit) -> None:
     """Raise :class:`BoundError` at a share that is not a number of steps of its window."""
+    from rtamt.language.printing.printer import interval_text
+    from rtamt.language.shares import ShareKind, rank_of
+
     share = interval.share
     assert share is not None
     nominal = unit.size(interval, step)

@@ -126,7 +126,7 @@ def _sums_all(node: Formula) -> bool:
 
 
 def _moves(node: Apply, constants: Mapping[int, float], varying: Collection[int]) -> tuple[int | None, ...]:
-    """Return the monotonicity of an operator in each operand; see ``enclosures.slopes``."""
+    """Return the monotonicity of an operator in each operand; see ``rows.slopes``."""
     if node.op.tense is not Tense.NONE:
         return (1,) * len(node.args)
     if node.op.slopes is None:

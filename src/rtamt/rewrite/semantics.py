@@ -21,7 +21,6 @@ from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, sh
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Const, Formula, located
 from rtamt.language.operators import STL
-from rtamt.language.printing.printer import excerpt
 from rtamt.language.unwritten import COLUMN
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TypeAlias
@@ -158,6 +157,8 @@ def role_of(name: str, roles: Roles) -> str:
 
 def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles: Roles) -> Formula:
     """Return the replacement of a predicate under a semantics; it reads the same variables."""
+    from rtamt.language.printing.printer import excerpt
+
     try:
         applied = semantics(predicate, roles)
     except StlError:

@@ -7,8 +7,8 @@ from collections import deque
 from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.contents import variables
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence

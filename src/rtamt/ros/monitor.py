@@ -7,12 +7,11 @@ from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError
-from rtamt.language.units.durations import duration, positive_period
+from rtamt.language.units.durations import NANOSECOND, duration, positive_period
 from rtamt.ros.diagnostics import Condition, Level, Notice, begins_anew, seconds_text
 from rtamt.ros.early_group import Bounds
 from rtamt.ros.fields import reader, stamp_of
 from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict
-from rtamt.signals.ticks import NANOSECOND
 from rtamt.signals.time_domains import DEFAULT, time_domain
 
 if TYPE_CHECKING:

@@ -15,11 +15,7 @@ from rtamt.language.units.durations import UNITS, check_unit, in_seconds
 from rtamt.lazy.modules import dt, np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals import counting
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
-from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
-from rtamt.signals.data_errors import missing_variable, nan_error, unknown_variable
-from rtamt.signals.datetimes import has_length, in_nanoseconds, nanoseconds_of, no_length, out_of_reach
 from rtamt.signals.time_columns import check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
@@ -34,7 +30,7 @@ if TYPE_CHECKING:
     FloatArray = NDArray[np.float64]
 
 #: The key under which a trace holds its timestamps.
-TIME = counting.TIME
+TIME = "time"
 
 
 class WithTimeBases(ABC):
@@ -213,6 +209,8 @@ def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Ti
     ``copy``: see :func:`array`. Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN
     seconds.
     """
+    from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
+
     try:
         raw = values if is_masked(values) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
@@ -226,6 +224,8 @@ def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Ti
                 variable=TIME,
                 index=0,
             )
+        from rtamt.signals.datetimes import in_nanoseconds
+
         original = in_nanoseconds(
             np.where(np.ma.getmaskarray(raw), np.array("NaT", raw.dtype), np.asarray(raw)), TIME
         )
@@ -248,6 +248,8 @@ def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Ti
 
 def _moments(raw: NDArray[Any]) -> NDArray[Any]:
     """Return dates or durations in nanoseconds; dates without a time zone are taken literally, as in dense time."""
+    from rtamt.signals.datetimes import has_length, nanoseconds_of, no_length, out_of_reach
+
     zones: dict[bool, int] = {}
     kinds: dict[str, int] = {}
     found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
@@ -292,6 +294,8 @@ def check_numbers(
     ``first`` is the index of ``column[0]`` in the recording.
     """
     if len(column) and isnan(np.minimum.reduce(column)):  # NaN propagates
+        from rtamt.signals.data_errors import nan_error
+
         i = int(np.isnan(column).argmax())
         raise nan_error(name, first + i, float(times[i]))
     if type_ is not None:
@@ -348,6 +352,8 @@ def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collecti
         if key in names or key == TIME or key in declared:
             continue
         if key not in {name.split(".")[0] for name in names}:
+            from rtamt.signals.data_errors import unknown_variable
+
             raise unknown_variable(str(key), names)
 
 
@@ -358,6 +364,8 @@ def _column(data: Any, keys: Sequence[str], name: str, type_: ValueType | None, 
     if path and head in keys:
         values = [field_of(value, head, path, i) for i, value in enumerate(data[head])]
         return array(encoded(values, name, type_), name)
+    from rtamt.signals.data_errors import missing_variable
+
     raise missing_variable(name, [key for key in keys if key != TIME])
 
 

@@ -11,13 +11,11 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, is_frame, is_mapping
 from rtamt.signals.time_columns import check_frame, split_unit
-from rtamt.signals.trace import Trace
-from rtamt.signals.unit_conversion import converted
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping
 
-    from rtamt.signals.trace import Channel
+    from rtamt.signals.trace import Channel, Trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +49,11 @@ class Binding:
         Applying it again changes nothing. ``partial``: for a chunk, which need not have all variables. Raises
         :class:`TraceError` for a recorded name that is missing and units that cannot be converted.
         """
-        if data.__class__ is not dict and isinstance(data, Trace):
-            return self._trace(data) if self.columns or self.units else data
+        if data.__class__ is not dict:
+            from rtamt.signals.trace import Trace
+
+            if isinstance(data, Trace):
+                return self._trace(data) if self.columns or self.units else data
         if not self.columns:
             return data
         if is_mapping(data):
@@ -60,6 +61,8 @@ class Binding:
         return self._frame(data) if is_frame(data) else data
 
     def _trace(self, trace: Trace) -> Trace:
+        from rtamt.signals.unit_conversion import converted
+
         channels = {name: trace.channel(name) for name in trace}
         by_column = {split_unit(channel.column)[0]: name for name, channel in reversed(channels.items())}
         by_column |= {channel.column: name for name, channel in reversed(channels.items())}

@@ -9,15 +9,13 @@ from numbers import Integral
 from rtamt.errors import TraceError, shown
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
     TickArray = NDArray[np.int64]
-
-#: The name of timestamps among signals.
-TIME = "time"
 
 #: Timestamps keep this distance from the ends of int64, so that bounds can be added to them.
 FARTHEST = 2**62

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from rtamt.errors import StlError, TraceError, UsageError, shown
-from rtamt.language.units.durations import positive_period
+from rtamt.language.units.durations import NANOSECOND, positive_period
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.check import TICKS, check_bounds, check_dense
-from rtamt.signals import arrays, dense_arrays
+from rtamt.signals import arrays
 from rtamt.signals.coding import NO_TYPES
-from rtamt.signals.counting import rescaled
-from rtamt.signals.data_errors import missing_variable
-from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
-from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 if TYPE_CHECKING:
@@ -28,7 +24,7 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.coding import Types
     from rtamt.signals.dense_arrays import Samples
-    from rtamt.signals.ticks import TickArray
+    from rtamt.signals.ticks import TickArray, TimeScale
     from rtamt.signals.time_domain_interface import Bounds, Mask
 
 
@@ -147,6 +143,8 @@ class DenseTrace(DomainTrace):
     @property
     def samples(self) -> int:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.sampling_period import merged
+
         return len(merged([ticks for ticks, _ in self.columns.values()]))
 
     @property
@@ -203,6 +201,8 @@ class DenseTrace(DomainTrace):
 
     def in_steps(self) -> DenseTrace:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.ticks import TimeScale
+
         return replace(self, scale=TimeScale.in_ticks(self.scale.tick))
 
     def positions(self, signal: Signal) -> NDArray[np.int64]:
@@ -233,6 +233,9 @@ class DenseTrace(DomainTrace):
 
     def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.counting import rescaled
+        from rtamt.signals.ticks import TimeScale
+
         ticks = np.asarray(positions, np.int64) + self.start
         try:
             return rescaled(ticks, self.scale.tick / NANOSECOND)
@@ -311,18 +314,23 @@ def record_dense(
     scale, by default inferred from the first variable. ``unit``: the unit of numeric times, by default
     seconds. ``types``: of the variables that are no plain numbers. Raises :class:`TraceError`.
     """
+    from rtamt.signals.dense_arrays import columns_of, samples_of
+
     _require_variables(names)
     arrays.require_no_unit(data, unit)
-    columns = dense_arrays.columns_of(data, names)
+    columns = columns_of(data, names)
     for name in names:
         if name not in columns:
+            from rtamt.signals.data_errors import missing_variable
+
             raise missing_variable(name, [str(key) for key in getattr(data, "columns", data)])
         if not len(columns[name][0]):
             raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
-    scale = scale or TimeScale.of(tick, [columns[name][0] for name in names], unit)
-    samples = {
-        name: dense_arrays.samples_of(columns[name], name, scale, type_=types.get(name)) for name in names
-    }
+    if scale is None:
+        from rtamt.signals.ticks import TimeScale
+
+        scale = TimeScale.of(tick, [columns[name][0] for name in names], unit)
+    samples = {name: samples_of(columns[name], name, scale, type_=types.get(name)) for name in names}
     result = DenseTrace(samples, scale, arrays.units_of(data))
     if result.start > result.end:
         raise TraceError("the signals have no instant in common")

@@ -6,7 +6,7 @@ from fractions import Fraction
 from math import isfinite
 
 from rtamt.errors import BoundError, StlError, TraceError, UsageError, shown
-from rtamt.language.units.durations import UNITS, decimal, positive_period
+from rtamt.language.units.durations import NANOSECOND, UNITS, decimal, positive_period
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
@@ -22,8 +22,6 @@ from rtamt.signals.arrays import (
     units_of,
 )
 from rtamt.signals.coding import NO_TYPES
-from rtamt.signals.counting import quotients
-from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.sampling_period import (
     TOLERANCE,
     DeferredTimes,
@@ -34,7 +32,6 @@ from rtamt.signals.sampling_period import (
     infer_period,
 )
 from rtamt.signals.signal import Signal
-from rtamt.signals.ticks import NANOSECOND, TimeScale
 from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 if TYPE_CHECKING:
@@ -268,6 +265,8 @@ class DiscreteTrace(DomainTrace):
 
     def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.ticks import TimeScale
+
         scale = TimeScale.of(NANOSECOND, [self.timestamps], self.unit)
         return scale.ticks(self.timestamps[np.asarray(positions, np.int64)], TIME)
 
@@ -306,6 +305,8 @@ class DiscreteTrace(DomainTrace):
     @property
     def origin(self) -> Fraction | np.datetime64:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.datetimes import nanoseconds_of
+
         first = self.timestamps[0]
         if isinstance(first, np.timedelta64):
             return Fraction(nanoseconds_of(first) or 0, 10**9)
@@ -313,6 +314,8 @@ class DiscreteTrace(DomainTrace):
 
     def seconds(self, times: Any, *, elapsed: bool) -> FloatArray:
         """See :class:`DomainTrace`."""
+        from rtamt.signals.counting import quotients
+
         own = isinstance(times, np.ndarray) and _same_memory(
             times, self.timestamps
         )  # of a signal over this recording

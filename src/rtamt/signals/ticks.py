@@ -24,7 +24,7 @@ from numbers import Rational
 from types import MappingProxyType
 
 from rtamt.errors import TraceError, shown
-from rtamt.language.units.durations import UNITS, check_unit, decimal, format_duration
+from rtamt.language.units.durations import NANOSECOND, UNITS, check_unit, decimal, format_duration
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import dt, np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
@@ -53,9 +53,6 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
 
     TickArray = NDArray[np.int64]
-
-#: One tick, unless the caller chooses another: a nanosecond.
-NANOSECOND = UNITS["ns"]
 
 #: The kind of a ``timedelta64`` without a fixed length in :func:`kinds_of`.
 NO_LENGTH = "no length"

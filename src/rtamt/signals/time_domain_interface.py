@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from importlib import import_module
 
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.ground import grounds
 from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.sampling_period import TOLERANCE
-from rtamt.signals.ticks import NANOSECOND
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

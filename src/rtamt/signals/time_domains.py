@@ -5,12 +5,12 @@ from __future__ import annotations
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices, shown
+from rtamt.language.units.durations import NANOSECOND
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.dense import Dense
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import TOLERANCE
-from rtamt.signals.ticks import NANOSECOND
 from rtamt.signals.time_domain_interface import TimeDomain
 
 if TYPE_CHECKING:

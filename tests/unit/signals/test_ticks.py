@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.errors import TraceError
-from rtamt.signals.ticks import NANOSECOND, TimeScale, tick_of
+from rtamt.language.units.durations import NANOSECOND
+from rtamt.signals.ticks import TimeScale, tick_of
 
 NOON = datetime(2026, 1, 1, 12)
 ZONE = timezone(timedelta(hours=2))

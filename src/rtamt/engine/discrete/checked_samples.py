@@ -7,13 +7,10 @@ from abc import abstractmethod
 from rtamt.engine.online import OnlineMonitor
 from rtamt.engine.slow_path import inner_of
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.arrays import Timestamps
-from rtamt.signals.episodes import plain_times
-from rtamt.signals.samples import read_time, read_values, time_of
 from rtamt.signals.sampling_period import check_increasing, check_regular, irregular
 from rtamt.usage_guard import exclusive, in_use
 
@@ -47,6 +44,8 @@ class CheckedSamples(OnlineMonitor):
 
     def _update_carefully(self, *given: Any, **values: Any) -> float | None:
         """Take a sample that the core rejected, or report what is wrong with it."""
+        from rtamt.signals.samples import time_of
+
         time = time_of(given)
         if self._plain:
             return self._take(time, values)
@@ -69,6 +68,8 @@ class CheckedSamples(OnlineMonitor):
         return robustness
 
     def _take(self, time: Any, values: dict[str, Any]) -> float | None:
+        from rtamt.signals.samples import read_time, read_values
+
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
@@ -102,6 +103,8 @@ class CheckedSamples(OnlineMonitor):
         return robustness
 
     def _take_row(self, values: tuple[float, ...]) -> float | None:
+        from rtamt.signals.samples import read_values
+
         if len(values) != len(self.input_names):
             raise TraceError(
                 f"sample {self.samples} has the wrong number of values: expected {len(self.input_names)} "
@@ -121,6 +124,8 @@ class CheckedSamples(OnlineMonitor):
 
     def _note_sample(self, robustness: float | None) -> None:
         """Look at what the last sample made known of each formula."""
+        from rtamt.signals.episodes import plain_times
+
         if self._episodes is None:
             return
         for output, lag in enumerate(self._lags):
@@ -184,6 +189,8 @@ class CheckedSamples(OnlineMonitor):
 
     def _refusal(self, time: float) -> Exception:
         """Return the error for a sample that the back end rejected."""
+        from rtamt.signals.samples import read_time
+
         if self._finished:
             return self._is_finished()
         index, last = self.samples, self._last_time
@@ -195,4 +202,6 @@ class CheckedSamples(OnlineMonitor):
 
     def _no_value(self, error: Any) -> Exception:
         """Return the error for an undefined value, with its sub-formula and instant."""
+        from rtamt.language.undefined_value import at_sample, undefined
+
         return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))

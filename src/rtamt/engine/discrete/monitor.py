@@ -14,7 +14,6 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
-from rtamt.signals.episodes import plain_times
 from rtamt.signals.signal import Signal
 from rtamt.usage_guard import exclusive
 
@@ -219,6 +218,8 @@ class Monitor(MonitorBase, CheckedSamples):
 
     def _note(self, news: list[Signal]) -> None:
         """Look at what a chunk made known of each formula."""
+        from rtamt.signals.episodes import plain_times
+
         for tracker, signal in zip(self._episodes or (), news, strict=self._episodes is not None):
             tracker.take(zip(plain_times(signal.times), signal.values.tolist(), strict=True))
 

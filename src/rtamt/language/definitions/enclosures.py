@@ -271,15 +271,6 @@ def holds_eq(x: Enclosure, y: Enclosure) -> Enclosure:
 # ---- in which direction -------------------------------------------------------------------------
 
 
-def slopes(*known: int | None) -> Callable[..., tuple[int | None, ...]]:
-    """Return a function from the values of constant operands to the monotonicity of the result in each operand.
-
-    1: nondecreasing; -1: nonincreasing; 0: neither, and the extension is still as narrow as possible
-    if no variable occurs twice; None: the extension may be wider than that.
-    """
-    return lambda *_constants: known
-
-
 def of_product(x: float | None, y: float | None) -> tuple[int | None, ...]:
     """Return the monotonicity of a product in its factors; ``None`` stands for a factor that is not constant."""
     return _sign(y), _sign(x)

@@ -154,9 +154,9 @@ def tanh(x: Enclosure) -> Enclosure:
     return each(lambda x: _limited(_ends(f.tanh, x), -1.0, 1.0), x)
 
 
-def rising(definition: Function) -> Callable[[Enclosure], Enclosure]:
-    """Return the extension of a nondecreasing function that is computed without error or rounded correctly."""
-    return lambda x: Enclosure(definition(x.lower), definition(x.upper))
+def rising(definition: Function, x: Enclosure) -> Enclosure:
+    """``definition(x)``: nondecreasing, and computed without error or rounded correctly."""
+    return Enclosure(definition(x.lower), definition(x.upper))
 
 
 def _phase(x: float, m: float) -> float:

@@ -13,6 +13,7 @@ names            a position in a text, and the meaning of a name there
 scope            names in a formula: constants, named formulas, declared variables
 diagnostics      syntax error messages
 templates        ``def name(parameters) = formula``, and its uses
+statements       which statement begins at the current token
 template_names   what names mean in the formula of a template
 template_order   templates that a text defines further down, and cycles among them
 imports          files that others import: where they may be, and what is taken from them

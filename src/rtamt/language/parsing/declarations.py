@@ -8,16 +8,15 @@ from types import MappingProxyType
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.document import Declaration
-from rtamt.language.enumerations import begins_enumeration, parse_enumeration
 from rtamt.language.formula import Span
+from rtamt.language.lazy_modules import enumerations, ranges, tables
 from rtamt.language.operators import Fixity
 from rtamt.language.parsing.grammar import INFINITY
 from rtamt.language.parsing.import_parser import ImportParser
 from rtamt.language.parsing.lexer import Token, is_name, quoted
-from rtamt.language.parsing.ranges import parse_range, parse_rate
 from rtamt.language.parsing.scope import Scope
+from rtamt.language.parsing.statements import begins_enumeration, begins_table
 from rtamt.language.quantifiers import begins_quantifier
-from rtamt.language.tables import begins_table, parse_table
 from rtamt.language.value_types import BOOLEAN, WHOLE, Enumeration
 from rtamt.lazy.typing import TYPE_CHECKING, Literal
 
@@ -60,7 +59,7 @@ class DeclarationParser(ImportParser):
         """Take the declaration of an enumeration, if there is one here."""
         if not begins_enumeration(self):
             return False
-        known = parse_enumeration(self, (*TYPES, *self._imports, *self._enumerations))
+        known = enumerations.parse_enumeration(self, (*TYPES, *self._imports, *self._enumerations))
         self._enumerations[known.name] = known
         return True
 
@@ -69,7 +68,7 @@ class DeclarationParser(ImportParser):
         if not begins_table(self):
             return False
         token = self._at(1)
-        table = parse_table(self)
+        table = tables.parse_table(self)
         if self._is_taken(table.name):
             raise self.error(f"'{table.name}' is declared twice{self._from(table.name)}", token.span)
         self._tables[table.name] = table
@@ -171,8 +170,8 @@ class DeclarationParser(ImportParser):
         columns: tuple[str, ...] = ()
         unit = "" if constant else self._unit(token)
         numeric = type_ is None and type_name in TYPES
-        range_ = None if constant else parse_range(self, name, number=numeric)
-        rate = None if constant else parse_rate(self, name, number=numeric)
+        range_ = None if constant else ranges.parse_range(self, name, number=numeric)
+        rate = None if constant else ranges.parse_rate(self, name, number=numeric)
         if not constant and self.accept("="):
             columns = self._columns(name, type_name)
         elif self.accept("="):

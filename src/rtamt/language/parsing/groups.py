@@ -6,7 +6,8 @@ from rtamt.errors import choices
 from rtamt.language.formula import Span
 from rtamt.language.parsing.declarations import ROLES, TYPES, DeclarationParser
 from rtamt.language.parsing.lexer import quoted
-from rtamt.language.quantifiers import Field, Group, begins_group, unquoted_pattern
+from rtamt.language.parsing.statements import begins_group
+from rtamt.language.quantifiers import Field, Group, unquoted_pattern
 
 
 class GroupParser(DeclarationParser):

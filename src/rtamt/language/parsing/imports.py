@@ -11,8 +11,6 @@ import os
 import stat
 
 from rtamt.errors import StlError, did_you_mean
-from rtamt.files import nearest_file
-from rtamt.language.parsing.templates import all_placed
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
@@ -174,6 +172,8 @@ def _inside(folder: str, path: str) -> str | None:
 
 
 def _missing(folder: str | None, path: str) -> str:
+    from rtamt.files import nearest_file
+
     packaged = sorted(name for name in os.listdir(PACKAGED) if name.endswith(".stl"))
     if folder is None:
         return (
@@ -191,6 +191,8 @@ def moved(document: Document, span: Span) -> tuple[dict[str, Formula], dict[str,
 
     The positions in its own text would mean something else in the text that imports it. Formulas go on sharing nodes.
     """
+    from rtamt.language.parsing.templates import all_placed
+
     scopes = {id(each.scope.definitions): each.scope.definitions for each in document.templates.values()}
     named = [document.definitions, *scopes.values()]
     made = iter(all_placed([formula for each in named for formula in each.values()], span))

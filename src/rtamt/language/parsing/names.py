@@ -8,12 +8,11 @@ from math import inf
 
 from rtamt.errors import NameInFormulaError, ParseError, SpecificationError
 from rtamt.language.formula import Const, Formula, Parameter, Span, Var, span_of
+from rtamt.language.lazy_modules import diagnostics
 from rtamt.language.operators import Fixity, Language
-from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import INFINITY, sign
 from rtamt.language.parsing.lexer import Token, Tokens, quoted, tokenize, unquoted
 from rtamt.language.parsing.template_names import meaning
-from rtamt.language.parsing.templates import Use, Uses
 from rtamt.language.quantifiers import field_of
 from rtamt.language.units.durations import check_unit
 from rtamt.language.value_types import Enumeration
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from rtamt.language.parsing.scope import Scope
+    from rtamt.language.parsing.templates import Use, Uses
     from rtamt.language.records import Operator
 
 #: Words with which a statement may begin, and that else are names.
@@ -65,6 +65,8 @@ class NameParser:
     @cached_property
     def uses(self) -> Uses:
         """The uses of templates so far."""
+        from rtamt.language.parsing.templates import Uses
+
         return Uses()
 
     def read(self, tokens: Tokens) -> None:

@@ -27,8 +27,8 @@ from math import inf, isinf
 
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
+from rtamt.language.lazy_modules import diagnostics, shares, templates
 from rtamt.language.operators import STL, Bounds, Fixity, Language, Operator, Sort
-from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.grammar import (
     ELSE,
     INFINITY,
@@ -43,10 +43,8 @@ from rtamt.language.parsing.intervals import parse_interval
 from rtamt.language.parsing.lexer import is_name, is_numeral, is_quoted
 from rtamt.language.parsing.lookahead import LookaheadParser
 from rtamt.language.parsing.scope import Scope
-from rtamt.language.parsing.templates import Template, parse_use
 from rtamt.language.parsing.type_rules import takes_number
 from rtamt.language.quantifiers import QUANTIFIERS, begins_quantifier, parse_quantifier
-from rtamt.language.shares import parse_share
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.typing import TYPE_CHECKING
 
@@ -55,6 +53,7 @@ if TYPE_CHECKING:
 
     from rtamt.errors import SpecificationError
     from rtamt.language.parsing.lexer import Token
+    from rtamt.language.parsing.templates import Template
     from rtamt.language.parsing.typed_parser import Place
     from rtamt.language.quantifiers import Group
     from rtamt.language.value_types import Enumeration, ValueType
@@ -193,7 +192,7 @@ class FormulaParser(LookaheadParser):
             return None
         template = scope.templates.get(token.text)
         if template is not None:
-            return parse_use(self, template)
+            return templates.parse_use(self, template)
         hint = did_you_mean(token.text, (*scope.templates, *scope.tables))
         if hint or token.text in scope.pending:
             message = scope.pending.get(token.text) or f"'{token.text}' is not a function{hint}"
@@ -232,7 +231,7 @@ class FormulaParser(LookaheadParser):
             raise self.error(f"expected '(' after '{name.text}', got {opening}", opening.span)
         if op.share:
             assert interval is not None
-            interval = replace(interval, share=parse_share(self, name.text))
+            interval = replace(interval, share=shares.parse_share(self, name.text))
         operands: list[Formula] = []
         places: list[Place] = []
         while not operands or self.accept(","):

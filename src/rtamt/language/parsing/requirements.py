@@ -9,7 +9,7 @@ from rtamt.language.formula import Span
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.lexer import unquoted
 from rtamt.language.parsing.parser import FormulaParser
-from rtamt.language.parsing.templates import begins_template
+from rtamt.language.parsing.statements import begins_template
 from rtamt.language.parsing.type_rules import type_of
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy.patterns import lazy_pattern

@@ -47,14 +47,6 @@ def _format_seconds(seconds: Fraction) -> str:
     return format_duration(seconds).replace(" ", "")
 
 
-def begins_sampling(parser: RequirementParser) -> bool:
-    """Return whether a sampling rule begins here: ``sample`` and a number, which no formula begins with."""
-    if parser.texts[parser.index] != "sample":
-        return False
-    first, second = parser.token, parser.tokens[min(parser.index + 1, len(parser.tokens) - 1)]
-    return first.kind == "name" and first.text == "sample" and second.kind == "number"
-
-
 def parse_sampling(parser: RequirementParser) -> Sampling:
     """``sampling = "sample" , duration , [ "hold" , [ "for" , duration ] , [ "skip" , "nan" ] ] , [ ";" ]``."""
     start = parser.next().start

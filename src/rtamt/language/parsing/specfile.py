@@ -38,19 +38,21 @@ from types import MappingProxyType
 
 from rtamt.errors import NameInFormulaError
 from rtamt.language.document import Assertion, Document
-from rtamt.language.enumerations import begins_enumeration
 from rtamt.language.formula import Formula, Span, Var, postorder
+from rtamt.language.lazy_modules import diagnostics, sampling_clause, templates
 from rtamt.language.operators import STL, Language
-from rtamt.language.parsing import diagnostics
 from rtamt.language.parsing.groups import GroupParser
 from rtamt.language.parsing.imports import Library
 from rtamt.language.parsing.lexer import places_of
-from rtamt.language.parsing.sampling_clause import begins_sampling, parse_sampling
 from rtamt.language.parsing.scope import Scope
+from rtamt.language.parsing.statements import (
+    begins_enumeration,
+    begins_group,
+    begins_sampling,
+    begins_table,
+    begins_template,
+)
 from rtamt.language.parsing.template_order import templates_to_come
-from rtamt.language.parsing.templates import begins_template, parse_template
-from rtamt.language.quantifiers import begins_group
-from rtamt.language.tables import begins_table
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy.typing import TYPE_CHECKING
 
@@ -167,7 +169,7 @@ class DocumentParser(GroupParser):
             word = self.token
             if self._sampling is not None:
                 raise self.error("the sampling rule is given twice", word.span)
-            self._sampling = parse_sampling(self)
+            self._sampling = sampling_clause.parse_sampling(self)
             return True
         return (
             self._enumeration() or self._table() or self._group() or self._declaration() or self._annotation()
@@ -256,7 +258,7 @@ class DocumentParser(GroupParser):
         name = token.text
         self._check_new(name, token)
         pending[name] = f"'{name}' uses itself; templates cannot be recursive"
-        template = parse_template(self)
+        template = templates.parse_template(self)
         del pending[name]
         self._templates[name] = template
         return name

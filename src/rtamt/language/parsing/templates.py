@@ -18,7 +18,6 @@ from fractions import Fraction
 
 from rtamt.errors import BoundError, NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, children, located
-from rtamt.language.parsing.grammar import ELSE, THEN
 from rtamt.language.units.durations import UNITS, exact
 from rtamt.language.value_types import UNKNOWN
 from rtamt.lazy.dataclasses import dataclass, field, replace
@@ -133,16 +132,6 @@ class Uses:
 
 
 # ---- definitions ---------------------------------------------------------------------------------
-
-
-def begins_template(parser: FormulaParser) -> bool:
-    """Return whether a template is defined here: ``def``, a name and a parenthesis, which no formula begins with."""
-    if parser.texts[parser.index] != "def":
-        return False
-    first, second, third = (*parser.tokens[parser.index : parser.index + 3], *[parser.tokens[-1]] * 2)[:3]
-    word = second.text
-    named = second.kind == "name" and word not in (THEN, ELSE) and parser.language.infix(word) is None
-    return first.kind == "name" and first.text == "def" and named and third.text == "("
 
 
 def parse_template(parser: FormulaParser) -> Template:

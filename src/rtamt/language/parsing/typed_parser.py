@@ -7,7 +7,6 @@ from functools import reduce
 from rtamt.errors import NameInFormulaError, did_you_mean
 from rtamt.language.formula import Apply, Const, Formula, Span, Var, span_of
 from rtamt.language.operators import Sort
-from rtamt.language.parsing.diagnostics import is_function, no_operator
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.names import NameParser
 from rtamt.language.parsing.type_rules import (
@@ -184,6 +183,8 @@ class TypedParser(NameParser):
 
     def _undeclared(self, name: str, span: Span) -> SpecificationError:
         """Return the error for a name that means nothing."""
+        from rtamt.language.parsing.diagnostics import is_function, no_operator
+
         if self._against is not None:
             return self.error(self._against.lacks(name), span, NameInFormulaError)
         if self.token.text == "(" and self.tokens[self.index - 1].text == name:

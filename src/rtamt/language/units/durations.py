@@ -14,7 +14,6 @@ ns    1/1 000 000 000
 
 from __future__ import annotations
 
-import re
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -48,6 +47,9 @@ UNITS: Mapping[str, Fraction] = MappingProxyType(
     }
 )
 
+#: One tick of dense time, unless the caller chooses another.
+NANOSECOND = UNITS["ns"]
+
 #: Durations with more digits than this are shortened in messages.
 _LONGEST = 40
 
@@ -79,13 +81,14 @@ def exact(literal: str) -> Fraction:
     >>> exact("0.1"), exact("1e-3")
     (Fraction(1, 10), Fraction(1, 1000))
     """
-    if _DECIMAL.fullmatch(literal) is None:
+    whole = literal.isascii() and literal.isdigit()  # most are, and need no regular expression
+    if not whole and _DECIMAL.fullmatch(literal) is None:
         raise ValueError(f"{literal} is no decimal number")
     if len(literal) > _MOST_CHARACTERS:
         raise ValueError(f"{literal} {why_not_exact(literal)}")
     # Check the range as a double first: 1e-999999999, or 0e-999999999, would need a gigabyte as a fraction.
     nearest = float(literal)
-    if nearest == 0 and re.search("[1-9]", re.split("[eE]", literal)[0]) is None:
+    if nearest == 0 and not literal.lower().partition("e")[0].strip("+-0._"):
         return Fraction(0)
     if nearest == 0 or not isfinite(nearest):
         raise ValueError(f"{literal} {why_not_exact(literal)}")

@@ -6,7 +6,6 @@ A rule takes the measures of the operands and returns that of the result, or rai
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import partial
 from math import isclose, isfinite, pi
 
 from rtamt.language.units.dimensions import (
@@ -37,11 +36,6 @@ if TYPE_CHECKING:
     UnitRule: TypeAlias = Callable[[Sequence[Measure]], Measure]
 
 _DEG, _RAD, _SECOND = declared("deg"), declared("rad"), declared("s")
-
-
-def same(*which: int) -> UnitRule:
-    """Return the rule of operators whose operands, or those of these numbers, have one unit, that of the result."""
-    return partial(agree, which=which)
 
 
 def sums(measures: Sequence[Measure]) -> Measure:
