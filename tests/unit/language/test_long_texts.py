@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import pytest
 
 import rtamt
@@ -93,6 +95,15 @@ def test_the_limit_of_nesting_is_in_the_message() -> None:
         StlError, match=r"^nested too deeply: at most 200 formulas may stand inside one another"
     ):
         rtamt.parse(repeated("("))
+
+
+def test_the_parentheses_of_a_prefix_operator_are_no_level_of_their_own() -> None:
+    before = [
+        f"(x == {'prev(' * k}x{')' * k})" for k in range(1, 100)
+    ]  # a published monitor of frozen signals
+    monitor = rtamt.parse(f"historically(not ({' and '.join(before)}))").monitor()
+    robustness = [monitor.update(t, x=1.0) for t in range(101)]
+    assert robustness == [inf] * 99 + [0, 0]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

@@ -146,7 +146,7 @@ class FormulaParser(LookaheadParser):
         if kind == _NUMBER:
             return self.number()
         if kind == _GROUP:
-            return self.group()
+            return self.group(under)
         if kind == _NAME:
             after = self.texts[at + 1]
             if self.scope.free and after not in _AFTER_OTHERS:
@@ -211,11 +211,14 @@ class FormulaParser(LookaheadParser):
             )
         return Const(value, span)
 
-    def group(self) -> Formula:
-        """``group = "(" , expression , ")"``."""
+    def group(self, under: Operator | None = None) -> Formula:
+        """``group = "(" , expression , ")"``; with the prefix operator before it, ``under``, it is one level."""
         opening = self.index
         self.index += 1
+        same = under is not None and under.fixity is Fixity.PREFIX
+        self._depth -= same
         inner = self.expression()
+        self._depth += same
         if not self.accept(")"):
             raise self.error(
                 *diagnostics.no_close(self.language, self.tokens, self.index, self.tokens[opening])
