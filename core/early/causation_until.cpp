@@ -22,7 +22,7 @@ Run View::at(Tick t) const noexcept {
     if (reversed_) {
         if (t > 0) return {1, forever, -infinity}; // no goal is before the start
         const Run run = runs_->at(-t);
-        return {-run.end, -run.begin, run.value};
+        return {-run.end, std::max(-run.begin, t), run.value}; // also where ticks are dropped
     }
     return t < 0 ? Run{-forever, -1, infinity} : runs_->at(t);
 }

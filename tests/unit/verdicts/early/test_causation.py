@@ -210,3 +210,16 @@ def test_no_goal_of_since_is_before_the_start(backend):
         monitor.update(t, x=x, y=y)
     assert monitor.causation(0) == rtamt.Causation(inf, -inf)
     assert monitor.causation(1) == rtamt.Causation(-1.5, -1.5)
+
+
+@BACKENDS
+def test_causation_of_since_ends_where_its_first_samples_are_forgotten(backend):
+    monitor = rtamt.parse("eventually[2:3](1.5 since[2:inf] y)", backend=backend).monitor(verdict="causation")
+    for t, y in enumerate([0, -2.5, 1, 3]):
+        monitor = copy.copy(monitor)
+        monitor.update(t, y=y)
+    assert monitor.runs() == [
+        CausationRun(0.0, 0.0, 1.5, 0.0),
+        CausationRun(1.0, 1.0, 1.5, 1.0),
+        CausationRun(2.0, None, 1.5, 1.5),
+    ]
