@@ -30,12 +30,12 @@ _TIMED = "or (times, lower, upper), three arrays of the same length"
 def calibrate(residuals: ArrayLike, delta: float) -> float:
     """Return a radius that the error of a new prediction exceeds with a probability of ``delta`` at most.
 
-    ``residuals``: errors of the predictor on n recordings that were not used to train it, one number each, such as
-    the largest error over the horizon. The recordings and the new one must be exchangeable, for instance
+    ``residuals``: sizes of the errors of the predictor on n recordings that were not used to train it, one number
+    each, such as the largest error over the horizon. The recordings and the new one must be exchangeable, for instance
     independent and identically distributed. Split conformal prediction (Lindemann et al., arXiv 2211.01539): the
     radius is the ⌈(n + 1)(1 - delta)⌉-th smallest residual, and infinite if n is too small for ``delta``.
 
-    Raises :class:`UsageError` for residuals that are not numbers, and a ``delta`` outside (0, 1).
+    Raises :class:`UsageError` for residuals that are negative or no numbers, and a ``delta`` outside (0, 1).
 
     >>> import rtamt
     >>> rtamt.calibrate([0.3, 0.1, 0.2, 0.5, 0.4, 0.7, 0.6, 0.9, 0.8], delta=0.2)
@@ -54,6 +54,10 @@ def calibrate(residuals: ArrayLike, delta: float) -> float:
         raise UsageError(f"the residuals have {errors.ndim} dimensions; give one number for each recording")
     if np.isnan(errors).any():
         raise UsageError(f"residual {int(np.isnan(errors).argmax())} is NaN; leave the recording out")
+    if errors.size and errors[0] < 0:
+        raise UsageError(
+            f"the least residual is {errors[0]:g}; give the size of each error, such as abs(actual - predicted)"
+        )
     # The decimal digits count: 10 * (1 - 0.9) is 1.
     rank = ceil((errors.size + 1) * (1 - Fraction(repr(probability))))
     return inf if rank > errors.size else float(errors[rank - 1])

@@ -299,6 +299,11 @@ def test_new_error_is_within_the_radius_as_often_as_promised(n, delta):
         (["a"], 0.1, "the residuals are ['a']; give a list of numbers"),
         ([[1.0]], 0.1, "the residuals have 2 dimensions; give one number for each recording"),
         ([1.0, float("nan")], 0.1, "residual 1 is NaN; leave the recording out"),
+        (
+            [0.2, -0.9, 0.1],
+            0.5,
+            "the least residual is -0.9; give the size of each error, such as abs(actual - predicted)",
+        ),
     ],
 )
 def test_wrong_calibration_is_rejected_with_one_sentence(residuals, delta, message):
