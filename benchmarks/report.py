@@ -69,7 +69,8 @@ ratios of all rounds. Formulas are parsed and samples are converted to the input
 for ours, offline, numpy arrays) before the measurement. "Parsing" is the time that a tool's own parser takes
 from a text in its language to an object that is ready to run. The bytecode of all imports is written before a tool
 starts. `this` online is `monitor.update(t, a=x)`, `this (step)` the positional `monitor.step(x)` for hot loops. Online,
-measurements begin when the windows are full. Every result is the complete robustness signal.
+measurements begin when the windows are full. Offline, evaluations that are shorter than 0.1 ms are timed together, up
+to 50 of them. Every result is the complete robustness signal.
 
 {tools}
 

@@ -153,7 +153,8 @@ class Monitor(MonitorBase, CheckedSamples):
         """
         if self._finished:
             raise self._is_finished()
-        data = self._binding.applied(data)
+        if data.__class__ is not dict or self._binding.columns:
+            data = self._binding.applied(data)
         taken = self._take_columns(data)
         if taken is not None:
             return taken
