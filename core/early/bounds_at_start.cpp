@@ -52,19 +52,34 @@ namespace {
     return {Item::Kind::value, false, ref};
 }
 
+// Of until over the ticks from `t` up to, and without, `end`: the best so far, and how far hold
+// goes.
+struct Reached {
+    double best;
+    double held;
+
+    void pass(const BoundsEngine& engine, const Item& item, int reg, Tick t, Tick end) noexcept {
+        const bool greatest = up(item, reg);
+        const Runs& holds = engine.runs(item.b, reg);
+        const Runs& goals = engine.runs(item.c, reg);
+        while (t < end) {
+            const Run hold = holds.at(t);
+            const Run goal = goals.at(t);
+            best = join(greatest, best, join(!greatest, held, goal.value));
+            held = join(!greatest, held, hold.value);
+            t = std::min(hold.end, goal.end) + 1;
+        }
+    }
+};
+
 } // namespace
 
 BoundsAtStart::BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine,
-                             std::span<const std::uint32_t> outputs, bool follows)
-    : items_(std::move(items)), formula_(items_.size() - 1), follows_(follows) {
-    for (std::size_t i = 0; i < items_.size(); ++i) {
-        const Item& item = items_[i];
-        const bool fits = is_pair(item) ? item.a < i && item.b < i : item.a / 2 < engine.size();
-        if (!fits || item.tick < 0 || item.tick >= forever) {
-            throw std::invalid_argument("This is no formula at the start of a trace.");
-        }
-    }
-    if (!follows_ && !items_.empty()) put_together(engine.graph(), outputs);
+                             std::span<const std::uint32_t> outputs, Use use)
+    : items_(std::move(items)), formula_(items_.size() - 1), use_(use) {
+    check(items_, engine.size());
+    if (use_ != Use::as_given && !items_.empty()) put_together(engine.graph(), outputs);
+    find_folds(engine.graph());
     states_.resize(items_.size());
     for (std::size_t i = 0; i < items_.size(); ++i) {
         State& state = states_[i];
@@ -76,6 +91,16 @@ BoundsAtStart::BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine
         }
     }
     read(engine);
+}
+
+void BoundsAtStart::check(std::span<const Item> items, std::size_t nodes) {
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const Item& item = items[i];
+        const bool fits = is_pair(item) ? item.a < i && item.b < i : item.a / 2 < nodes;
+        if (!fits || item.tick < 0 || item.tick >= forever) {
+            throw std::invalid_argument("This is no formula at the start of a trace.");
+        }
+    }
 }
 
 // Items of values become items of what these are made of, those of operands first. What the formula
@@ -136,6 +161,23 @@ void BoundsAtStart::put_together(const Graph& graph, std::span<const std::uint32
     formula_ = moved.back();
 }
 
+// What is final at each sample, and the same from the newest one on, are predicates and their
+// combinations at one instant.
+void BoundsAtStart::find_folds(const Graph& graph) {
+    std::vector<bool> instant;
+    const auto at_one = [&](std::uint32_t ref) { return ref == none || instant[ref / 2]; };
+    for (const Node& node : graph.nodes) {
+        const bool pointwise =
+            node.kind == Kind::both || node.kind == Kind::either || node.kind == Kind::map;
+        instant.push_back(node.kind == Kind::atom ||
+                          (pointwise && at_one(node.a) && at_one(node.b)));
+    }
+    for (const Item& item : items_) {
+        folds_.push_back(use_ == Use::in_order && item.kind == Item::Kind::until &&
+                         at_one(item.b) && at_one(item.c));
+    }
+}
+
 Bounds BoundsAtStart::bounds_of(std::size_t item) const noexcept {
     const auto& value = states_[item].value;
     const Bounds bounds{value[0], -value[1]};
@@ -143,10 +185,18 @@ Bounds BoundsAtStart::bounds_of(std::size_t item) const noexcept {
 }
 
 void BoundsAtStart::limit(std::span<Tick> last) const noexcept {
-    for (const Item& item : items_) {
+    const auto reads = [&](std::uint32_t ref, Tick tick) {
+        last[ref / 2] = std::max(last[ref / 2], tick);
+    };
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+        const Item& item = items_[i];
         if (is_pair(item)) continue;
-        Tick& of_node = last[item.a / 2];
-        of_node = std::max(of_node, item.kind == Item::Kind::value ? item.tick : item.last);
+        if (folds_[i]) {
+            reads(item.b, item.last);
+            reads(item.c, item.last);
+        } else {
+            reads(item.a, item.kind == Item::Kind::value ? item.tick : item.last);
+        }
     }
 }
 
@@ -160,7 +210,7 @@ std::vector<std::uint32_t> BoundsAtStart::read_forever() const {
     return refs;
 }
 
-void BoundsAtStart::read(const BoundsEngine& engine) {
+void BoundsAtStart::read(const BoundsEngine& engine, Tick closed) {
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const Item& item = items_[i];
         State& state = states_[i];
@@ -169,6 +219,10 @@ void BoundsAtStart::read(const BoundsEngine& engine) {
                 join(item.kind == Item::Kind::either, bounds_of(item.a), bounds_of(item.b));
             state.value = {value.lower, -value.upper};
         } else if (state.next < forever) {
+            if (folds_[i] && closed >= state.next) {
+                fold(engine, i, closed + 1);
+                state.next = closed + 1;
+            }
             for (int reg = 0; reg < 2; ++reg) {
                 double& value = state.value[static_cast<std::size_t>(reg)];
                 value = Real::join(value, seen(engine, i, reg)); // bounds only narrow
@@ -182,6 +236,11 @@ double BoundsAtStart::seen(const BoundsEngine& engine, std::size_t index, int re
     const Item& item = items_[index];
     const State& state = states_[index];
     const auto r = static_cast<std::size_t>(reg);
+    if (folds_[index]) {
+        Reached reached{state.best[r], state.held[r]};
+        reached.pass(engine, item, reg, state.next, forever);
+        return reached.best;
+    }
     const Runs& runs = engine.runs(item.a, reg);
     const auto& pieces = engine.new_data(item.a, reg);
     const double value = state.value[r];
@@ -227,8 +286,16 @@ void BoundsAtStart::settle(const BoundsEngine& engine, Tick closed, std::span<Ti
             fold(engine, i, open);
             state.next = open;
         }
-        if (!follows_ && decided(i)) state.next = forever;
-        wanted[item.a / 2] = std::min(wanted[item.a / 2], state.next);
+        if (use_ != Use::as_given && decided(i)) state.next = forever;
+        const auto wants = [&](std::uint32_t ref) {
+            wanted[ref / 2] = std::min(wanted[ref / 2], state.next);
+        };
+        if (folds_[i]) {
+            wants(item.b);
+            wants(item.c);
+        } else {
+            wants(item.a);
+        }
     }
 }
 
@@ -258,19 +325,16 @@ void BoundsAtStart::fold(const BoundsEngine& engine, std::size_t index, Tick end
         const auto r = static_cast<std::size_t>(reg);
         const bool greatest = up(item, reg);
         double& best = state.best[r];
-        if (item.kind != Item::Kind::until) {
+        if (item.kind == Item::Kind::until) {
+            Reached reached{best, state.held[r]};
+            reached.pass(engine, item, reg, state.next, end);
+            best = reached.best;
+            state.held[r] = reached.held;
+        } else {
             const Runs& runs = engine.runs(item.a, reg);
             best =
                 join(greatest, best,
                      greatest ? runs.most(state.next, end - 1) : runs.least(state.next, end - 1));
-            continue;
-        }
-        for (Tick t = state.next; t < end;) {
-            const Run hold = engine.runs(item.b, reg).at(t);
-            const Run goal = engine.runs(item.c, reg).at(t);
-            best = join(greatest, best, join(!greatest, state.held[r], goal.value));
-            state.held[r] = join(!greatest, state.held[r], hold.value);
-            t = std::min(hold.end, goal.end) + 1;
         }
     }
 }

@@ -10,7 +10,9 @@
 //     either  the larger of items a and b
 //
 // A value is put together in the same way from what the windows at the top of its formula read, so
-// that nothing follows the values of these windows at other ticks, nor keeps what is final.
+// that nothing follows the values of these windows at other ticks, nor keeps what is final. Of
+// samples in order, until over operands of one instant folds each sample as it comes, and nothing
+// follows the recursion.
 #pragma once
 
 #include "bounds_engine.hpp"
@@ -36,10 +38,16 @@ struct Item {
 
 class BoundsAtStart {
   public:
+    // What items are: as they are given, which continue after they are decided; or put together,
+    // for samples that may be late, or for samples in order.
+    enum class Use : std::uint8_t { as_given, late, in_order };
+
     // The last item is that of the formula. `outputs`: what is followed at all ticks anyway.
-    // `follows`: whether items are kept as they are given, and continue after they are decided.
     BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine,
-                  std::span<const std::uint32_t> outputs = {}, bool follows = false);
+                  std::span<const std::uint32_t> outputs = {}, Use use = Use::late);
+
+    // Throws for items that are none of a graph of so many nodes.
+    static void check(std::span<const Item> items, std::size_t nodes);
 
     // The last tick of each node that is looked at, where it is later.
     void limit(std::span<Tick> last) const noexcept;
@@ -47,8 +55,9 @@ class BoundsAtStart {
     // What is read at every tick.
     [[nodiscard]] std::vector<std::uint32_t> read_forever() const;
 
-    // Reads the current bounds of the engine.
-    void read(const BoundsEngine& engine);
+    // Reads the current bounds of the engine. `closed`: up to where inputs are final, if they are
+    // samples in order.
+    void read(const BoundsEngine& engine, Tick closed = -1);
 
     [[nodiscard]] Bounds value() const noexcept { return bounds_of(formula_); }
 
@@ -83,13 +92,15 @@ class BoundsAtStart {
     std::vector<Item> items_;
     std::vector<State> states_;
     std::size_t formula_; // the item of it
-    bool follows_;
+    Use use_;
+    std::vector<bool> folds_; // by item: until that folds each sample
 
     void put_together(const Graph& graph, std::span<const std::uint32_t> outputs);
     [[nodiscard]] double seen(const BoundsEngine& engine, std::size_t item, int reg) const noexcept;
     [[nodiscard]] Bounds bounds_of(std::size_t item) const noexcept;
     [[nodiscard]] bool decided(std::size_t item) const noexcept;
     void fold(const BoundsEngine& engine, std::size_t item, Tick end) noexcept;
+    void find_folds(const Graph& graph);
 };
 
 } // namespace rtamt::early

@@ -32,7 +32,8 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     }
     if (!settings.at_start.empty() || settings.causes) {
         at_start_.emplace(std::move(settings.at_start), engine_, settings.outputs,
-                          settings.causes.has_value());
+                          settings.causes ? BoundsAtStart::Use::as_given
+                                          : BoundsAtStart::Use::late);
         engine_.find_beyond(at_start_->read_forever());
     }
     if (settings.causes) {

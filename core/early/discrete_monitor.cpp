@@ -11,54 +11,54 @@ namespace {
 // The number of samples between two clean-ups of what is no longer needed.
 constexpr std::int64_t pause = 64;
 
-[[nodiscard]] std::optional<BoundsAtStart> at_start_of(std::vector<Item> items,
-                                                       const BoundsEngine& engine,
-                                                       std::span<const std::uint32_t> outputs,
-                                                       bool follows) {
-    if (items.empty()) return std::nullopt;
-    return BoundsAtStart(std::move(items), engine, outputs, follows);
-}
-
-[[nodiscard]] BoundsEngine::Arrival arrival(bool late) {
-    return late ? BoundsEngine::Arrival::late_rows : BoundsEngine::Arrival::rows;
-}
-
 } // namespace
 
 DiscreteMonitor::DiscreteMonitor(const Graph& graph, DiscreteSettings settings)
-    : engine_(std::in_place, graph, settings.ranges, arrival(settings.lateness.has_value())),
-      outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
-      at_start_(at_start_of(settings.at_start, *engine_, outputs_, settings.causes.has_value())),
-      times_(settings.period, settings.tolerance), ranges_(std::move(settings.ranges)),
-      lateness_(settings.lateness), decides_(settings.decides), news_(outputs_.size()),
-      changes_(outputs_.size()), open_(outputs_.size(), 0), kept_(outputs_.size(), 0),
-      wanted_(graph.nodes.size()) {
+    : outputs_(std::move(settings.outputs)), waiting_(outputs_.size()),
+      reports_start_(!settings.at_start.empty()), times_(settings.period, settings.tolerance),
+      ranges_(std::move(settings.ranges)), lateness_(settings.lateness), decides_(settings.decides),
+      news_(outputs_.size()), changes_(outputs_.size()), open_(outputs_.size(), 0),
+      kept_(outputs_.size(), 0), wanted_(graph.nodes.size()) {
+    graph.check();
     ranges_.resize(graph.inputs, bounds::anything);
     if (late()) late_rows_.emplace(ranges_);
     for (const std::uint32_t output : outputs_) {
         if (output / 2 >= graph.nodes.size())
             throw std::invalid_argument("There is no such output.");
-        lags_.push_back(std::max<Tick>(0, engine_->horizon(output)));
+        lags_.push_back(std::max<Tick>(0, graph.nodes[output / 2].horizon));
     }
-    if (settings.causes) {
-        causes_.emplace(std::move(*settings.causes), *engine_, at_start_.value(), false);
-    } else { // which are of every value, needed or not
-        std::vector<Tick> last(graph.nodes.size(), -1);
-        for (const std::uint32_t output : outputs_)
-            last[output / 2] = forever;
-        if (at_start_) at_start_->limit(last);
-        engine_->limit(last);
-        // What is late may need any tick.
-        if (!late() && decides_ && !at_start_) {
+    BoundsAtStart::check(settings.at_start, graph.nodes.size());
+    if (!late() && !settings.causes) { // what is late may need any tick, and so may causes
+        if (decides_ && !reports_start_) {
             eager_ = EagerEngine::of(graph, ranges_);
-        } else if (!late() && !decides_ && !outputs_.empty()) {
+        } else if (!decides_ && !outputs_.empty()) {
             zone_ = ZoneEngine::of(graph, outputs_, settings.at_start, ranges_, settings.zone);
         }
     }
+    if (!eager_ && !zone_) follow(graph, std::move(settings));
     // Facts known before any sample, such as the truth of constants, are reported with the first.
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
+    for (std::size_t i = 0; i < outputs_.size() && decides_; ++i)
         eager_ ? waiting_[i].begin(*eager_, outputs_[i]) : waiting_[i].begin(*engine_, outputs_[i]);
-    if (zone_ || eager_) engine_.reset();
+}
+
+// Changes of bounds are propagated.
+void DiscreteMonitor::follow(const Graph& graph, DiscreteSettings settings) {
+    using Use = BoundsAtStart::Use;
+    engine_.emplace(graph, ranges_,
+                    late() ? BoundsEngine::Arrival::late_rows : BoundsEngine::Arrival::rows);
+    if (reports_start_) {
+        const Use use = settings.causes ? Use::as_given : late() ? Use::late : Use::in_order;
+        at_start_.emplace(std::move(settings.at_start), *engine_, outputs_, use);
+    }
+    if (settings.causes) { // which are of every value, needed or not
+        causes_.emplace(std::move(*settings.causes), *engine_, at_start_.value(), false);
+        return;
+    }
+    std::vector<Tick> last(graph.nodes.size(), -1);
+    for (const std::uint32_t output : outputs_)
+        last[output / 2] = forever;
+    if (at_start_) at_start_->limit(last);
+    engine_->limit(last);
 }
 
 // ---- samples ------------------------------------------------------------------------------------
@@ -147,7 +147,7 @@ void DiscreteMonitor::note(Tick before) {
         }
         changes_[i].collect(*engine_, outputs_[i], before, newest);
     }
-    if (at_start_) at_start_->read(*engine_);
+    if (at_start_) at_start_->read(*engine_, final_up_to());
     if (causes_) causes_->read(*engine_, *at_start_, newest);
 }
 
@@ -221,7 +221,7 @@ std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::fi
             std::ranges::for_each(rests[i].bounds | std::views::drop(first - rests[i].first), add);
         }
     }
-    if (at_start_ && end > 0) {
+    if (reports_start_ && end > 0) {
         last.at_start = unsigned_zeros(zone ? zone->at_start() : at_start_->ended(*engine_, end));
     }
     return last;
@@ -245,7 +245,7 @@ void DiscreteMonitor::decide_rest(std::span<const BoundsEngine::Rest> rests, Tic
 // ---- results ------------------------------------------------------------------------------------
 
 std::optional<Bounds> DiscreteMonitor::at_start() const noexcept {
-    if (!at_start_) return std::nullopt;
+    if (!reports_start_) return std::nullopt;
     return unsigned_zeros(zone_ ? zone_->at_start() : at_start_->value());
 }
 

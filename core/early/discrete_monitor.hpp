@@ -129,13 +129,14 @@ class DiscreteMonitor {
     void transfer(Snapshot& snapshot);
 
   private:
-    std::optional<BoundsEngine> engine_;
-    std::optional<ZoneEngine> zone_;   // in its place where windows are short
-    std::optional<EagerEngine> eager_; // in its place for verdicts of truth values
+    std::optional<BoundsEngine> engine_; // of bounds, and of what no other one follows
+    std::optional<ZoneEngine> zone_;     // in its place where windows are short
+    std::optional<EagerEngine> eager_;   // in its place for verdicts of truth values
     std::vector<std::uint32_t> outputs_;
     std::vector<Tick> lags_;             // by output, until its values are final
     std::vector<EagerVerdicts> waiting_; // by output
-    std::optional<BoundsAtStart> at_start_;
+    bool reports_start_;
+    std::optional<BoundsAtStart> at_start_; // of the first engine
     std::optional<Causes> causes_;
     SampleTimes times_;
     std::vector<Bounds> ranges_;
@@ -157,6 +158,7 @@ class DiscreteMonitor {
     [[nodiscard]] Tick final_up_to() const noexcept;
     [[nodiscard]] Tick lag(std::size_t output) const noexcept;
     [[nodiscard]] Bounds followed(std::size_t output, Tick sample) const noexcept;
+    void follow(const Graph& graph, DiscreteSettings settings);
     void advance(Tick index, double time);
     void note(Tick before);
     void decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end);

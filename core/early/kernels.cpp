@@ -60,7 +60,7 @@ void BoundsEngine::raise_end(State& state, int reg, Tick l, Tick r, double now) 
 void BoundsEngine::pass(std::uint32_t index, int reg) {
     const Node& own = node(index);
     State& state = nodes_[index];
-    if (state.from >= forever) return; // nothing reads it
+    if (state.from >= forever || state.to < 0) return; // nothing reads it
     if (new_data(own.a, reg).empty() && (own.b == none || new_data(own.b, reg).empty())) return;
     const bool greatest =
         own.kind != Kind::both && own.kind != Kind::least && own.kind != Kind::rank_least;

@@ -24,10 +24,11 @@ struct Both {
     BoundsAtStart start;
     BoundsAtStart expected;
 
-    Both(const Graph& graph, const std::vector<Item>& items, const Bounds& range)
+    Both(const Graph& graph, const std::vector<Item>& items, const Bounds& range,
+         BoundsAtStart::Use use)
         : lean(graph, {range, range}, BoundsEngine::Arrival::rows),
-          whole(graph, {range, range}, BoundsEngine::Arrival::rows), start(items, lean),
-          expected(items, whole, {}, true) {
+          whole(graph, {range, range}, BoundsEngine::Arrival::rows), start(items, lean, {}, use),
+          expected(items, whole, {}, BoundsAtStart::Use::as_given) {
         std::vector<Tick> last(graph.nodes.size(), -1);
         start.limit(last);
         lean.limit(last);
@@ -36,7 +37,7 @@ struct Both {
     void row(Tick t, const std::array<Bounds, 2>& values) {
         REQUIRE(!lean.row(t, std::span<const Bounds>(values)));
         REQUIRE(!whole.row(t, std::span<const Bounds>(values)));
-        start.read(lean);
+        start.read(lean, t);
         expected.read(whole);
     }
 
@@ -52,7 +53,7 @@ struct Both {
         REQUIRE(!whole.suppose(later));
         BoundsAtStart found = start;
         BoundsAtStart wanted = expected;
-        found.read(lean);
+        found.read(lean, t);
         wanted.read(whole);
         REQUIRE(found.value() == wanted.value());
         lean.revert();
@@ -97,7 +98,8 @@ TEST_CASE("bounds at the start are those of the node, put together or not") {
         Random random(seed);
         const Graph graph = random_graph(random, 6, seed % 2 == 0);
         const Bounds range = random.chance(50) ? Bounds{-12, 12} : rtamt::bounds::anything;
-        Both both(graph, random_items(random, graph), range);
+        const auto use = seed % 4 < 2 ? BoundsAtStart::Use::in_order : BoundsAtStart::Use::late;
+        Both both(graph, random_items(random, graph), range, use);
         REQUIRE(both.start.value() == both.expected.value());
         // In dense time the trace goes on when its samples end.
         const bool discrete = std::ranges::none_of(
@@ -131,7 +133,8 @@ TEST_CASE("memory at the start is that of the operands of windows") {
     atom.steps = {{Opcode::input, 0}};
     graph.nodes = {
         atom, {Kind::least, 0, none, 0, k, k, {}}, {Kind::greatest, 2, none, 0, k, 2 * k, {}}};
-    Both both(graph, {{Item::Kind::value, false, 4, none, none, 0}}, rtamt::bounds::anything);
+    Both both(graph, {{Item::Kind::value, false, 4, none, none, 0}}, rtamt::bounds::anything,
+              BoundsAtStart::Use::late);
     Random random(1);
     std::size_t most = 0;
     for (Tick t = 0; t < 3 * k; ++t) {
