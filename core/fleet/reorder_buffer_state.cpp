@@ -113,6 +113,8 @@ ReorderBuffer ReorderBuffer::restore(std::vector<std::string> names, const Setti
             }
         }
         const auto count = rest.take<std::uint64_t>();
+        // Without any that wait, inputs may be absent.
+        if (count > waiting - made.waiting()) refuse("what waits is too long");
         double before = line.left;
         for (std::uint64_t i = 0; i < count; ++i) {
             const auto time = rest.take<double>();

@@ -90,7 +90,9 @@ inline void take_keys(Keys& keys, KeyKind kind, std::uint64_t count, Bytes& byte
     };
     for (std::uint64_t i = 0; i < count; ++i) {
         if (keys.textual()) {
-            add(bytes.take_text());
+            const std::string_view text = bytes.take_text();
+            if (text.ends_with('\0')) refuse("a key ends with the character 0");
+            add(text);
         } else {
             add(bytes.take<std::int64_t>());
         }

@@ -135,7 +135,12 @@ def load(path: str | os.PathLike[str], **settings: Unpack[Settings]) -> Specific
         with open_text(given) as file:
             text = file.read()
     except OSError as error:
-        raise UsageError(f"cannot read the specification '{path}': {error.strerror}") from error
+        hint = (
+            "; rtamt.parse takes the text of a formula"
+            if "(" in given or ">" in given or "<" in given
+            else ""
+        )
+        raise UsageError(f"cannot read the specification '{path}': {error.strerror}{hint}") from error
     except UnicodeDecodeError as error:
         raise UsageError(
             f"'{path}' is not UTF-8 text (byte {error.start}); is it a specification?"

@@ -26,8 +26,8 @@ def test_the_period_may_also_come_with_the_data() -> None:
         spec.evaluate({"time": [0, 2], "x": [1, 2]})
     assert str(info.value) == (
         "The operator bound must be a multiple of the sampling period: 1 s is not a whole number of periods "
-        "of 2 s; change the bound or the period (the period was taken from the timestamps; period= sets it)"
-        + place
+        "of 2 s; change the bound or the period (the period was taken from the timestamps; period=, or "
+        "on the command line --period, sets it)" + place
     )
     with pytest.raises(rtamt.BoundError) as info:
         spec.monitor(period="300ms")

@@ -114,7 +114,7 @@ def run(capsys, monkeypatch, tmp_path):
             ["check", "always[0:300ms](x > 0)", "good.csv"],
             "good.csv: The operator bound must be a multiple of the sampling period: "
             "300 ms is not a whole number of periods of 1 s; change the bound or the period "
-            "(the period was taken from the timestamps; period= sets it)\n"
+            "(the period was taken from the timestamps; period=, or on the command line --period, sets it)\n"
             "  line 1, column 7:\n"
             "    always[0:300ms](x > 0)\n"
             "          ^^^^^^^^^",
@@ -122,7 +122,7 @@ def run(capsys, monkeypatch, tmp_path):
         (
             ["check", "x", "good.csv", "--period", "2"],
             "good.csv: sample 1 at 1 s is 1 s after the one before, expected 2 s (within 10%): "
-            "give the right period, or resample the trace",
+            "give the right period, resample the trace, or use dense time (--time dense)",
         ),
         (
             ["monitor", "always(x)", "--verdict", "delayed"],
@@ -221,7 +221,7 @@ def test_messages_about_the_first_sample(run, stdin, message, backend):
         (
             '{"time": 2, "x": 1}',
             "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-            "give the right period, or resample the trace",
+            "give the right period, resample the trace, or use dense time (--time dense)",
         ),
         ('{"time": Infinity, "x": 1}', "the time column 'time' is inf at sample 1, expected a finite number"),
     ],
@@ -305,6 +305,6 @@ def test_an_unknown_semantics(run, command):
     assert run(command, "x >= 3", *traces, "--semantics", "vacuity") == (
         2,
         "",
-        "rtamt: unknown semantics 'vacuity'; did you mean 'input_vacuity'?; choose from standard, "
-        "output_robustness, input_vacuity, input_robustness, output_vacuity, boolean\n",
+        "rtamt: unknown semantics 'vacuity'; did you mean 'input_vacuity'? (semantics: input_vacuity, "
+        "output_vacuity, standard, output_robustness, input_robustness, boolean)\n",
     )

@@ -51,7 +51,7 @@ OFFLINE = [
     (
         {"time": [0, 1, 2, 3.5], "x": [1, 2, 3, 4], "y": [1, 2, 3, 4]},
         "sample 3 at 3.5 s is 1.5 s after the one before, expected 1 s (within 10%): "
-        "give the right period, or resample the trace",
+        "give the right period, resample the trace, or use dense time (--time dense)",
     ),
     ([1, 2], "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got list"),
 ]
@@ -85,7 +85,7 @@ ONLINE = [
     (
         (2.0, {"x": 1, "y": 1}),
         "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-        "give the right period, or resample the trace",
+        "give the right period, resample the trace, or use dense time (--time dense)",
     ),
 ]
 
@@ -127,7 +127,7 @@ def test_wrong_chunk_leaves_the_monitor_as_it_was(backend: str) -> None:
     )
     assert check_message(rtamt.TraceError, monitor.update_many, {"time": [2, 4], "x": [9, 9]}) == (
         "sample 3 at 4 s is 2 s after the one before, expected 1 s (within 10%): "
-        "give the right period, or resample the trace"
+        "give the right period, resample the trace, or use dense time (--time dense)"
     )
     assert check_message(rtamt.TraceError, monitor.update_many, None) == (
         "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got NoneType"
@@ -208,6 +208,9 @@ def test_wrong_settings() -> None:
     )
     assert check_message(rtamt.UsageError, rtamt.load, "nowhere.stl") == (
         "cannot read the specification 'nowhere.stl': No such file or directory"
+    )
+    assert check_message(rtamt.UsageError, rtamt.load, "x >= 3") == (
+        "cannot read the specification 'x >= 3': No such file or directory; rtamt.parse takes the text of a formula"
     )
     assert check_message(rtamt.UsageError, rtamt.load, "/dev/zero") == (
         "cannot read the specification '/dev/zero': it is a device, expected a file"

@@ -136,10 +136,11 @@ def test_wrong_options_of_the_combined_class():
     )
     names = "standard, output_robustness, input_vacuity, input_robustness, output_vacuity, boolean"
     assert message_of(lambda: cls("output")) == (
-        f"unknown semantics 'output'; did you mean 'output_vacuity'?; choose from {names}"
+        "unknown semantics 'output'; did you mean 'output_vacuity'? (semantics: output_vacuity, standard, "
+        "output_robustness, input_vacuity, input_robustness, boolean)"
     )
     assert message_of(lambda: setattr(cls(), "semantics", rtamt.Language.CPP)) == (
-        f"unknown semantics <Language.CPP: 'C++'>; choose from {names}"
+        f"unknown semantics <Language.CPP: 'C++'>; semantics: {names}"
     )
 
 

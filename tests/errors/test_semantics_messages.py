@@ -26,11 +26,12 @@ def message_of(call):
 )
 def test_an_unknown_semantics(call):
     assert message_of(lambda: call("output_robustnes")) == (
-        f"unknown semantics 'output_robustnes'; did you mean 'output_robustness'?; choose from {NAMES}"
+        "unknown semantics 'output_robustnes'; did you mean 'output_robustness'? (semantics: output_robustness, "
+        "input_robustness, output_vacuity, standard, input_vacuity, boolean)"
     )
-    assert message_of(lambda: call(3)) == f"unknown semantics 3; choose from {NAMES}"
+    assert message_of(lambda: call(3)) == f"unknown semantics 3; semantics: {NAMES}"
     assert message_of(lambda: call(rtamt.Semantics)) == (
-        f"unknown semantics <enum 'Semantics'>; choose from {NAMES}"
+        f"unknown semantics <enum 'Semantics'>; semantics: {NAMES}"
     )
 
 

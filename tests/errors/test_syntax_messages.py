@@ -242,8 +242,33 @@ FORMULAS = [
     ("always[0:5 x", "           ^", ParseError, "expected ']' after the bounds, got 'x'"),
     ("always[0:5", "          ^", ParseError, "expected ']' after the bounds, got the end of the text"),
     ("always(0:5 x", "        ^", ParseError, "expected an operator or ')', got ':'"),
-    ("always(0,5)", "        ^", ParseError, "expected an operator or ')', got ','"),
-    ("always(0,5) and x", "        ^", ParseError, "expected an operator or ')', got ','"),
+    (
+        "always(0,5)",
+        "        ^",
+        ParseError,
+        "expected an operator or ')', got ','; intervals are in brackets, such as always[0:5]",
+    ),
+    (
+        "x >= 0,5",
+        "      ^",
+        ParseError,
+        "expected an operator or the end, got ','; write 0.5 with a decimal point",
+    ),
+    ("x >= 0, 5", "      ^", ParseError, "expected an operator or the end, got ','"),
+    (
+        "(x >= 50%)",
+        "        ^",
+        ParseError,
+        "expected an operator or ')', got '%'; percentages are shares of a window, such as "
+        "atleast[0:10](95%, x >= 1)",
+    ),
+    (
+        "x <= 36 km/h",
+        "        ^^",
+        ParseError,
+        "expected an operator between '36' and 'km'; numbers have no unit: declare that of the signal, such as "
+        "float speed [m/s]",
+    ),
     (
         "always(5,5] x",
         "      ^^^^^",

@@ -144,6 +144,20 @@ def test_a_forged_state_of_a_fleet_is_refused_or_does_no_harm(case: str, seed: i
     go_on(spec, made, times[count:], forged(fleet_state(case, count), Random(seed)))
 
 
+def test_samples_that_wait_without_a_variable_that_is_read_are_refused() -> None:
+    """The core read beyond their values: the header promised that none waits, so that variables could be absent."""
+    parts = fleet_snapshot.unpacked(fleet_state("records of event time", 3))
+    assert parts.waiting is not None
+    waiting = bytearray(parts.waiting)
+    assert waiting[32:45] == struct.pack("<QI", 4, 1) + b"x"
+    waiting[32:45] = struct.pack("<QI", 0, 1) + b"y"
+    with pytest.raises(rtamt.UsageError) as caught:
+        rtamt.Fleet.restore(
+            SPEC, fleet_snapshot.packed(parts._replace(waiting=bytes(waiting))), lateness=2, gaps="restart"
+        )
+    assert str(caught.value) == "this is not the state of a fleet: what waits is too long"
+
+
 @pytest.mark.parametrize("case", SHARDS)
 @settings(max_examples=min(settings.default.max_examples, MOST_EXAMPLES))
 @given(seed=st.integers(0, 2**63), count=st.sampled_from([0, 2, 5]))

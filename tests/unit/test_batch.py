@@ -199,6 +199,8 @@ def test_a_requirement_that_does_not_fit_is_named_by_its_number():
     with pytest.raises(rtamt.BoundError) as caught:
         rtamt.evaluate_all(specs, {"time": [0, 1], "x": [1, 2]})
     assert caught.value.message.startswith("specification 1: ")
-    assert caught.value.message.endswith("(the period was taken from the timestamps; period= sets it)")
+    assert caught.value.message.endswith(
+        "(the period was taken from the timestamps; period=, or on the command line --period, sets it)"
+    )
     with pytest.raises(rtamt.SpecificationError, match=r"^specification 0: 'prev' means one sample away"):
         rtamt.evaluate_all([rtamt.parse("prev(x >= 3)")], {"time": [0, 1], "x": [1, 2]}, time="dense")

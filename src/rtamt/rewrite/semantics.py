@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from enum import Enum
 from types import MappingProxyType
 
-from rtamt.errors import EvaluationError, StlError, UsageError, did_you_mean, shown
+from rtamt.errors import EvaluationError, StlError, UsageError, choices, shown
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Const, Formula, located
 from rtamt.language.operators import STL
@@ -93,10 +93,7 @@ def semantics_of(semantics: object) -> str | PredicateSemantics:
         return semantics
     name = str(semantics).replace("-", "_")
     if not isinstance(semantics, str | Enum) or name not in SEMANTICS:
-        raise UsageError(
-            f"unknown semantics {shown(semantics)}{did_you_mean(name, SEMANTICS)}; "
-            f"choose from {', '.join(SEMANTICS)}"
-        )
+        raise UsageError(f"unknown semantics {shown(semantics)}{choices(name, SEMANTICS, 'semantics')}")
     return name
 
 

@@ -191,7 +191,8 @@ class DiscreteTrace(DomainTrace):
             if not self.inferred:
                 raise
             raise BoundError(
-                f"{error.message} (the period was taken from the timestamps; period= sets it)",
+                f"{error.message} (the period was taken from the timestamps; period=, or on the command line --period, "
+                "sets it)",
                 text,
                 error.span,
             ) from None

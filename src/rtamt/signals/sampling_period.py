@@ -221,7 +221,8 @@ def irregular(index: int, time: float, before: float, period: Fraction, toleranc
     """Return the error for a sample that is not one period after the one before."""
     return TraceError(
         f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
-        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, or resample the trace",
+        f"{format_duration(period)} (within {tolerance:.0%}): give the right period, resample the trace, or use "
+        f"dense time (--time dense)",
         variable=TIME,
         index=index,
         time=time,

@@ -280,7 +280,8 @@ class TimeScale:
         if not len(ticks) or max(abs(int(ticks.min())), abs(int(ticks.max()))) < NEAR:
             return times
         numerator, denominator = self._ratio
-        doubtful = np.abs(ticks) < FARTHEST - 2**12  # doubles next to others may be too far
+        limit = FARTHEST - 2**12  # doubles next to others may be too far
+        doubtful = (-limit < ticks) & (ticks < limit)
         if numerator == 1 and denominator % 1000 == 0:  # what prints with three digits less is its own tick
             doubtful &= ticks % 1000 != 0
         places = np.flatnonzero(doubtful)

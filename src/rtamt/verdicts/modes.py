@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
-from rtamt.errors import UsageError, did_you_mean, shown
+from rtamt.errors import UsageError, choices, shown
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.time_domains import DOMAINS
@@ -72,9 +72,7 @@ def mode_of(verdict: Any, settings: Mapping[str, Any]) -> Mode:
     'whether the formula holds at each sample, as soon as no later sample can change it'
     """
     if not isinstance(verdict, str) or verdict not in MODES:
-        raise UsageError(
-            f"verdict is {shown(verdict)}{did_you_mean(str(verdict), MODES)}; choose from {', '.join(MODES)}"
-        )
+        raise UsageError(f"verdict is {shown(verdict)}{choices(verdict, MODES, 'verdicts')}")
     mode = MODES[verdict]
     for name in settings:
         if name not in mode.settings:

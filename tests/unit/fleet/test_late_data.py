@@ -127,7 +127,7 @@ def test_a_held_value_fills_a_gap_of_whole_periods() -> None:
             [1, 1],
             rtamt.TraceError,
             "key 'a', a sample that waited: sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-            "give the right period, or resample the trace, or drop the key",
+            "give the right period, resample the trace, or use dense time (--time dense); or drop the key",
         ),
         ([1], [0], [1], rtamt.UsageError, "the keys of a fleet are all integers, all texts, or all bytes"),
     ],

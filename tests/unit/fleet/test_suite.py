@@ -208,7 +208,10 @@ def test_a_period_that_each_recording_decides_is_not_stored():
         "bounds are counted; give one, such as Suite(specs, period='100ms')"
     )
     row = suite.evaluate({"time": [0, 2, 4], "x": [1, 2, 3]}).rows[0]
-    assert "(the period was taken from the timestamps; period= sets it)" in row.error
+    assert (
+        "(the period was taken from the timestamps; period=, or on the command line --period, sets it)"
+        in row.error
+    )
 
 
 def test_one_wrong_signal_is_the_error_of_the_requirements_that_read_it():

@@ -13,14 +13,14 @@ import rtamt
         (
             "x",
             {"verdict": "eagre"},
-            "verdict is 'eagre'; did you mean 'eager'?; choose from delayed, eager, interval, causation",
+            "verdict is 'eagre'; did you mean 'eager'? (verdicts: eager, delayed, interval, causation)",
         ),
         (
             "x",
             {"lateness": 2},
             "lateness= belongs to verdict='interval', and this is verdict='delayed'",
         ),
-        ("x", {"verdict": "interval", "at": "end"}, "at is 'end'; choose from start, every"),
+        ("x", {"verdict": "interval", "at": "end"}, "at is 'end'; choices: start, every"),
         (
             "x",
             {"verdict": "interval", "ranges": {"x": (3, 1)}},

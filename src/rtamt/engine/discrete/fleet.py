@@ -174,7 +174,7 @@ class DiscreteFleet:
         elif reason == "gap":
             error = irregular(sample, time, last, monitor.period, monitor._tolerance)
             if place is None:
-                error = TraceError(f"{error}, or drop the key")
+                error = TraceError(f"{error}; or drop the key")
         else:
             try:
                 read_time(time, sample, last)

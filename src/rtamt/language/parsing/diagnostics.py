@@ -91,8 +91,26 @@ def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "th
         if token.kind in ("name", "number", "quoted") and is_function(language, before.text):
             return f"expected '(' after {before}, got {token}; write {before.text}(...)", token.span
         hint, meant = _misspelled(language, before, token)
+        if not hint and before.kind == "number" and token.kind == "name" and tokens[at + 1].text == "/":
+            hint = "; numbers have no unit: declare that of the signal, such as float speed [m/s]"
         return f"expected an operator between {before} and {token}{hint}", meant.span
-    return f"expected an operator or {expected}, got {token}", token.span
+    return f"expected an operator or {expected}, got {token}{_after_number(tokens, at)}", token.span
+
+
+def _after_number(tokens: Tokens, at: int) -> str:
+    """Return what to write instead of a character after a number, as the end of a sentence; or ""."""
+    before, token = tokens[at - 1 : at + 1]
+    if before.kind != "number":
+        return ""
+    if token.text == "%":
+        return "; percentages are shares of a window, such as atleast[0:10](95%, x >= 1)"
+    if token.text == "," and before.end == token.start and tokens[at + 1].start == token.end:
+        after = tokens[at + 1]
+        if at >= 2 and tokens[at - 2].text == "(":
+            return "; intervals are in brackets, such as always[0:5]"
+        if after.kind == "number" and before.text.isdigit():
+            return f"; write {before.text}.{after.text} with a decimal point"
+    return ""
 
 
 def no_close(language: Language, tokens: Tokens, at: int, opening: Token, expected: str = "')'") -> Complaint:

@@ -9,7 +9,7 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import BoundError, TraceError, UsageError, did_you_mean, shown
+from rtamt.errors import BoundError, TraceError, UsageError, choices, shown
 from rtamt.language.units.durations import duration
 from rtamt.rewrite.check import unbounded_future
 from rtamt.signals.samples import time_of
@@ -276,8 +276,6 @@ def _text(bounds: tuple[float, float]) -> str:
     return f"{low:.15g}" if low == high else f"[{low:.15g}, {high:.15g}]"
 
 
-def _choice(what: str, given: Any, choices: Sequence[str]) -> None:
-    if given not in choices:
-        raise UsageError(
-            f"{what} is {shown(given)}{did_you_mean(str(given), choices)}; choose from {', '.join(choices)}"
-        )
+def _choice(what: str, given: Any, known: Sequence[str]) -> None:
+    if given not in known:
+        raise UsageError(f"{what} is {shown(given)}{choices(given, known, 'choices')}")
