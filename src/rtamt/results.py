@@ -197,7 +197,7 @@ class Result(_Slots):
             return self.signal
         return BoundedSignal(self.signal.times, self.signal.values, self.signal.values)
 
-    @cached_property
+    @property
     def satisfied(self) -> bool:
         """Whether the formula holds at the first instant: Boolean semantics, evaluated on its own.
 
@@ -207,9 +207,17 @@ class Result(_Slots):
         >>> [rtamt.parse(text).evaluate({"x": [3]}).satisfied for text in ("x >= 3", "x > 3")]
         [True, False]
         """
-        if self.trace.bounds:
+        fields = self.__dict__
+        if "_satisfied" not in fields:
+            fields["_satisfied"] = self._verdict_at_start()
+        satisfied: bool = fields["_satisfied"]
+        return satisfied
+
+    def _verdict_at_start(self) -> bool:
+        trace = self.trace
+        if trace.bounds:
             return self._decided
-        holds = self.specification._holds(self.trace) if self.known is None else None
+        holds = self.specification._holds(trace) if self.known is None else None
         return self._first_violation is None if holds is None else holds
 
     @property

@@ -73,11 +73,12 @@ class Evaluators:
 
     def signals(self, formulas: tuple[Formula, ...], recording: DomainTrace) -> list[Signal]:
         """Return the robustness signal of each formula over a recording, all from one program."""
-        from rtamt.rewrite.presence import channel_of, presences, tracked
+        if recording.bounds:  # an import takes a microsecond each time, as long as a short evaluation
+            from rtamt.rewrite.presence import channel_of, presences, tracked
 
-        if recording.bounds and (asked := presences(*formulas)):
-            formulas = tuple(map(tracked, formulas))
-            recording = recording.with_presence({name: channel_of(name) for name in asked})
+            if asked := presences(*formulas):
+                formulas = tuple(map(tracked, formulas))
+                recording = recording.with_presence({name: channel_of(name) for name in asked})
         evaluator: Any = self._evaluator(formulas, recording)
         if recording.bounds:
             return list(evaluator(recording))
