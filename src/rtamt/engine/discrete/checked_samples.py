@@ -124,10 +124,10 @@ class CheckedSamples(OnlineMonitor):
 
     def _note_sample(self, robustness: float | None) -> None:
         """Look at what the last sample made known of each formula."""
-        from rtamt.signals.episodes import plain_times
-
         if self._episodes is None:
             return
+        from rtamt.signals.episodes import plain_times
+
         for output, lag in enumerate(self._lags):
             value = self._backend.latest(output) if output else robustness
             if value is not None:

@@ -219,9 +219,11 @@ class Monitor(MonitorBase, CheckedSamples):
 
     def _note(self, news: list[Signal]) -> None:
         """Look at what a chunk made known of each formula."""
+        if self._episodes is None:
+            return
         from rtamt.signals.episodes import plain_times
 
-        for tracker, signal in zip(self._episodes or (), news, strict=self._episodes is not None):
+        for tracker, signal in zip(self._episodes, news, strict=True):
             tracker.take(zip(plain_times(signal.times), signal.values.tolist(), strict=True))
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
