@@ -324,7 +324,8 @@ class Specification(OnlineSpecification):
     @cached_property
     def _reads_as_given(self) -> bool:
         """Whether data need neither other names and units nor a choice of samples."""
-        return self.sampling is None and not self.binding.columns and not self.binding.units
+        binding = self.binding
+        return self.sampling is None and not (binding.columns or binding.units or binding.unread)
 
     @cached_property
     def _has_one_start(self) -> bool:

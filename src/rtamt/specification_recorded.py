@@ -10,6 +10,7 @@ from rtamt.language.quantifiers import Declared
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.signals.binding import Binding
+from rtamt.signals.time_columns import is_stamps
 from rtamt.specification_text import SpecificationText
 
 if TYPE_CHECKING:
@@ -151,8 +152,13 @@ class RecordedSpecification(SpecificationText):
     def binding(self) -> Binding:
         """The recorded names of the variables of the formula, and their declared units."""
         others = {name: columns[1:] for name, columns in self._recorded_names.items() if len(columns) > 1}
+        declared = {each.name for each in self.document.declarations}
         return Binding(
-            self.input_names, tuple(self.recorded.items()), tuple(self.units.items()), tuple(others.items())
+            self.input_names,
+            tuple(self.recorded.items()),
+            tuple(self.units.items()),
+            tuple(others.items()),
+            tuple(sorted(name for name in declared.difference(self.input_names) if is_stamps(name))),
         )
 
     @cached_property

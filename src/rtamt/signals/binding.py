@@ -29,6 +29,8 @@ class Binding:
     units: tuple[tuple[str, str], ...] = ()
     #: Pairs of a variable and further recorded names: the first that a recording has is read.
     others: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    #: Declared variables that the formula does not read, with names of timestamps: data may have them all the same.
+    unread: tuple[str, ...] = ()
 
     def places(self) -> dict[str, tuple[str, str]]:
         """Return the recorded name and the unit of each variable."""
@@ -54,6 +56,8 @@ class Binding:
 
             if isinstance(data, Trace):
                 return self._trace(data) if self.columns or self.units else data
+        if self.unread and is_mapping(data) and TIME not in data:
+            data = {key: value for key, value in data.items() if key not in self.unread}
         if not self.columns:
             return data
         if is_mapping(data):
@@ -122,7 +126,8 @@ def union(bindings: Iterable[Binding]) -> Binding:
         tuple(dict.fromkeys(each for binding in bindings for each in getattr(binding, part)))
         for part in ("names", "columns", "units", "others")
     )
-    return Binding(names, columns, units, others)
+    unread = dict.fromkeys(name for binding in bindings for name in binding.unread if name not in names)
+    return Binding(names, columns, units, others, tuple(unread))
 
 
 def missing(source: str, name: str, column: str, known: Any) -> TraceError:

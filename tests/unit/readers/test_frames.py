@@ -401,6 +401,13 @@ def test_a_variable_with_the_name_of_timestamps_is_a_variable():
     assert rtamt.parse('input float x = "t"\nx >= 3').evaluate({"t": X, "speed": X}).robustness == 2
     with pytest.raises(rtamt.TraceError, match="may have its timestamps in 't'"):
         rtamt.parse("x >= 3").evaluate({"t": X, "x": X})
+    declared = rtamt.parse("input float t  input float x  x >= 3")
+    assert declared.evaluate({"t": X, "x": X}).robustness == 2
+    assert declared.evaluate_batch({"t": [X], "x": [X]}).robustness == 2
+    assert declared.monitor().update_many({"t": X, "x": X}).values.tolist() == [2, 1, 3]
+    assert rtamt.check_stream(declared, [{"t": X, "x": X}]).robustness == 2
+    suite = rtamt.Suite([declared, rtamt.parse("t >= 4")], period=1)
+    assert [row.robustness for row in suite.evaluate({"t": X, "x": X})] == [2, 1]
 
 
 def test_a_range_that_is_the_index_of_a_frame_holds_its_timestamps():
