@@ -54,11 +54,11 @@ class Emission:
 
     def delayed(self, index: int, lag: int) -> int:
         """Return the same value known later: slots move, time does not."""
-        return index if self.is_const(index) else self.late(index, lag)
+        return index if self.instructions[index][0] == "const" else self.late(index, lag)
 
     def late(self, index: int, lag: int) -> int:
         """Return the same value known at ``lag``, also for a constant."""
-        behind = lag - self.lag(index)
+        behind = lag - self.instructions[index][5]
         if behind == 0:
             return index
         origin = self.origins[index]

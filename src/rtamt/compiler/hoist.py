@@ -63,9 +63,10 @@ def _moves(program: Program) -> dict[int, _Move]:
 def _alike(program: Program) -> list[int]:
     """Return the windows and delays that can become equal to another one: in most programs none."""
     by_length: dict[tuple[int, int], list[int]] = {}
-    for place, (opcode, _, _, n, _, lag) in enumerate(program.instructions):
-        if opcode in _OPPOSITE:
-            by_length.setdefault((n, lag), []).append(place)
+    instructions = program.instructions
+    for place in [place for place, ins in enumerate(instructions) if ins[0] in _OPPOSITE]:
+        ins = instructions[place]
+        by_length.setdefault((ins.n, ins.lag), []).append(place)
     found: list[int] = []
     for windows in by_length.values():
         if len(windows) > 1:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from rtamt.language.records import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
 
+#: Their hashes are computed once.
+_SLIDES = {reduce: f"slide_{reduce}" for reduce in ("max", "min", "sum")}
 _IDENTITY = {"max": -inf, "min": inf}
 
 #: Looking up a member of an enumeration takes as long as the rest of an instruction.
@@ -68,6 +70,7 @@ class Lowering(Emission, ABC):
         self.parameters: dict[Parameter, int] = {}
         #: The index of each node, by its identity.
         self.found: dict[int, int] = {}
+        self.variables: dict[str, int] = {}
         self.orders: dict[Operator, Order] = {}
         self.calls: dict[CallSite, int] = {}
         #: Whether an instruction has a smaller lag than the horizon of its formula.
@@ -127,7 +130,7 @@ class Lowering(Emission, ABC):
                     found[id(node)] = self._lower_apply(node, node.op.kernel, operands)
             elif id(node) in found:
                 continue
-            elif node.__class__ is Apply:
+            elif isinstance(node, Apply):
                 args = node.args
                 try:
                     alone, groups = orders[node.op]
@@ -157,15 +160,14 @@ class Lowering(Emission, ABC):
         """Emit steps of a recipe, and return the index of the last one; ``parts``: of its operands and steps so far."""
         for place in group.reads:
             parts[place] = self.found[id(node.args[place])]
-        for core, places, _ in group.steps:
-            if not isinstance(core, Apply):
-                parts.append(self._lower_leaf(core))
-                continue
-            kernel, operands = core.op.kernel, [parts[place] for place in places]
-            if isinstance(kernel, Pointwise):
-                parts.append(self.pointwise(kernel.opcode, node, *operands))
+        for opcode, core, places in group.steps:
+            if opcode is not None:  # most
+                parts.append(self.pointwise(opcode, node, *[parts[place] for place in places]))
+            elif isinstance(core, Apply):
+                operands = self.align([parts[place] for place in places])
+                parts.append(self._lower_apply(core, core.op.kernel, operands))
             else:
-                parts.append(self._lower_apply(core, kernel, self.align(operands)))
+                parts.append(self._lower_leaf(core))
         return parts[-1]
 
     def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
@@ -192,7 +194,11 @@ class Lowering(Emission, ABC):
         """Return the index of a variable or a constant."""
         if isinstance(node, Var):
             assert not node.bound, "quantifiers are resolved before"
-            return self.emit(("input", None, None, self.places[node.name], 0.0, 0), node)
+            place = self.variables.get(node.name)  # most occur several times
+            if place is None:
+                row = ("input", None, None, self.places[node.name], 0.0, 0)
+                place = self.variables[node.name] = self.emit(row, node)
+            return place
         assert isinstance(node, Const)
         if isinstance(node, Parameter):
             # Never merged with another constant: its value may be changed.
@@ -222,21 +228,22 @@ class Lowering(Emission, ABC):
         if node.interval is None:
             return 0, None
         begin, end = node.interval.begin, node.interval.end
-        first = self.steps(begin)
+        if self.clip is None:
+            return self.whole(begin), None if end is None else self.whole(end)
         # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
-        if end is None or self.clip is None:
-            return first, None if end is None else self.whole(end)
-        return first, first + self.steps(end - begin)
+        first = self.steps(begin)
+        return first, None if end is None else first + self.steps(end - begin)
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
     def pointwise(self, opcode: str, origin: Formula, a: int, b: int | None = None) -> int:
         """Lower an operator on values at one instant, over operands that need not be aligned."""
-        instructions = self.instructions
-        lag = instructions[a][5]
-        if b is not None and (other := instructions[b][5]) != lag:
-            a, b = self.align([a, b])
-            lag = max(lag, other)
+        lag = self.instructions[a][5]
+        if b is not None and (other := self.instructions[b][5]) != lag:  # as align() does
+            if other < lag:
+                b = self.delayed(b, lag)
+            else:
+                a, lag = self.delayed(a, other), other
         return self.emit((opcode, a, b, 0, 0.0, lag), origin)
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:
@@ -296,7 +303,7 @@ class Lowering(Emission, ABC):
             most = operand.value * width
             if 0 <= most <= 2**53:  # exact in any order
                 return self.counting(x, most, lag, origin)
-        return self.emit((f"slide_{reduce}", x, None, width, 0.0, lag), origin)
+        return self.emit((_SLIDES[reduce], x, None, width, 0.0, lag), origin)
 
     def counting(self, x: int, most: float, lag: int, origin: Formula) -> int:
         """Return the sum over a window of a whole number: the sum so far, but no more than of a whole window."""

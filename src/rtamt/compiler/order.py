@@ -13,15 +13,19 @@ from rtamt.rewrite.recipes import recipe_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from rtamt.language.formula import Formula
     from rtamt.language.records import Operator
     from rtamt.rewrite.recipes import Step
 
 
 class Group(NamedTuple):
-    """Operands of an operator, and the steps of its recipe that are emitted once these are found."""
+    """Operands of an operator, and the steps of its recipe that are emitted once these are found.
+
+    Each step has the opcode of a pointwise operator, None for other nodes; the node; and the places of its operands.
+    """
 
     reads: tuple[int, ...]
-    steps: tuple[Step, ...]
+    steps: tuple[tuple[str | None, Formula, tuple[int, ...]], ...]
 
 
 class Order(NamedTuple):
@@ -80,10 +84,12 @@ def _alone(op: Operator, places: Sequence[int]) -> tuple[str, int, int | None] |
 
 def _groups(recipe: Sequence[Step]) -> tuple[Group, ...]:
     groups: list[Group] = []
-    for step in recipe:
-        if step.reads or not groups:
-            groups.append(Group(step.reads, (step,)))
+    for node, places, reads in recipe:
+        kernel = node.op.kernel if isinstance(node, Apply) else None
+        step = kernel.opcode if isinstance(kernel, Pointwise) else None, node, places
+        if reads or not groups:
+            groups.append(Group(reads, (step,)))
         else:
-            reads, steps = groups.pop()
-            groups.append(Group(reads, (*steps, step)))
+            before = groups.pop()
+            groups.append(Group(before.reads, (*before.steps, step)))
     return tuple(groups)

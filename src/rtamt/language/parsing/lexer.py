@@ -46,6 +46,8 @@ NAME = lazy_pattern(_NAME)
 TOPIC = lazy_pattern(rf"(?:/{_NAME})+")
 #: What a comment or quoted name begins with.
 _OPENINGS = ("/*", '"')
+#: What tokens other than symbols can begin with, apart from letters and digits.
+_BEGINNINGS = frozenset('./"_$')
 _DIGITS, _OTHER_LETTERS = frozenset("0123456789"), frozenset("_$")
 
 
@@ -127,14 +129,21 @@ def is_word(spelling: str) -> bool:
     return NAME.fullmatch(spelling) is not None
 
 
+def _begins_no_other(symbol: str, symbols: Collection[str]) -> bool:
+    return not any(other.startswith(symbol) for other in symbols if other != symbol)
+
+
 @lru_cache(maxsize=32)  # keyed by text, so that no custom operator is kept alive
 def _lexicon(spellings: str) -> tuple[re.Pattern[str], Collection[str]]:
     """Return the expression of one token, and the symbols."""
     symbols = {s for s in spellings.split(" ") if not is_word(s)}.union(PUNCTUATION)
-    symbol = "|".join(re.escape(s) for s in sorted(symbols, key=lambda s: (-len(s), s)))
+    # Characters that are a symbol, and begin no other token, are most of a text; then come names.
+    single = {s for s in symbols if len(s) == 1 and s not in _BEGINNINGS and _begins_no_other(s, symbols)}
+    symbol = "|".join(re.escape(s) for s in sorted(symbols - single, key=lambda s: (-len(s), s)))
+    first = "".join(map(re.escape, sorted(single)))
     # Every character that is not white space begins some alternative, so the expression never backtracks into a
     # comment. An opening without an end takes the rest: else further ones would each be searched to the end.
-    token = rf'({_COMMENT}|{_NAME}|{NUMBER}|{_QUOTED}|(?:/\*|")[\s\S]*|{symbol}|\S)'
+    token = rf'([{first}]|{_NAME}|{NUMBER}|{_COMMENT}|{_QUOTED}|(?:/\*|")[\s\S]*|{symbol}|\S)'
     return re.compile(token), frozenset(symbols)
 
 
