@@ -153,7 +153,7 @@ class Monitor(MonitorBase, CheckedSamples):
         """
         if self._finished:
             raise self._is_finished()
-        if data.__class__ is not dict or self._binding.columns:
+        if data.__class__ is not dict or self._binding.columns or self._binding.unread:
             data = self._binding.applied(data)
         taken = self._take_columns(data)
         if taken is not None:
