@@ -183,8 +183,13 @@ def bounds_of_parts(formula: Formula, known: DenseKnowledge, tick: Fraction) -> 
     """
     reported: list[Parts] = []
     bounds(formula, known, tick, report=reported.append)
+    return by_part(formula, reported[0], tick)
+
+
+def by_part(formula: Formula, parts: Parts, tick: Fraction) -> dict[Formula, StepBounds]:
+    """Return what was reported of all parts of a formula by the parts of its core."""
     nodes = postorder(core_of(formula, tick, continuous=True).formula)
-    return {node: _in_ticks(found) for node, found in zip(nodes, reported[0].bounds, strict=True)}
+    return {node: _in_ticks(found) for node, found in zip(nodes, parts.bounds, strict=True)}
 
 
 def _in_ticks(signal: _Signal) -> StepBounds:

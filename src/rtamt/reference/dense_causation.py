@@ -21,7 +21,7 @@ from rtamt.language.operators import Pointwise, Since, Tense, Until, Window
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.reference.cores import core_of
 from rtamt.reference.definition_adapter import window_in_quarters
-from rtamt.reference.dense_bounds import DenseKnowledge, bounds_of_parts
+from rtamt.reference.dense_bounds import DenseKnowledge, bounds_of_parts, by_part
 from rtamt.rewrite.early import at_one_instant, connects
 from rtamt.signals.outcomes import Causation
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from fractions import Fraction
 
-    from rtamt.reference.dense_bounds import StepBounds
+    from rtamt.reference.dense_bounds import Parts, StepBounds
 
 #: What has no part in anything.
 NOTHING = -inf
@@ -59,11 +59,17 @@ _Sides = tuple[_Side, _Side]
 
 
 def causation(
-    formula: Formula, before: DenseKnowledge | None, now: DenseKnowledge, tick: Fraction
+    formula: Formula,
+    before: DenseKnowledge | None,
+    now: DenseKnowledge,
+    tick: Fraction,
+    parts: tuple[Parts, Parts] | None = None,
 ) -> StepCauses:
     """Return the causation of the last event from the start of the trace on; ``tick`` is seconds.
 
-    ``before``: what was known before the event; None for the event with which the trace starts.
+    ``before``: what was known before the event; None for the event with which the trace starts. ``parts``: the bounds
+    of all parts before and after the event, by default those of what was known; what was known of an operation that
+    turned out to have no value is narrower.
 
     >>> from fractions import Fraction
     >>> from rtamt.language.parsing.parser import parse_formula
@@ -76,7 +82,7 @@ def causation(
     core = core_of(formula, tick, continuous=True).formula
     start = now.start
     assert start is not None
-    limits = bounds_of_parts(formula, now, tick)
+    limits = bounds_of_parts(formula, now, tick) if parts is None else by_part(formula, parts[1], tick)
     was: dict[Formula, StepBounds] | None = None
     found: dict[Formula, _Sides] = {}
     for node in _parts(core):
@@ -86,7 +92,9 @@ def causation(
         elif at_one_instant(node):
             found[node] = _known_by(_new(node, before, now), limits[node])
         else:
-            if was is None:
+            if was is None and parts is not None and before is not None:
+                was = by_part(formula, parts[0], tick)
+            elif was is None:
                 was = bounds_of_parts(formula, _unseen(now) if before is None else before, tick)
             found[node] = _moved(limits[node], was[node])
     good, bad = found[core]

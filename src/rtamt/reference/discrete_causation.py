@@ -11,7 +11,7 @@ and of the upper bound before any of them, is U; the maximum of ``sat``, and of 
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from rtamt.language.formula import Apply, Formula, postorder
 from rtamt.language.operators import Bounds, Pointwise, Shift, Since, Tense, Window
@@ -22,7 +22,7 @@ from rtamt.rewrite.early import at_one_instant, connects
 from rtamt.signals.outcomes import Causation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
     from rtamt.language.definitions.enclosures import Enclosure
@@ -36,10 +36,17 @@ _Part = tuple[Formula, int]
 NOTHING = Causation(inf, -inf)
 
 
-def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | None = None) -> list[Causation]:
+#: The bounds of all parts of a formula before and after a sample.
+Parts: TypeAlias = "tuple[Sequence[Enclosure], Sequence[Enclosure]]"
+
+
+def causation(
+    formula: Formula, known: Knowledge, period: Fraction, m: int | None = None, *, parts: Parts | None = None
+) -> list[Causation]:
     """Return the causation of the last sample of ``known`` at samples 0 to m - 1.
 
-    ``m``: by default so many that all later samples are affected as the last one.
+    ``m``: by default so many that all later samples are affected as the last one. ``parts``: the bounds of all parts,
+    by default those of ``known``; what was known of an operation that turned out to have no value is narrower.
 
     The formula must have causation: no share of a window (``rewrite.early.causeless``).
 
@@ -55,14 +62,16 @@ def causation(formula: Formula, known: Knowledge, period: Fraction, m: int | Non
     core = core_of(formula, period).formula
     reach = sum(_reach(node, period) + 1 for node in postorder(core))
     m = known.n + reach if m is None else m
-    causes = _Causes(formula, known, period, m + known.n + reach)
+    causes = _Causes(formula, known, period, m + known.n + reach, parts)
     return [causes.at(core, t) for t in range(m)]
 
 
 class _Causes:
     """The recursion over sub-formulas and samples; ``end`` is a sample after all that can matter."""
 
-    def __init__(self, formula: Formula, known: Knowledge, period: Fraction, end: int) -> None:
+    def __init__(
+        self, formula: Formula, known: Knowledge, period: Fraction, end: int, parts: Parts | None
+    ) -> None:
         self._formula, self._known = formula, known
         self._before = known.until(known.n - 1)
         self._period = period
@@ -70,6 +79,8 @@ class _Causes:
         self._found: dict[_Part, Causation] = {}
         #: Of all sub-formulas, after so many samples.
         self._bounds: dict[int, dict[Formula, list[tuple[float, float]]]] = {}
+        for n, found in zip((self._before.n, known.n), parts or (), strict=False):
+            self._bounds[n] = self._by_part(found)
 
     def at(self, node: Formula, t: int) -> Causation:
         found = self._found.get((node, t))
@@ -120,13 +131,16 @@ class _Causes:
         if known.n not in self._bounds:
             parts: list[Enclosure] = []
             bounds(self._formula, known, self._period, parts=parts)
-            nodes = postorder(core_of(self._formula, self._period).formula)
-            self._bounds[known.n] = {
-                each: list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
-                for each, found in zip(nodes, parts, strict=True)
-            }
+            self._bounds[known.n] = self._by_part(parts)
         every = self._bounds[known.n][node]
         return every[min(t, len(every) - 1)]
+
+    def _by_part(self, parts: Sequence[Enclosure]) -> dict[Formula, list[tuple[float, float]]]:
+        nodes = postorder(core_of(self._formula, self._period).formula)
+        return {
+            node: list(zip(found.lower.tolist(), found.upper.tolist(), strict=True))
+            for node, found in zip(nodes, parts, strict=True)
+        }
 
     def _window(self, node: Apply, t: int) -> Iterable[int]:
         if node.op.tense is Tense.NONE:

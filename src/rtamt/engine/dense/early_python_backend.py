@@ -21,7 +21,7 @@ from rtamt.reference.dense_causation import least as least_caused
 from rtamt.signals.runs import clipped, compared, merged, without
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
@@ -106,6 +106,7 @@ class PythonDenseEarlyMonitor:
             tuple(_unseen(Identity(each), names, self._limits(names), tick) for each, names in output)
             for output in outputs
         )
+        self._earlier_before = self._earlier  # the last event
 
     # ---- samples ---------------------------------------------------------------------------------
 
@@ -145,7 +146,7 @@ class PythonDenseEarlyMonitor:
         )
         self._before, self._came, self._found, self._causes = self._came, came, found, {}
         self._start = None
-        self._earlier = tuple(earlier)
+        self._earlier_before, self._earlier = self._earlier, tuple(earlier)
 
     def _limits(self, names: tuple[str, ...]) -> tuple[Pair, ...]:
         return tuple(self._ranges[name] for name in names)
@@ -312,27 +313,29 @@ class PythonDenseEarlyMonitor:
     def _caused(self, formula: int) -> StepCauses | None:
         """Return the causation of the last event; None before the start of the trace."""
         if formula not in self._causes:
-            self._causes[formula] = self._caused_of(self._formulas[formula])
+            self._causes[formula] = self._caused_of(formula, range(len(self._formulas[formula])))
         return self._causes[formula]
 
-    def _caused_of(self, output: Output) -> StepCauses | None:
+    def _caused_of(self, output: int, places: Iterable[int]) -> StepCauses | None:
+        """Return the same of some of the formulas of an output."""
         now = self._knowledge(self._came)
         if now.start is None:
             return None
         before = None if self._before is None else self._knowledge(self._before)
         if before is not None and before.start is None:
             before = None  # what arrived until all traces have started is one event
-        return least_caused(
-            [
-                causation(f, None if before is None else before.of(names), now.of(names), self._tick)
-                for f, names in output
-            ]
-        )
+        causes = []
+        for place in places:
+            formula, names = self._formulas[output][place]
+            parts = self._earlier_before[output][place], self._earlier[output][place]
+            was = None if before is None else before.of(names)
+            causes.append(causation(formula, was, now.of(names), self._tick, parts))
+        return least_caused(causes)
 
     def causation_at_start(self) -> Pair:
         """Violation and satisfaction that the last event caused at the start of the trace, as bounds there."""
-        first = self._formulas[0]
-        parts = [self._caused(0)] if len(first) == 1 else [self._caused_of([part]) for part in first]
+        count = len(self._formulas[0])
+        parts = [self._caused(0)] if count == 1 else [self._caused_of(0, [k]) for k in range(count)]
         begun = [part.causes[0] for part in parts if part is not None]
         violation = min((cause.violation for cause in begun), default=inf)
         satisfaction = max((cause.satisfaction for cause in begun), default=-inf)
@@ -365,12 +368,12 @@ class PythonDenseEarlyMonitor:
 
     def state(self) -> bytes:
         """The state after the samples so far."""
-        return pickle.dumps((self._before, self._came, self._reports, self._earlier))
+        return pickle.dumps((self._before, self._came, self._reports, self._earlier_before, self._earlier))
 
     def restore(self, state: bytes) -> None:
         """Restore the state of a monitor that was made with the same arguments."""
         kept = pickle.loads(state)  # noqa: S301 - its own
-        self._before, self._came, self._reports, self._earlier = kept
+        self._before, self._came, self._reports, self._earlier_before, self._earlier = kept
         self._found, self._start, self._causes = None, None, {}
 
 

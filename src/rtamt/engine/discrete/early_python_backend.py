@@ -84,6 +84,8 @@ class PythonEarlyMonitor:
             _unseen(Identity(each), self._names, limits, period) for each in (*self._outputs, self._start)
         )
         self._earlier = [start, *outputs]
+        #: The same before and after the newest sample, for what it causes.
+        self._around = self._earlier, self._earlier
         self._answer_anew()
 
     @property
@@ -117,7 +119,9 @@ class PythonEarlyMonitor:
         late = 0 if self._lateness is None else self._lateness + 1
         self.closed = max(self.closed, self.newest - late)
         try:
+            earlier = self._earlier
             self._compute()
+            self._around = earlier, self._earlier
             return self._result()
         except BaseException:
             self.restore(before)
@@ -161,9 +165,11 @@ class PythonEarlyMonitor:
             )
         return self._found[id(formula)]
 
+    def _place(self, formula: Formula) -> int:
+        return next(i for i, each in enumerate((self._start, *self._outputs)) if each is formula)
+
     def _earlier_of(self, formula: Formula) -> list[Enclosure]:
-        place = next(i for i, each in enumerate((self._start, *self._outputs)) if each is formula)
-        return self._earlier[place]
+        return self._earlier[self._place(formula)]
 
     def _narrow(self) -> None:
         """Compute the bounds of all that came, and keep them."""
@@ -241,7 +247,8 @@ class PythonEarlyMonitor:
         found = self._causation.get(id(formula), [])
         if len(found) < 1 + every:
             m = None if every else 1  # the start is often all that is requested
-            found = causation(formula, self._knowledge(), self._period, m)
+            before, after = (every_part[self._place(formula)] for every_part in self._around)
+            found = causation(formula, self._knowledge(), self._period, m, parts=(before, after))
             self._causation[id(formula)] = found
         return found
 
@@ -392,6 +399,7 @@ class PythonEarlyMonitor:
             "_decided",
             "_reports",
             "_earlier",
+            "_around",
         )
         return pickle.dumps({name: getattr(self, name) for name in kept})
 

@@ -223,3 +223,11 @@ def test_causation_of_since_ends_where_its_first_samples_are_forgotten(backend):
         CausationRun(1.0, 1.0, 1.5, 1.0),
         CausationRun(2.0, None, 1.5, 1.5),
     ]
+
+
+@BACKENDS
+@pytest.mark.parametrize("domain", [rtamt.Discrete(), rtamt.Dense("1s")], ids=["discrete", "dense"])
+def test_what_was_known_of_an_operation_that_will_have_no_value_limits_causation(domain, backend):
+    either = rtamt.parse("eventually[1:2](sqrt(delay[1](x, 1)) < 1) or x > 0", time=domain, backend=backend)
+    # The root at 1 s will have no value, but it is known not to be negative: 1 - sqrt(...) is 1 at most.
+    assert either.monitor(verdict="causation").update(0, x=-1) == Causation(1, -1)
