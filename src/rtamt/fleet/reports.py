@@ -22,6 +22,12 @@ class FleetPoints:
 
     ``keys``: of each point; ``index``: the sample of the batch that made it final; ``times`` and ``values``: as in the
     Signal that ``DenseMonitor.update`` returns.
+
+    >>> import rtamt
+    >>> fleet = rtamt.Fleet(rtamt.parse("once[0:1](x >= 3)"), capacity=10, time="dense")
+    >>> update = fleet.update_many(["car-1", "car-2", "car-1"], [0, 0, 2], {"x": [5, 1, 0]})
+    >>> list(zip(update.keys.tolist(), update.times.tolist(), update.values.tolist()))
+    [('car-1', 0.0, 2.0), ('car-2', 0.0, -2.0), ('car-1', 2.0, 2.0)]
     """
 
     keys: NDArray[Any]
@@ -41,6 +47,12 @@ class FleetVerdicts:
     for; ``satisfied``: whether the formula holds there; ``decided_at``: the time of the sample that decided it.
     ``ends``: in dense time, a verdict is for all instants from ``times[i]`` up to but excluding ``ends[i]``; in
     discrete time they are the same.
+
+    >>> import rtamt
+    >>> fleet = rtamt.Fleet(rtamt.parse("eventually[0:1](x >= 3)"), capacity=10, verdict="eager")
+    >>> update = fleet.update_many(["car-1", "car-2", "car-2"], [0, 0, 1], {"x": [5, 1, 2]})
+    >>> list(zip(update.keys.tolist(), update.times.tolist(), update.satisfied.tolist(), update.decided_at.tolist()))
+    [('car-1', 0.0, True, 0.0), ('car-2', 0.0, False, 1.0)]
     """
 
     keys: NDArray[Any]
@@ -80,6 +92,13 @@ class FleetBounds:
 
     ``lower`` and ``upper``: at the start of the trace of ``keys[i]``. ``late``: which samples arrived later than the
     lateness allows, and were left out. ``changes``: of the bounds at other instants; empty with ``at="start"``.
+
+    >>> import rtamt
+    >>> spec = rtamt.parse("eventually[0:1](x >= 3)")
+    >>> fleet = rtamt.Fleet(spec, capacity=10, verdict="interval", ranges={"x": (0, 10)})
+    >>> update = fleet.update_many(["car-1", "car-2", "car-2"], [0, 0, 1], {"x": [5, 1, 2]})
+    >>> update.lower.tolist(), update.upper.tolist()
+    ([2.0, -2.0, -1.0], [7.0, 7.0, -1.0])
     """
 
     keys: NDArray[Any]
@@ -97,6 +116,12 @@ class FleetCausation:
     """Causation: by how much each sample alone, in the order of the batch, violates and satisfies the formula.
 
     ``violation`` and ``satisfaction``: at the start of the trace of ``keys[i]``, as in ``Causation``.
+
+    >>> import rtamt
+    >>> fleet = rtamt.Fleet(rtamt.parse("always[0:1](x >= 3)"), capacity=10, verdict="causation")
+    >>> update = fleet.update_many(["car-1", "car-1"], [0, 1], {"x": [5, 1]})
+    >>> update.violation.tolist(), update.satisfaction.tolist()
+    ([2.0, -2.0], [-inf, -2.0])
     """
 
     keys: NDArray[Any]
@@ -112,7 +137,14 @@ Of = TypeVar("Of")
 
 @dataclass(frozen=True, slots=True)
 class SuiteUpdate(Generic[Of]):
-    """The results of a batch for each requirement of a suite: ``update["SPEED"]`` is the update of one."""
+    """The results of a batch for each requirement of a suite: ``update["SPEED"]`` is the update of one.
+
+    >>> import rtamt
+    >>> suite = rtamt.Suite([rtamt.parse("specification SPEED always[0:1](x <= 3)")], time="dense")
+    >>> fleet = rtamt.Fleet(suite, capacity=10)
+    >>> fleet.update_many(["car-1", "car-1"], [0, 2], {"x": [5, 1]})["SPEED"].values
+    array([-2., -2.])
+    """
 
     updates: Mapping[str, Of]
 

@@ -41,6 +41,12 @@ class FleetUpdate:
     Of a suite, these four have a column for each requirement, and ``update["SPEED"]`` is the update of one.
     ``late``: which samples arrived too late, or a second time, and were left out. ``released``: what samples made known
     that are not of this batch. ``requirements``: the names of those of a suite.
+
+    >>> import rtamt
+    >>> fleet = rtamt.Fleet(rtamt.parse("always[0:1](x >= 3)"), capacity=10)
+    >>> update = fleet.update_many(["car-1", "car-2", "car-1"], [0, 0, 1], {"x": [5, 1, 4]})
+    >>> update.known.tolist(), update.values[update.known].tolist(), update.times[update.known].tolist()
+    ([False, False, True], [1.0], [0.0])
     """
 
     values: FloatArray

@@ -40,7 +40,6 @@ from rtamt.signals.counting import (
     quotients,
     refuse_implausible,
     rescaled,
-    tick_of,
     times_of,
 )
 from rtamt.signals.datetimes import counts_of, has_length, nanoseconds_of, no_length
@@ -369,15 +368,6 @@ def _exact(times: Any) -> NDArray[np.bool_]:
     if types <= {float} or types <= {int}:
         return np.full(len(times), types != {float})
     return np.array([isinstance(time, Rational) for time in times])
-
-
-def date_of(seconds: float) -> np.datetime64:
-    """Return seconds since 1970 as a date, to the last digit with which the number prints.
-
-    >>> date_of(1767225600.1)
-    np.datetime64('2026-01-01T00:00:00.100000000')
-    """
-    return np.datetime64(tick_of(seconds, 10**9), "ns")
 
 
 def not_finite(name: str, index: int, time: Any) -> TraceError:

@@ -46,6 +46,12 @@ class Channel:
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
     than those of its ``table``; both None where it has all. ``alias``: another name, which listings leave out.
     ``stepped``: whether there is nothing between two values, as of truths and members of enumerations.
+
+    >>> import rtamt
+    >>> trace = rtamt.read({"time": [0, 0.1], "speed [m/s]": [10, 11]})
+    >>> speed = trace.channel("speed")
+    >>> speed.times, speed.unit, speed.column
+    (array([0. , 0.1]), 'm/s', 'speed [m/s]')
     """
 
     times: Times | None

@@ -39,6 +39,12 @@ class StreamResult:
     see ``Result.episodes``; None of several requirements, and as for ``minimum``.
     ``steady``: False if the period was inferred from the first chunk, and another chunk has another one.
     ``requirements``: the same for each requirement, by name.
+
+    >>> import rtamt
+    >>> chunks = [{"time": [0, 1], "x": [5, 4]}, {"time": [2, 3], "x": [1, 6]}]
+    >>> result = rtamt.check_stream(rtamt.parse("always(x >= 3)"), chunks)
+    >>> result.robustness, result.satisfied, result.first_violation, result.samples
+    (-2.0, False, 2.0, 4)
     """
 
     robustness: float

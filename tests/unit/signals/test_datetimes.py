@@ -9,7 +9,6 @@ import pytest
 
 import rtamt
 from rtamt.signals.arrays import timestamps
-from rtamt.signals.ticks import date_of
 
 NOON = datetime(2026, 3, 29, 0, 30)
 ZONE = timezone(timedelta(hours=2))
@@ -72,11 +71,6 @@ def test_times_since_a_start():
 def test_a_date_that_is_none_is_an_error():
     with pytest.raises(rtamt.TraceError, match=r"^time is nan at sample 1: give a finite number of seconds$"):
         rtamt.parse("x > 0").evaluate({"time": [NOON, pd.NaT], "x": [1, 2]})
-
-
-def test_a_first_violation_is_told_to_the_digit_that_was_recorded():
-    assert str(date_of(1774744200.3)) == "2026-03-29T00:30:00.300000000"
-    assert str(date_of(1774744200.000001)) == "2026-03-29T00:30:00.000001000"
 
 
 def test_stamps_in_seconds_beside_nanoseconds_are_exact():
