@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import NANOSECOND
-from rtamt.signals.ticks import TimeScale, tick_of
+from rtamt.signals.counting import tick_of
+from rtamt.signals.ticks import TimeScale
 
 NOON = datetime(2026, 1, 1, 12)
 ZONE = timezone(timedelta(hours=2))
