@@ -19,6 +19,7 @@ from rtamt.language.value_types import BOOLEAN
 from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from fractions import Fraction
 
     from rtamt.language.formula import Formula
@@ -59,6 +60,12 @@ _WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
 _LABEL = lazy_pattern(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
 _NOTE = "py-metric-temporal-logic holds each value until the next sample: use --time dense for verdicts between samples"
 _END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
+_WEAK_NOTE = "its evaluator takes 'a W b' as true where b never holds from then on; here a has to hold then"
+
+
+def _notes(formulas: Iterable[Formula]) -> tuple[str, ...]:
+    weak = any(isinstance(node, Apply) and node.op is STL["unless"] for node in postorder(*formulas))
+    return (_NOTE, _END_NOTE, _WEAK_NOTE) if weak else (_NOTE, _END_NOTE)
 
 
 def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
@@ -95,7 +102,7 @@ def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
         specification_text("Formulas of py-metric-temporal-logic.", written, Names(), period),
         tuple(each.name for each in written),
         tuple(rejected),
-        (_NOTE, _END_NOTE),
+        _notes(each.formula for each in written),
     )
 
 
@@ -115,6 +122,8 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
     for requirement in spec.document.requirements:
         try:
             for node in postorder(requirement.formula):
+                if isinstance(node, Apply) and node.op is STL["unless"] and node.interval is not None:
+                    raise InexpressibleError(f"{MTL.title} has no 'W' with an interval, as in '{node}'")
                 if isinstance(node, Var) and (node.type is not BOOLEAN or not _ATOM.fullmatch(node.name)):
                     raise InexpressibleError(
                         f"'{node.name}' is no Boolean whose name begins with a small letter"
@@ -125,7 +134,12 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
             continue
         converted.append(requirement.name)
         lines.append(f"{requirement.name}: {text}")
-    return Conversion("\n".join(lines) + "\n", tuple(converted), tuple(rejected), (_NOTE, _END_NOTE))
+    return Conversion(
+        "\n".join(lines) + "\n",
+        tuple(converted),
+        tuple(rejected),
+        _notes(each.formula for each in spec.document.requirements if each.name in converted),
+    )
 
 
 def _group(node: Formula, args: tuple[str, ...]) -> str:

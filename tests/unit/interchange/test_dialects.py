@@ -261,3 +261,16 @@ def test_implications_of_py_metric_temporal_logic_associate_to_the_left() -> Non
     formula = rtamt.parse(bools + "(a -> b) -> c").formula
     assert rtamt.parse(read_mtl("(a -> b -> c)").text).formula == formula
     assert write_mtl(rtamt.parse(bools + "require R: a -> b -> c")).text.strip() == "R: (a -> (b -> c))"
+
+
+def test_weak_until_of_py_metric_temporal_logic_has_a_note_and_no_interval() -> None:
+    note = "its evaluator takes 'a W b' as true where b never holds from then on; here a has to hold then"
+    assert note in read_mtl("(a W b)").notes
+    assert note not in read_mtl("(a U b)").notes
+    text = "bool a\nbool b\nrequire R: a unless b\nrequire S: a unless[0:2] b"
+    found = write_mtl(rtamt.parse(text))
+    assert (found.text.strip(), found.notes[-1]) == ("R: (a W b)", note)
+    (rejected,) = found.rejected
+    assert rejected.reason == (
+        "py-metric-temporal-logic has no 'W' with an interval, as in 'a unless[0:2] b'"
+    )
