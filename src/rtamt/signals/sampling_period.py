@@ -80,6 +80,14 @@ class StoredTimes(DeferredTimes):
         self._rows = rows
         self._array = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return StoredTimes, (self._count, [self.array])
+
+    def forget_columns(self) -> None:
+        """Keep nothing of the recording but its last row, where rows are arrays of their own."""
+        if self._rows.__class__ is list:
+            self._rows = self._rows[-1:]
+
     def _made(self) -> FloatArray:
         rows = self._rows
         if rows.__class__ is list:

@@ -110,9 +110,12 @@ class Reading(NamedTuple):
         return DiscreteTrace(signal._times, columns, self.period, timed and not self.given)
 
     def signal(self, found: Any) -> Signal:
-        """Return the robustness."""
-        signal: Signal = found[3]
-        return signal
+        """Return the robustness; if it is all that is kept, it keeps no columns of a long recording."""
+        memory, _, timed, signal = found
+        if timed and memory.__class__ is list:
+            signal._times.forget_columns()
+        robustness: Signal = signal
+        return robustness
 
     def samples(self, found: Any) -> int:
         """Return the number of samples of each variable."""
