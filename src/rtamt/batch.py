@@ -11,7 +11,6 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, no_specification, placed, shown
-from rtamt.fleet.groups import Asking, grouped
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
 from rtamt.verdicts.offline import findings_of
@@ -182,6 +181,8 @@ def _group(specs: Sequence[Specification], reading: dict[str, Any]) -> tuple[lis
 def _groups(
     specs: tuple[Specification, ...], reading: tuple[tuple[str, Any], ...]
 ) -> tuple[list[Group], Iterable[int]]:
+    from rtamt.fleet.groups import Asking, grouped
+
     asked, apart = {}, set()
     for number, spec in enumerate(specs):
         with _place(number):

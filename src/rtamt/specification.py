@@ -234,13 +234,13 @@ class Specification(OnlineSpecification):
 
     def _sample(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""
-        from rtamt.signals.sampling import sampled
-
         if self.sampling is None:
             return data
         rule = query.domain.sampling(self.sampling)
         if rule is None or not rule.hold:
             return data
+        from rtamt.signals.sampling import sampled
+
         return sampled(data, self.input_names, rule, query.domain.period or rule.period, query.unit)
 
     def _result(self, query: Query, recording: DomainTrace) -> Result:

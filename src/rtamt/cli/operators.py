@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 import textwrap
 from typing import TYPE_CHECKING
 
 from rtamt.cli.language import add_language_option, read_language
 from rtamt.cli.parser import OK
-from rtamt.cli.terminal import say, table, use_color, width_of
+from rtamt.cli.terminal import say, table, terminal_width, use_color, width_of
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.language.operators import Bounds, Fixity
 from rtamt.language.quantifiers import QUANTIFIERS
@@ -71,7 +70,7 @@ def _notes(language: Language) -> str:
         f"two operands associate to the left, {right} to the right. A number used as a formula is its own "
         f"robustness."
     )
-    return textwrap.fill(notes, min(100, shutil.get_terminal_size().columns))
+    return textwrap.fill(notes, min(100, terminal_width()))
 
 
 def _find_operators(name: str, language: Language) -> list[Operator]:

@@ -12,7 +12,7 @@ import textwrap
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from rtamt.cli.terminal import say
+from rtamt.cli.terminal import say, terminal_width
 from rtamt.errors import UsageError, did_you_mean
 from rtamt.files import same_file
 from rtamt.lazy.dataclasses import dataclass
@@ -50,6 +50,9 @@ class Command:
 
 class Help(argparse.HelpFormatter):
     """Wraps prose to the width of the terminal; a paragraph with indented lines stays as it is."""
+
+    def __init__(self, prog: str, **options: Any) -> None:
+        super().__init__(prog, **{"width": terminal_width() - 2, **options})
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - the base class has it
         paragraphs = text.split("\n\n")

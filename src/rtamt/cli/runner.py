@@ -32,7 +32,6 @@ from rtamt.lazy.dataclasses import replace
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
 from rtamt.readers.sql import is_url, shown
-from rtamt.signals import members
 from rtamt.signals.episodes import Episodes
 from rtamt.violations import first_violation
 
@@ -138,6 +137,8 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check a requirement over the members of groups that a recording has."""
+    from rtamt.signals import members
+
     begin = time.perf_counter()
     spec = requirement.spec
     try:

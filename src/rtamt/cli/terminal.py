@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
 from importlib import import_module
@@ -127,7 +126,21 @@ def table(
 
 def width_of(stream: TextIO) -> int | None:
     """Return the number of columns of a terminal; None if the stream is not a terminal."""
-    return shutil.get_terminal_size().columns if stream.isatty() else None
+    return terminal_width() if stream.isatty() else None
+
+
+def terminal_width() -> int:
+    """Return the columns of the terminal as :mod:`shutil` does, whose import loads libraries of compression."""
+    try:
+        chosen = int(os.environ["COLUMNS"])
+    except (KeyError, ValueError):
+        chosen = 0
+    if chosen > 0:
+        return chosen
+    try:
+        return os.get_terminal_size(sys.__stdout__.fileno()).columns or 80  # type: ignore[union-attr] # as below
+    except (AttributeError, ValueError, OSError):  # no standard output, or one that is closed or no terminal
+        return 80
 
 
 def _rich(module: str) -> Any:

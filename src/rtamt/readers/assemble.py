@@ -15,7 +15,6 @@ from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_sample
-from rtamt.signals.ticks import TimeScale
 from rtamt.signals.trace import Channel, Trace, in_seconds
 
 if TYPE_CHECKING:
@@ -385,6 +384,7 @@ def _one_kind(channels: dict[str, Channel], source: str) -> dict[str, Channel]:
         raise TraceError(
             f"some signals of {source} have dates for times and others numbers: use one of them for all"
         )
+    from rtamt.signals.ticks import TimeScale
 
     def exact(times: Any, name: str) -> Any:
         if times is None or times.dtype.kind != "f":

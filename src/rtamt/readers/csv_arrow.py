@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.readers.ahead import ahead
-from rtamt.readers.arrow import values_in_place
 from rtamt.readers.csv_cells import LARGEST
 
 if TYPE_CHECKING:
@@ -46,6 +44,8 @@ def plain_blocks(path: str, header: Header, columns: Sequence[Column]) -> Iterat
     """Yield the rows after the header as long as all cells of these columns are decimal numbers, and no row is odd."""
     arrow = _arrow() if columns and os.path.getsize(path) >= _WORTH else None
     if arrow is not None:
+        from rtamt.readers.ahead import ahead
+
         yield from ahead(_blocks(arrow, path, header, columns))
 
 
@@ -81,6 +81,8 @@ def _numbers(
     arrow: Any, buffer: bytearray, size: int, header: Header, columns: Sequence[Column]
 ) -> list[list[FloatArray]] | None:
     """Return the columns of some lines, in parts; None unless their cells are decimal numbers that doubles can hold."""
+    from rtamt.readers.arrow import values_in_place
+
     quotes, comments, returns = (buffer.find(odd, 0, size) >= 0 for odd in (b'"', b"#", b"\r"))
     if quotes or comments:
         return None

@@ -12,7 +12,6 @@ from rtamt.errors import TraceError
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.source import Field, Source, Table
-from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, as_array, is_masked
 from rtamt.signals.time_columns import check_index, is_stamps, split_unit
 
@@ -99,6 +98,8 @@ def _array(values: Any, name: str) -> Raw:
 
 
 def _dict(data: Mapping[Any, Any]) -> Source:
+    from rtamt.signals import dense_arrays
+
     if TIME not in data and data and all(_is_dense(value) for value in data.values()):
         tables = []
         for name, samples in data.items():

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import errno
 from contextlib import contextmanager
-from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from rtamt import extras
@@ -185,6 +184,8 @@ def _guard(table: Table, guard: Callable[[], AbstractContextManager[None]]) -> T
 
 def is_our_error(error: BaseException) -> bool:
     """Return whether an exception was raised by code of this package, and not in a library that it called."""
+    from traceback import walk_tb
+
     name = ""
     for frame, _ in walk_tb(error.__traceback__):
         name = frame.f_globals.get("__name__", "")

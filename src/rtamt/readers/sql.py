@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
 from rtamt.lazy.patterns import lazy_pattern
-from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import CHUNK, Source, guarded, library, missing_file, opening, printable
 
 if TYPE_CHECKING:
@@ -43,6 +42,8 @@ def open_sql(url: str, query: str | None) -> Source:
 
 
 def _open(url: str, query: str) -> Source:
+    from rtamt.readers.rows import table_of_rows
+
     sqlalchemy = library("sqlalchemy", "databases")
     with ExitStack() as stack:
         address = sqlalchemy.make_url(_POSTGRESQL.sub("postgresql+psycopg://", url, count=1))

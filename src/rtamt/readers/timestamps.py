@@ -18,7 +18,6 @@ from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
 from rtamt.signals.arrays import is_masked, is_number
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
-from rtamt.signals.ticks import TimeScale
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, unit_called, unit_of
 
 if TYPE_CHECKING:
@@ -136,6 +135,8 @@ class TimestampColumn:
         if not self._exact:
             seconds = raw.astype(np.float64, copy=copy)
             return seconds if unit == "s" else in_seconds(seconds, size)
+        from rtamt.signals.ticks import TimeScale
+
         named = f"'{self.field.column}'"
         try:
             ticks = TimeScale(NANOSECOND, "units", size).ticks(raw, self.field.column)

@@ -20,10 +20,8 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import missing_sample
 from rtamt.signals.listing import extent, html, listing
-from rtamt.signals.resampling import grid_of, resampled
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
-from rtamt.signals.slicing import sliced
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -184,6 +182,8 @@ class Trace(WithTimeBases):
         >>> trace[1:2]["x"]
         Signal(times=array([1., 2.]), values=array([4., 2.]))
         """
+        from rtamt.signals.slicing import sliced
+
         if isinstance(name, slice):
             return self.with_channels({each: sliced(each, self._channels[each], name) for each in self})
         channel = self.channel(name)
@@ -315,6 +315,8 @@ class Trace(WithTimeBases):
         >>> trace.resample("500ms")["x"].values, trace.resample("500ms", how="linear")["x"].values
         (array([ 0.,  0., 10.]), array([ 0.,  5., 10.]))
         """
+        from rtamt.signals.resampling import grid_of
+
         limit = (
             None if hold_for is None else positive_period(hold_for, "longest time for which a value is held")
         )
@@ -337,6 +339,8 @@ class Trace(WithTimeBases):
     def _at(
         self, grid: Times, how: str, hold_for: Fraction | None = None, step: Fraction | None = None
     ) -> Trace:
+        from rtamt.signals.resampling import resampled
+
         channels: dict[str, Channel] = {}
         losses: list[str] = []
         for name, channel in self._channels.items():

@@ -2,11 +2,12 @@
 
 import io
 import re
+import shutil
 import sys
 
 import pytest
 
-from rtamt.cli.terminal import Progress, table, use_color
+from rtamt.cli.terminal import Progress, table, terminal_width, use_color
 
 
 class Terminal(io.StringIO):
@@ -27,6 +28,16 @@ def test_colour_only_on_a_terminal(monkeypatch):
     assert not use_color("never", Terminal())
     monkeypatch.setenv("TERM", "dumb")
     assert not use_color("auto", Terminal())
+
+
+@pytest.mark.parametrize("columns", ["60", "0", "-3", "wide", "", None])
+@pytest.mark.parametrize("stdout", [sys.__stdout__, None, io.StringIO()])
+def test_the_width_is_that_of_the_standard_library(monkeypatch, columns, stdout):
+    monkeypatch.setattr(sys, "__stdout__", stdout)
+    monkeypatch.delenv("COLUMNS", raising=False)
+    if columns is not None:
+        monkeypatch.setenv("COLUMNS", columns)
+    assert terminal_width() == shutil.get_terminal_size().columns
 
 
 def test_no_color_is_respected(monkeypatch):

@@ -11,7 +11,6 @@ from rtamt.engine.cores import threads
 from rtamt.engine.direct import Direct
 from rtamt.engine.discrete.recording import Reading, frame_columns
 from rtamt.engine.native import calls_of, core, creation_error, culprit
-from rtamt.engine.user_operators import defined_column
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.undefined_value import UNNAMED, at_sample, undefined, undefined_text
 from rtamt.lazy.modules import np
@@ -218,6 +217,8 @@ def failed(
 
 def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: Plan) -> FloatArray:
     """Return the values of a custom operator of unbounded future, by its definition."""
+    from rtamt.engine.user_operators import defined_column
+
     assert scan.meaning is not None
     values = defined_column(scan.meaning, trace.period, operands)
     wrong = np.flatnonzero(np.isnan(values))
