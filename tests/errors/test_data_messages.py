@@ -199,6 +199,12 @@ def test_the_callers_time_stamps_are_never_changed() -> None:
     np.testing.assert_array_equal(times, [0.0, 1.0])
 
 
+def test_the_path_of_a_specification_given_as_its_text() -> None:
+    assert check_message(rtamt.TraceError, rtamt.robustness, "speed.stl", {"x": [1]}) == (
+        "the data has no 'speed.stl'; rtamt.load('speed.stl') reads a file"
+    )
+
+
 def test_wrong_settings() -> None:
     assert check_message(rtamt.UsageError, rtamt.parse, "x", backend="c++") == (
         "unknown backend 'c++'; back ends: cpp, python"

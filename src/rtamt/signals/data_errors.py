@@ -83,4 +83,5 @@ def missing_field(member: str, field: str, index: int | None = None) -> TraceErr
 
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
-    return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)
+    hint = f"; rtamt.load('{name}') reads a file" if name.endswith(".stl") else choices(name, keys, "signals")
+    return TraceError(f"the data has no '{name}'{hint}", variable=name)
