@@ -10,8 +10,8 @@ from functools import cached_property
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices
-from rtamt.language.document import Declaration
-from rtamt.language.quantifiers import Field, Group, fields_of, quantifiers
+from rtamt.language.document import Declaration, groups_in
+from rtamt.language.quantifiers import Field, Group
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.specification_recorded import RecordedSpecification
@@ -41,16 +41,9 @@ class QuantifiedText(RecordedSpecification):
         """
         if self.resolved is not None:
             return MappingProxyType({})
-        formulas = self._all_formulas
-        found: dict[str, tuple[Group, dict[str, None]]] = {}
-        for node in quantifiers(*formulas):
-            assert node.op.binder is not None
-            group = node.op.binder.group
-            found.setdefault(group.name, (group, dict.fromkeys(each.name for each in group.fields)))
-        for field_of in fields_of(*formulas):
-            assert field_of.group is not None
-            found[field_of.group.name][1].setdefault(field_of.field)
-        return MappingProxyType({name: (group, tuple(fields)) for name, (group, fields) in found.items()})
+        if not self.document.replaced:
+            return self.document.quantified_groups
+        return groups_in(*self._all_formulas)
 
     @property
     def _all_formulas(self) -> list[Formula]:

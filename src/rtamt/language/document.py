@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices
 from rtamt.language.operators import STL
+from rtamt.language.quantifiers import fields_of, quantifiers
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -165,7 +166,44 @@ class Document:
         return replace(self, requirements=(replace(first, formula=formula),), replaced=True)
 
     @cached_property
+    def names_of(self) -> Mapping[Formula, str]:
+        """The first name of each formula that has one."""
+        if self._as_in_origin is not None:
+            return self._as_in_origin.names_of
+        names: dict[Formula, str] = {}
+        for assertion in self.assertions:
+            if assertion.name:
+                names.setdefault(assertion.formula, assertion.name)
+        return MappingProxyType(names)
+
+    @cached_property
+    def quantified_groups(self) -> Mapping[str, tuple[Group, tuple[str, ...]]]:
+        """The groups that quantifiers of the assertions range over, each with the fields of its members."""
+        if self._as_in_origin is not None:
+            return self._as_in_origin.quantified_groups
+        return groups_in(*(assertion.formula for assertion in self.assertions))
+
+    @property
+    def _as_in_origin(self) -> Document | None:
+        """The document from which this one was selected, if it has the same formulas: what it has found is shared."""
+        origin = self.origin
+        return origin if origin is not None and origin.assertions is self.assertions else None
+
+    @cached_property
     def _named(self) -> dict[str, Requirement]:
         """The formulas from which :meth:`select` chooses."""
         named = {a.name: Requirement(a.name, a.formula, span=a.span) for a in self.assertions if a.name}
         return {**named, **{requirement.name: requirement for requirement in self.requirements}}
+
+
+def groups_in(*formulas: Formula) -> Mapping[str, tuple[Group, tuple[str, ...]]]:
+    """Return the groups of the quantifiers in formulas, each with the fields of its members, declared or read."""
+    found: dict[str, tuple[Group, dict[str, None]]] = {}
+    for node in quantifiers(*formulas):
+        assert node.op.binder is not None
+        group = node.op.binder.group
+        found.setdefault(group.name, (group, dict.fromkeys(each.name for each in group.fields)))
+    for field_of in fields_of(*formulas):
+        assert field_of.group is not None
+        found[field_of.group.name][1].setdefault(field_of.field)
+    return MappingProxyType({name: (group, tuple(fields)) for name, (group, fields) in found.items()})

@@ -210,7 +210,7 @@ class _Painter:
     def _node(self, formula: Formula, places: dict[Formula, int], signals: tuple[Signal, Signal]) -> Node:
         spec = self._spec
         text = predicate_text(formula, spec.text)
-        names = [a.name for a in spec.document.assertions if a.name and a.formula == formula]
+        name = spec.document.names_of.get(formula)
         line, truth = (self._line(text, signal) for signal in signals)
         operands = _operands(formula)
         numbers = tuple(places[operand] for operand in operands if operand in places)
@@ -218,7 +218,7 @@ class _Painter:
             formula,
             text,
             text if is_predicate(formula) else _label(formula),
-            names[0] if names else None,
+            name,
             line,
             ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._x_axis.end),
             numbers,
