@@ -16,7 +16,7 @@ WHY = """\
 Reasons: in dense time every update returns a signal, which is an object, and both mstlo (Rust) and rtamt cost little
 more than the call from Python. The time for a recording of 100 samples, 2 to 3 µs, is mostly that of the call, the
 checks of the data and the objects of the result. Parsing in Rust is faster than in Python. At the start Python loads
-some 130 modules of rtamt, and few of mstlo."""
+modules of rtamt one by one, and of mstlo, Reelay and STLRom little more than a shared library."""
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,7 @@
 """mstlo, by its documentation: https://INTO-CPS-Association.github.io/mstlo. Bounded future, online."""
 
-from importlib.metadata import version
-
 import mstlo_python as mstlo
-from protocol import UnsupportedError, Writer, plain, serve
+from protocol import UnsupportedError, Writer, plain, serve, version
 
 SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
 TABLE = {

@@ -3,10 +3,8 @@
 Its predicates are signals that hold their own robustness: the adapter subtracts.
 """
 
-from importlib.metadata import version
-
 import mtl
-from protocol import UnsupportedError, Writer, plain, serve
+from protocol import UnsupportedError, Writer, plain, serve, version
 
 VALUES = {
     "ge": lambda v, c: v - c,

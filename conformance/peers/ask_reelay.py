@@ -1,8 +1,6 @@
 """Reelay, by its documentation: https://doganulus.github.io/reelay. Past operators, known as they come."""
 
-from importlib.metadata import version
-
-from protocol import UnsupportedError, Writer, plain, serve
+from protocol import UnsupportedError, Writer, plain, serve, version
 from reelay import dense_timed_monitor, discrete_timed_monitor
 
 SIGNS = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<", "eq": "==", "ne": "!="}

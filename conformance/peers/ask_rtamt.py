@@ -1,9 +1,8 @@
 """The paper's tool, RTAMT, by its own documentation: https://github.com/nickovic/rtamt."""
 
 from functools import lru_cache
-from importlib.metadata import version
 
-from protocol import UnsupportedError, Writer, horizon, operators, serve
+from protocol import UnsupportedError, Writer, horizon, operators, serve, version
 
 import rtamt
 

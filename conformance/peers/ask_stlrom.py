@@ -1,9 +1,7 @@
 """STLRom, by its documentation: https://pypi.org/project/stlrom. Samples held until the next (PREVIOUS)."""
 
-from importlib.metadata import version
-
 import stlrom
-from protocol import UnsupportedError, Writer, horizon, serve
+from protocol import UnsupportedError, Writer, horizon, serve, version
 
 TABLE = {
     **{op: f"{{0}} {sign} {{1}}" for op, sign in (("ge", ">="), ("gt", ">"), ("le", "<="), ("lt", "<"))},
