@@ -42,6 +42,8 @@ HERE = Path(__file__).parent
 BUDGET = HERE / "budget.toml"
 #: What a path may need beyond its budget.
 ALLOWANCE = 0.05
+#: The repetitions after which nothing is left to be made once: constructors are compiled with the fourth instance.
+WARM = 16
 #: Programs that counting needs.
 TOOLS = ("valgrind", "cc")
 #: Libraries whose instructions are not counted, by a part of their paths.
@@ -57,7 +59,7 @@ def run_paths(library: str) -> None:
     gc.disable()  # what a collection visits depends on all that was done before
     for repetitions, prepare in PATHS.values():
         run = prepare()
-        run(repetitions)
+        run(max(repetitions, WARM))
         marks.start_counting()
         for factor in (1, 2):
             marks.forget()
