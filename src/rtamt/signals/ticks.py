@@ -127,6 +127,10 @@ class TimeScale:
         ``times``: as :func:`sequence_of` returns them. Integers are exact. ``first`` is the index of
         ``times[0]`` in the recording of ``name``, for messages.
         """
+        if times.__class__ is list and len(times) == 1 and times[0].__class__ is int:
+            tick = self._whole_tick(times[0])
+            if tick is not None:
+                return np.array([tick], np.int64)
         try:
             plain = times.__class__ is np.ndarray and times.dtype == np.float64
             if plain and self.kind == "seconds" and self.unit == 1:
@@ -139,6 +143,13 @@ class TimeScale:
             return self._of_dates(times, name, first)
         except OverflowError:
             raise self.too_far(name) from None
+
+    def _whole_tick(self, number: int) -> int | None:
+        """Return the tick of an integer that is near 0 and a whole number of ticks; None where it is another one."""
+        factor = self.ticks_in_1
+        if factor is None or abs(number) >= IMPLAUSIBLE or abs(number * factor) >= NEAR:
+            return None
+        return number * factor
 
     def _plain(self, numbers: FloatArray) -> TickArray | None:
         """Return the ticks of seconds that do not decrease and are near 0; None where there are others."""

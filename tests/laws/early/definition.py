@@ -106,6 +106,10 @@ class _Intervals(_Discrete):
 
 
 class _Eager(_Discrete):
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        super().__init__(formula, names, ranges)
+        self._found: list[Enclosure] = []
+
     def update(self, t: int, **values: Any) -> list[Verdict]:
         self._take(t, values)
         return self._reported()
@@ -115,7 +119,8 @@ class _Eager(_Discrete):
         return self._reported()
 
     def _reported(self) -> list[Verdict]:
-        return [Verdict(*each) for each in eager_verdicts.verdicts(self._formula, self.known, PERIOD)[-1]]
+        found = eager_verdicts.verdicts(self._formula, self.known, PERIOD, self._found)
+        return [Verdict(*each) for each in found[-1]]
 
 
 class _Causes(_Discrete):
@@ -225,6 +230,10 @@ class _DenseIntervals(_Dense):
 
 
 class _DenseEager(_Dense):
+    def __init__(self, formula: Formula, names: tuple[str, ...], ranges: Mapping[str, Range]) -> None:
+        super().__init__(formula, names, ranges)
+        self._found: list[StepBounds | None] = []
+
     def update(self, t: int, **values: Any) -> list[VerdictRun]:
         self._take(t, values)
         return self._reported()
@@ -235,7 +244,13 @@ class _DenseEager(_Dense):
 
     def _reported(self) -> list[VerdictRun]:
         found = eager_verdicts.dense_verdicts(
-            self._formula, self._updates, self._names, TICK, self._ranges, finished=self._finished
+            self._formula,
+            self._updates,
+            self._names,
+            TICK,
+            self._ranges,
+            finished=self._finished,
+            found=self._found,
         )
         return [VerdictRun(*run) for run in eager_verdicts.runs(found[-1])]
 
