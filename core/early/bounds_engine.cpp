@@ -59,6 +59,7 @@ Tick BoundsEngine::reach() const noexcept {
 
 // A change, with samples up to a tick.
 void BoundsEngine::begin(Tick newest) noexcept {
+    change_ = 1 - change_;
     clear();
     seen_before_ = seen_;
     seen_ = std::max(seen_, newest);
@@ -69,8 +70,8 @@ void BoundsEngine::begin(Tick newest) noexcept {
 
 void BoundsEngine::clear() noexcept {
     for (State& state : nodes_) {
-        state.out[0].clear();
-        state.out[1].clear();
+        state.out[change_][0].clear();
+        state.out[change_][1].clear();
     }
     journal_.clear();
     input_journal_.clear();
@@ -89,12 +90,16 @@ void BoundsEngine::revert() {
         inputs_[input].set(before.begin, before.end, before.value);
     for (WindowSums& sums : sums_)
         sums.forget();
-    for (State& state : nodes_)
+    for (State& state : nodes_) {
         state.undefined = state.undefined_before;
+        state.wrong = none;
+        state.wrong_at = forever;
+    }
     seen_ = seen_before_;
     complete_ = complete_before_;
     ended_ = false;
     clear();
+    change_ = 1 - change_;
 }
 
 // ---- clean-up

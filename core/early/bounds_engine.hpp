@@ -114,9 +114,9 @@ class BoundsEngine {
     // Bounds of what a reference points to, at a tick that is still needed.
     [[nodiscard]] Bounds at(std::uint32_t ref, Tick t) const noexcept;
 
-    // What the last change raised.
+    // What the last change raised that was not taken back.
     [[nodiscard]] const std::vector<Piece>& new_data(std::uint32_t ref, int reg) const noexcept {
-        return nodes_[ref / 2].out[static_cast<std::size_t>(reg) ^ (ref & 1U)];
+        return nodes_[ref / 2].out[change_][static_cast<std::size_t>(reg) ^ (ref & 1U)];
     }
     [[nodiscard]] const Runs& runs(std::uint32_t ref, int reg) const noexcept {
         return nodes_[ref / 2].own[static_cast<std::size_t>(reg) ^ (ref & 1U)];
@@ -131,6 +131,8 @@ class BoundsEngine {
     // The sum of the bounds of all windows, without those that have no end: how far from a sample a
     // value may be that it changes, and that others do not share from there on.
     [[nodiscard]] Tick reach() const noexcept;
+    // Whether operations that may have no value read more than one tick, or the start of the trace.
+    [[nodiscard]] bool reads_start() const noexcept { return fallible_; }
     // The newest tick with samples, -1 before the first.
     [[nodiscard]] Tick seen() const noexcept { return seen_; }
     [[nodiscard]] const Graph& graph() const noexcept { return graph_; }
@@ -158,7 +160,7 @@ class BoundsEngine {
   private:
     struct State {
         Registers own;
-        std::array<std::vector<Piece>, 2> out;
+        std::array<std::array<std::vector<Piece>, 2>, 2> out; // of two changes: see change_
         Tick from = 0;     // the first tick that may still change and is needed
         Tick keep = 0;     // the first tick that anybody reads
         Tick to = forever; // the last tick that anybody will read
@@ -172,6 +174,9 @@ class BoundsEngine {
         };
         Undefined undefined;
         Undefined undefined_before; // the last change
+        // Of what this change made an error, the first step, and the first tick of that.
+        std::uint32_t wrong = none;
+        Tick wrong_at = forever;
         // Of windows over an atom that learns from rows, in the register that takes the least: the
         // values of the atom up to a tick; `unread` where they are not known, and how many pieces
         // to wait until they are read.
@@ -198,6 +203,7 @@ class BoundsEngine {
     bool fallible_ = false;    // the same of nodes that are computed behind the atoms of a row
     bool awaited_ = false;     // one has none somewhere, or had: see State::undefined
     std::vector<State> nodes_;
+    std::size_t change_ = 0; // which of two the last change is; the other is that before
     std::vector<std::uint32_t> atoms_;
     std::vector<StepMap<Bounds>> inputs_;             // what was learned of them
     std::vector<std::vector<std::uint32_t>> readers_; // the atoms that read an input
@@ -233,12 +239,10 @@ class BoundsEngine {
     template <class Value>
     [[nodiscard]] std::optional<Failure> put(Tick t, std::span<const Value> values,
                                              std::span<const std::uint32_t> atoms);
-    [[nodiscard]] std::optional<Failure> assess(std::uint32_t index, Tick l, Tick r, bool supposed);
-    [[nodiscard]] std::optional<Failure> relearn(std::span<const Observation> observations,
-                                                 bool supposed);
-    [[nodiscard]] std::optional<Failure> relearn(std::uint32_t index, Tick l, Tick r,
-                                                 bool supposed = false);
-    [[nodiscard]] std::optional<Failure> remap(std::uint32_t index, Tick l, Tick r);
+    void assess(std::uint32_t index, Tick l, Tick r, bool supposed);
+    void relearn(std::span<const Observation> observations, bool supposed);
+    void relearn(std::uint32_t index, Tick l, Tick r, bool supposed = false);
+    void remap(std::uint32_t index, Tick l, Tick r);
     [[nodiscard]] std::optional<Failure> propagate(bool first);
     void lift_empty(std::uint32_t index);
 
@@ -246,9 +250,9 @@ class BoundsEngine {
     [[nodiscard]] bool reached(std::uint32_t index, Tick t) const noexcept {
         return t < forever && t <= (ended_ ? plus(seen_, nodes_[index].beyond) : seen_);
     }
+    [[nodiscard]] bool is_error(std::uint32_t index, Tick t, bool exact) const noexcept;
     [[nodiscard]] std::optional<Failure> fails(std::uint32_t index) const noexcept;
-    [[nodiscard]] std::optional<Failure> fails(std::uint32_t index, std::uint32_t step, Tick t,
-                                               bool exact) noexcept;
+    void has_no_value(std::uint32_t index, std::uint32_t step, Tick t, bool exact) noexcept;
 
     // sums.cpp
     void lift(State& state, Tick l, Tick r, const Bounds& now);

@@ -66,9 +66,8 @@ BoundsEngine::late_row(Tick t, std::span<const Bounds> values,
     if (failure) { // whether that is an error depends on what may still come
         journaling_ = true;
         std::ranges::copy(values, row_.begin());
-        for (const std::uint32_t i : atoms) {
-            if (const auto error = assess(i, t, t, false)) return attempt(error);
-        }
+        for (const std::uint32_t i : atoms)
+            assess(i, t, t, false);
     }
     return attempt(propagate_row());
 }
@@ -103,8 +102,7 @@ void BoundsEngine::know(std::span<const Observation> observations) {
 
 // What atoms make of observations, all of which are known already. One that reads several of the
 // same ticks is computed once.
-std::optional<BoundsEngine::Failure>
-BoundsEngine::relearn(std::span<const Observation> observations, bool supposed) {
+void BoundsEngine::relearn(std::span<const Observation> observations, bool supposed) {
     for (std::size_t k = 0; k < observations.size(); ++k) {
         const auto& [input, l, r, bounds] = observations[k];
         for (const std::uint32_t i : readers_[input]) {
@@ -112,11 +110,9 @@ BoundsEngine::relearn(std::span<const Observation> observations, bool supposed) 
                 return before.l == l && before.r == r && reads(2 * i, before.input);
             };
             if (std::ranges::any_of(observations.first(k), did)) continue;
-            auto failure = relearn(i, l, r, supposed);
-            if (failure && !supposed) return failure;
+            relearn(i, l, r, supposed);
         }
     }
-    return std::nullopt;
 }
 
 std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observation> observations,
@@ -125,7 +121,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observa
     ended_ = ended;
     journaling_ = partial_ || keeps_undo_;
     know(observations);
-    if (const auto failure = relearn(observations, false)) return attempt(failure);
+    relearn(observations, false);
     return attempt(propagate(false));
 }
 
@@ -149,7 +145,7 @@ BoundsEngine::suppose(std::span<const Observation> observations) {
     begin(seen_);
     journaling_ = true;
     know(observations);
-    (void)relearn(observations, true);
+    relearn(observations, true);
     return attempt(propagate(false));
 }
 
@@ -164,8 +160,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::wrong_constant() {
 }
 
 // Computes an atom again wherever its inputs may have changed.
-std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, Tick l, Tick r,
-                                                           bool supposed) {
+void BoundsEngine::relearn(std::uint32_t index, Tick l, Tick r, bool supposed) {
     for (Tick t = std::max(l, nodes_[index].from); t <= r;) {
         Tick end = r;
         for (const Step& step : node(index).steps) {
@@ -178,30 +173,26 @@ std::optional<BoundsEngine::Failure> BoundsEngine::relearn(std::uint32_t index, 
             row_[step.a] = known.value;
             end = std::min(end, known.end);
         }
-        if (auto failure = assess(index, t, end, supposed)) return failure;
+        assess(index, t, end, supposed);
         if (end >= forever) break;
         t = end + 1;
     }
-    return std::nullopt;
 }
 
 // Computes an atom where a row of inputs holds.
-std::optional<BoundsEngine::Failure> BoundsEngine::assess(std::uint32_t index, Tick l, Tick r,
-                                                          bool supposed) {
+void BoundsEngine::assess(std::uint32_t index, Tick l, Tick r, bool supposed) {
     const auto& steps = node(index).steps;
     const Wrong wrong = enclose(steps, row_, bounds_);
     if (wrong.any != none && !supposed) {
-        const bool exact = wrong.exact != none;
-        const std::uint32_t step = exact ? wrong.exact : wrong.any;
-        if (auto failure = fails(index, step, l, exact)) return failure;
+        if (wrong.any != wrong.exact) has_no_value(index, wrong.any, l, false);
+        if (wrong.exact != none) has_no_value(index, wrong.exact, l, true);
     }
     const Bounds result = bounds_[steps.size() - 1];
     lift(nodes_[index], 0, l, r, result.lower);
     lift(nodes_[index], 1, l, r, -result.upper);
-    return std::nullopt;
 }
 
-std::optional<BoundsEngine::Failure> BoundsEngine::remap(std::uint32_t index, Tick l, Tick r) {
+void BoundsEngine::remap(std::uint32_t index, Tick l, Tick r) {
     State& state = nodes_[index];
     const Node& map = node(index);
     const std::uint32_t b = map.b == none ? map.a : map.b;
@@ -216,13 +207,11 @@ std::optional<BoundsEngine::Failure> BoundsEngine::remap(std::uint32_t index, Ti
             lift(state, 0, t, end, result.lower);
             lift(state, 1, t, end, -result.upper);
         } else {
-            const bool exact = first.lower == first.upper && second.lower == second.upper;
-            if (const auto failure = fails(index, 0, t, exact)) return failure;
+            has_no_value(index, 0, t, first.lower == first.upper && second.lower == second.upper);
         }
         if (end >= forever) break;
         t = end + 1;
     }
-    return std::nullopt;
 }
 
 // At the start of the trace nothing is in a window of the past yet, or too little for a rank.
@@ -247,19 +236,19 @@ std::optional<BoundsEngine::Failure> BoundsEngine::propagate(bool first) {
             if (const auto failure = fails(i)) return failure;
         }
         if (own.kind == Kind::atom) {
-            if (first) (void)relearn(i, 0, forever);
+            if (first) relearn(i, 0, forever);
         } else if (own.kind == Kind::map) {
-            std::optional<Failure> failure;
-            if (first) failure = remap(i, 0, forever);
+            if (first) remap(i, 0, forever);
             for (int reg = 0; reg < 2 && !first; ++reg) {
                 for (const std::uint32_t ref : {own.a, own.b}) {
                     if (ref == none) continue;
-                    for (const Piece& piece : new_data(ref, reg)) {
-                        if (!failure) failure = remap(i, piece.l, piece.r);
-                    }
+                    for (const Piece& piece : new_data(ref, reg))
+                        remap(i, piece.l, piece.r);
                 }
             }
-            if (failure && !first) return failure;
+            if (awaited_ && !first) { // the earliest of all pieces, which come in any order
+                if (const auto failure = fails(i)) return failure;
+            }
         } else if (own.kind == Kind::sum) {
             const auto failure = add_up(i, first);
             if (failure && !first) return failure;

@@ -10,7 +10,8 @@ void BoundsEngine::change(State& state, int reg, Runs::Place place, Run run, dou
     Runs& own = state.own[static_cast<std::size_t>(reg)];
     if (journaling_) journal_.push_back({&own, run.begin, run.end, run.value});
     own.set(place, run.begin, run.end, now);
-    state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
+    state.out[change_][static_cast<std::size_t>(reg)].push_back(
+        {run.begin, run.end, run.value, now});
 }
 
 void BoundsEngine::change(State& state, int reg, Run run, double now) {
@@ -44,13 +45,14 @@ void BoundsEngine::append(State& state, int reg, Tick t, double now) {
     if (rest.begin != t || journaling_) return raise_end(state, reg, t, t, now);
     if (!(rest.value < now)) return;
     own.extend(now);
-    state.out[static_cast<std::size_t>(reg)].push_back({t, t, rest.value, now});
+    state.out[change_][static_cast<std::size_t>(reg)].push_back({t, t, rest.value, now});
 }
 
 // Raises what is below where values never rise from one tick to the next.
 void BoundsEngine::raise_end(State& state, int reg, Tick l, Tick r, double now) {
     const auto raised = [&](const Run& run) {
-        state.out[static_cast<std::size_t>(reg)].push_back({run.begin, run.end, run.value, now});
+        state.out[change_][static_cast<std::size_t>(reg)].push_back(
+            {run.begin, run.end, run.value, now});
     };
     if (journaling_ || !state.own[static_cast<std::size_t>(reg)].raise_end(l, r, now, raised)) {
         lift(state, reg, l, r, now);
@@ -88,19 +90,25 @@ void BoundsEngine::pass(std::uint32_t index, int reg) {
     }
     const Runs& hold = runs(own.a, reg);
     const Runs& goal = runs(own.b, reg);
-    for (const std::uint32_t ref : {own.a, own.b}) {
-        for (const Piece& piece : new_data(ref, reg)) {
-            if (own.kind == Kind::until) {
-                up ? until<true>(state, reg, hold, goal, piece.l, piece.r)
-                   : until<false>(state, reg, hold, goal, piece.l, piece.r);
-            } else if (own.kind == Kind::since) {
-                up ? since<true, false>(state, reg, hold, goal, piece.l, piece.r)
-                   : since<false, false>(state, reg, hold, goal, piece.l, piece.r);
-            } else {
-                up ? since<true, true>(state, reg, hold, goal, piece.l, piece.r)
-                   : since<false, true>(state, reg, hold, goal, piece.l, piece.r);
-            }
+    const auto walk = [&](const Piece& piece) {
+        if (own.kind == Kind::until) {
+            up ? until<true>(state, reg, hold, goal, piece.l, piece.r)
+               : until<false>(state, reg, hold, goal, piece.l, piece.r);
+        } else if (own.kind == Kind::since) {
+            up ? since<true, false>(state, reg, hold, goal, piece.l, piece.r)
+               : since<false, false>(state, reg, hold, goal, piece.l, piece.r);
+        } else {
+            up ? since<true, true>(state, reg, hold, goal, piece.l, piece.r)
+               : since<false, true>(state, reg, hold, goal, piece.l, piece.r);
         }
+    };
+    const auto& of_hold = new_data(own.a, reg);
+    std::ranges::for_each(of_hold, walk);
+    for (const Piece& piece : new_data(own.b, reg)) {
+        // A sample nearly always changes both at the same ticks, and both are looked at.
+        const bool done =
+            !of_hold.empty() && piece.l == of_hold.front().l && piece.r == of_hold.front().r;
+        if (!done) walk(piece);
     }
 }
 

@@ -82,8 +82,9 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_windows(std::uint32_t ind
         const Bounds sum = sums_[index].at(end, [&](Tick i) { return at(own.a, i); });
         if (!Interval::undefined(sum)) {
             lift(state, t, t, sum);
-        } else if (const auto failure = fails(index, 0, t, true)) {
-            return failure;
+        } else {
+            has_no_value(index, 0, t, true);
+            if (const auto failure = fails(index)) return failure;
         }
         ++t;
     }
@@ -103,7 +104,8 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_all(std::uint32_t index, 
     for (; t + own.high <= seen_; ++t) {
         sum = WindowSums::Add::join(at(own.a, t + own.high), sum);
         if (Interval::undefined(sum)) {
-            if (const auto failure = fails(index, 0, t, true)) return failure;
+            has_no_value(index, 0, t, true);
+            if (const auto failure = fails(index)) return failure;
             sum = bounds::anything;
         }
         lift(state, t, t, sum);

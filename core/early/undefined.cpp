@@ -4,25 +4,42 @@
 #include "bounds_engine.hpp"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 namespace rtamt::early {
 
-std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index) const noexcept {
-    const auto& [exact, any, step] = nodes_[index].undefined;
-    if (reached(index, exact)) return Failure{index, step, exact};
-    const Tick horizon = std::max<Tick>(0, node(index).horizon);
-    if (reached(index, any) && plus(any, horizon) <= complete_) return Failure{index, step, any};
-    return std::nullopt;
+bool BoundsEngine::is_error(std::uint32_t index, Tick t, bool exact) const noexcept {
+    return reached(index, t) &&
+           (exact || plus(t, std::max<Tick>(0, node(index).horizon)) <= complete_);
 }
 
-std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index, std::uint32_t step,
-                                                         Tick t, bool exact) noexcept {
-    auto& undefined = nodes_[index].undefined;
+// The first step, and of that the earliest tick.
+std::optional<BoundsEngine::Failure> BoundsEngine::fails(std::uint32_t index) const noexcept {
+    const State& state = nodes_[index];
+    const auto& [exact, any, step] = state.undefined; // `any` is not later than `exact`
+    std::pair found(state.wrong, state.wrong_at);
+    if (is_error(index, any, false)) {
+        found = std::min(found, std::pair(step, any));
+    } else if (is_error(index, exact, true)) {
+        found = std::min(found, std::pair(step, exact));
+    }
+    if (found.first == none) return std::nullopt;
+    return Failure{index, found.first, found.second};
+}
+
+// Notes a step without a value, which fails() finds where that is an error.
+void BoundsEngine::has_no_value(std::uint32_t index, std::uint32_t step, Tick t,
+                                bool exact) noexcept {
+    State& state = nodes_[index];
+    auto& undefined = state.undefined;
     if (exact) undefined.exact = std::min(undefined.exact, t);
     undefined.any = std::min(undefined.any, t);
     undefined.step = step;
     awaited_ = true;
-    return fails(index);
+    if (!is_error(index, t, exact)) return;
+    std::tie(state.wrong, state.wrong_at) =
+        std::min(std::pair(state.wrong, state.wrong_at), std::pair(step, t));
 }
 
 std::optional<BoundsEngine::Failure> BoundsEngine::close_inputs(Tick tick) noexcept {

@@ -280,6 +280,32 @@ TEST_CASE("an operation without a value is named, and changes nothing") {
     CHECK(engine.learn(std::span(&closed, 1), 4));
 }
 
+TEST_CASE(
+    "of several parts and ticks without a value the first part is named, and its first tick") {
+    Graph graph;
+    graph.inputs = 2;
+    Node sum; // sqrt(x) + sqrt(y)
+    sum.steps = {{Opcode::input, 0},
+                 {Opcode::sqrt, 0},
+                 {Opcode::input, 1},
+                 {Opcode::sqrt, 2},
+                 {Opcode::add, 1, 3}};
+    graph.nodes = {sum};
+    BoundsEngine engine(graph, {}, BoundsEngine::Arrival::pieces);
+    const Observation late[] = {
+        {1, 2, 2, {-1, -1}}, {0, 6, 6, {-1, -1}}, {0, 4, 4, {-1, -1}}, {1, 3, 3, {-1, -1}}};
+    for (int round = 0; round < 2; ++round) {
+        const auto failure = engine.learn(late, 6);
+        CHECK((failure && failure->step == 1 && failure->tick == 4));
+    }
+    const Observation one[] = {{1, 2, 2, {-1, -1}}};
+    const auto failure = engine.learn(one, 6);
+    CHECK((failure && failure->step == 3 && failure->tick == 2));
+    const Observation sound[] = {{0, 0, 6, {4, 4}}, {1, 0, 6, {9, 9}}};
+    CHECK(!engine.learn(sound, 6));
+    CHECK((engine.at(0, 4) == Bounds{5, 5}));
+}
+
 TEST_CASE("the number of pieces does not depend on the bounds of windows") {
     for (const Kind kind : {Kind::least, Kind::since}) {
         std::array<double, 2> pieces{};
