@@ -1,8 +1,8 @@
 // What is known of all inputs at the ticks of samples that others may still join or make more
 // precise, in discrete time.
 //
-// Cost: constant at the newest ticks where none is missing, else a search; a row that comes before
-// others moves these. Memory: a tick and bounds of every input for each row.
+// Cost: constant near the newest tick, else a search; a row that comes before others moves these.
+// Memory: a tick and bounds of every input for each row.
 #pragma once
 
 #include "../values/bounds.hpp"
@@ -44,11 +44,13 @@ class LateRows {
         rows_.reserve(rows_.size() + values.size());
         ticks_.insert(ticks_.begin() + static_cast<std::ptrdiff_t>(place), t);
         rows_.insert(rows_.begin() + first_of(place), values.begin(), values.end());
+        sought_ = {t, place};
     }
 
     // Forgets the rows before a tick; their memory once they are as many as the others.
     void drop_before(Tick t) {
         head_ = find(t);
+        sought_ = {};
         if (2 * head_ < ticks_.size()) return;
         rows_.erase(rows_.begin(), rows_.begin() + first_of(head_));
         ticks_.erase(ticks_.begin(), ticks_.begin() + static_cast<std::ptrdiff_t>(head_));
@@ -62,7 +64,10 @@ class LateRows {
     void transfer(Snapshot& snapshot) {
         std::size_t size = ticks_.size() - head_;
         snapshot.count(size, sizeof(Tick) + ranges_.size() * sizeof(Bounds));
-        if (snapshot.loading()) head_ = 0;
+        if (snapshot.loading()) {
+            head_ = 0;
+            sought_ = {};
+        }
         ticks_.resize(head_ + size);
         rows_.resize(ticks_.size() * ranges_.size());
         Tick next = 0;
@@ -80,6 +85,11 @@ class LateRows {
     std::vector<Tick> ticks_; // in order
     std::vector<Bounds> rows_;
     std::size_t head_ = 0; // rows before it are forgotten
+    struct Sought {
+        Tick tick = -forever; // none
+        std::size_t place = 0;
+    };
+    mutable Sought sought_; // the last result of find()
 
     [[nodiscard]] bool is_at(std::size_t place, Tick t) const noexcept {
         return place < ticks_.size() && ticks_[place] == t;
@@ -91,13 +101,19 @@ class LateRows {
 
     // The place of the first row at a tick or later.
     [[nodiscard]] std::size_t find(Tick t) const noexcept {
+        if (sought_.tick != t) sought_ = {t, search(t)};
+        return sought_.place;
+    }
+
+    [[nodiscard]] std::size_t search(Tick t) const noexcept {
+        constexpr std::size_t near = 16;
         const std::size_t size = ticks_.size();
         if (head_ == size || ticks_.back() < t) return size;
-        // As far from the end, if none is missing.
-        const auto back = static_cast<std::size_t>(ticks_.back() - t);
-        if (back < size - head_) {
-            const std::size_t place = size - 1 - back;
-            if (ticks_[place] == t) return place;
+        if (size - head_ >= near && ticks_.back() - t < static_cast<Tick>(near)) {
+            std::size_t later = 0;
+            for (std::size_t i = 1; i <= near; ++i) // without branches, which are unpredictable
+                later += ticks_[size - i] >= t ? 1U : 0U;
+            return size - later;
         }
         const auto head = ticks_.begin() + static_cast<std::ptrdiff_t>(head_);
         return static_cast<std::size_t>(std::lower_bound(head, ticks_.end(), t) - ticks_.begin());

@@ -79,14 +79,11 @@ bool Runs::raise_end(Tick l, Tick r, double value, Raised&& raised) {
     Entry& entry = directory_.back();
     Chunk& chunk = *entry.chunk;
     const int last = chunk.end - 1;
-    int place = last;
-    while (chunk.start[place] > r) {
-        if (place == chunk.begin) return false;
-        --place;
-    }
+    if (entry.first > r) return false;
+    int place = find(chunk, r);
     const double rest = chunk.value[place];
     if (!(rest < value)) return true;
-    int right = place + 1;                               // the first run behind those raised
+    const int right = place + 1;                         // the first run behind those raised
     while (place > chunk.begin && chunk.start[place] > l // the first run that is raised
            && chunk.value[place - 1] < value)
         --place;
@@ -97,32 +94,7 @@ bool Runs::raise_end(Tick l, Tick r, double value, Raised&& raised) {
         raised(Run{i == place ? begin : chunk.start[i], i < right - 1 ? chunk.start[i + 1] - 1 : r,
                    chunk.value[i]});
     }
-    const bool splits = chunk.start[place] < begin;
-    if (splits) ++place;
-    const bool joins = !splits && place > chunk.begin && chunk.value[place - 1] == value;
-    const bool leaves = right > last || chunk.start[right] > r + 1; // a rest of the last one
-    const int next = place + (joins ? 0 : 1) + (leaves ? 1 : 0);
-    if (right <= last) {
-        if (!leaves && chunk.value[right] == value) ++right; // which continues with this value
-        if (next > right) {
-            std::copy_backward(chunk.start + right, chunk.start + chunk.end,
-                               chunk.start + chunk.end + (next - right));
-            std::copy_backward(chunk.value + right, chunk.value + chunk.end,
-                               chunk.value + chunk.end + (next - right));
-        } else if (next < right) {
-            std::copy(chunk.start + right, chunk.start + chunk.end, chunk.start + next);
-            std::copy(chunk.value + right, chunk.value + chunk.end, chunk.value + next);
-        }
-    }
-    chunk.end += next - right;
-    if (!joins) {
-        chunk.start[place] = begin;
-        chunk.value[place++] = value;
-    }
-    if (leaves) {
-        chunk.start[place] = r + 1;
-        chunk.value[place] = rest;
-    }
+    replace(chunk, place, right, begin, r, value, rest);
     changed(directory_.size() - 1);
     return true;
 }

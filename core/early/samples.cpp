@@ -91,6 +91,12 @@ Tick Samples::certain(std::size_t input) const noexcept {
     return std::max(now_.closed, column.back().time);
 }
 
+// Whether a sample is not committed; if it is, its own tick was collected.
+bool Samples::is_new(std::size_t input, Tick time) const noexcept {
+    return std::ranges::any_of(
+        added_, [&](const Added& each) { return each.input == input && each.time == time; });
+}
+
 void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
     observations.clear();
     if (!now_.start) return;
@@ -108,7 +114,8 @@ void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
              k < column.size() && column[k].time <= now; ++k) {
             Tick end = now;
             if (k + 1 < column.size()) end = std::min(end, column[k + 1].time - 1);
-            learn(i, std::max(column[k].time, before + 1), end, column[k].bounds);
+            const bool told = lateness_ && !starts && !is_new(i, column[k].time);
+            learn(i, std::max(column[k].time + (told ? 1 : 0), before + 1), end, column[k].bounds);
         }
         settled_[i] = relative(now);
         for (std::size_t k = starts ? after(column, now) : column.size(); k < column.size(); ++k)

@@ -103,6 +103,7 @@ class Samples {
     [[nodiscard]] Tick relative(Tick time) const noexcept;
     [[nodiscard]] Tick absolute(Tick tick) const noexcept;
     [[nodiscard]] Tick certain(std::size_t input) const noexcept;
+    [[nodiscard]] bool is_new(std::size_t input, Tick time) const noexcept;
     [[nodiscard]] std::optional<Tick> first_start() const noexcept;
     void find_start() noexcept;
 };

@@ -60,6 +60,13 @@ void StepMap<Value>::set(Place p, Tick l, Tick r, const Value& value) {
     const Value old = entry.chunk->value[p.index];
     if (old == value) return;
     changed(p.chunk);
+    // Nearly always the runs before and after it lie in its chunk, which has room.
+    Chunk& chunk = *entry.chunk;
+    if ((p.index > chunk.begin || p.chunk == head_) && chunk.end + 2 <= capacity && r < forever &&
+        (p.index + 1 < chunk.end || p.chunk + 1 == directory_.size())) {
+        return replace(chunk, p.index, p.index + 1, std::max(l, chunk.start[p.index]), r, value,
+                       old);
+    }
     const bool from_begin = l <= entry.chunk->start[p.index];
     const bool to_end = r >= end_of(p);
     const auto left = from_begin ? before(p) : std::nullopt;

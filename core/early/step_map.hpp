@@ -7,6 +7,8 @@
 // a border is added or removed. Memory: a tick and a value for each run.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -112,6 +114,12 @@ class StepMap {
     mutable std::vector<Summary> groups_; // of so many chunks each
 
     void changed(std::size_t chunk) noexcept;
+    // The last run of a chunk that begins at a tick or before, or its first run.
+    [[nodiscard]] static int find(const Chunk& chunk, Tick t) noexcept;
+    // Gives one value to runs [place, right) of a chunk from a tick on up to r; `rest` is the value
+    // behind r. The chunk has room for two more.
+    static void replace(Chunk& chunk, int place, int right, Tick l, Tick r, const Value& value,
+                        const Value& rest) noexcept;
 
   private:
     [[nodiscard]] Tick end_of(Place p) const noexcept;
@@ -150,7 +158,11 @@ inline auto StepMap<Value>::find(Tick t) const noexcept -> Place {
             }
         }
     }
-    const Chunk& chunk = *directory_[c].chunk;
+    return {c, find(*directory_[c].chunk, t)};
+}
+
+template <class Value>
+inline int StepMap<Value>::find(const Chunk& chunk, Tick t) noexcept {
     int high = chunk.end - 1;
     if (chunk.start[high] > t) {
         constexpr int near = 8;
@@ -160,7 +172,7 @@ inline auto StepMap<Value>::find(Tick t) const noexcept -> Place {
             int later = 0;
             for (int i = 0; i < near; ++i) // without branches, which are unpredictable
                 later += chunk.start[high - i] > t ? 1 : 0;
-            return {c, high - later};
+            return high - later;
         }
         for (int count = high - low + 1; count > 1;) {
             const int half = count / 2;
@@ -169,7 +181,7 @@ inline auto StepMap<Value>::find(Tick t) const noexcept -> Place {
         }
         high = low < chunk.begin ? chunk.begin : low;
     }
-    return {c, high};
+    return high;
 }
 
 template <class Value>
@@ -177,6 +189,44 @@ inline Tick StepMap<Value>::end_of(Place p) const noexcept {
     const Chunk& chunk = *directory_[p.chunk].chunk;
     if (p.index + 1 < chunk.end) return chunk.start[p.index + 1] - 1;
     return p.chunk + 1 < directory_.size() ? directory_[p.chunk + 1].first - 1 : forever;
+}
+
+template <class Value>
+inline void StepMap<Value>::replace(Chunk& chunk, int place, int right, Tick l, Tick r,
+                                    const Value& value, const Value& rest) noexcept {
+    const bool splits = chunk.start[place] < l;
+    if (splits) ++place;
+    const bool joins = !splits && place > chunk.begin && chunk.value[place - 1] == value;
+    const bool leaves = right == chunk.end || chunk.start[right] > r + 1; // a rest of the last one
+    const int next = place + (joins ? 0 : 1) + (leaves ? 1 : 0);
+    if (right < chunk.end) {
+        right += !leaves && chunk.value[right] == value ? 1 : 0; // which continues with this value
+        constexpr int few = 8;
+        if (chunk.end - right <= few && std::max(right, next) + few <= capacity) {
+            // As many at once, whatever they are: the number of those there are is unpredictable.
+            std::array<Tick, few> starts{};
+            std::array<Value, few> values{};
+            std::copy_n(chunk.start + right, few, starts.begin());
+            std::copy_n(chunk.value + right, few, values.begin());
+            std::copy_n(starts.begin(), few, chunk.start + next);
+            std::copy_n(values.begin(), few, chunk.value + next);
+        } else if (next > right) {
+            std::copy_backward(chunk.start + right, chunk.start + chunk.end,
+                               chunk.start + chunk.end + (next - right));
+            std::copy_backward(chunk.value + right, chunk.value + chunk.end,
+                               chunk.value + chunk.end + (next - right));
+        } else if (next < right) {
+            std::copy(chunk.start + right, chunk.start + chunk.end, chunk.start + next);
+            std::copy(chunk.value + right, chunk.value + chunk.end, chunk.value + next);
+        }
+    }
+    chunk.end += next - right;
+    // Without branches, which are unpredictable.
+    place -= joins ? 1 : 0;
+    chunk.start[place] = joins ? chunk.start[place] : l;
+    chunk.value[place] = value;
+    chunk.start[place + 1] = leaves ? r + 1 : chunk.start[place + 1];
+    chunk.value[place + 1] = leaves ? rest : chunk.value[place + 1];
 }
 
 // What samples in order do.
