@@ -63,6 +63,12 @@ void DiscreteMonitor::follow(const Graph& graph, DiscreteSettings settings) {
 
 // ---- samples ------------------------------------------------------------------------------------
 
+bool DiscreteMonitor::begin_at(Tick index) noexcept {
+    if (!late() || times_.newest() >= 0 || engine_->reads_start()) return false;
+    times_.begin_at(index);
+    return true;
+}
+
 bool DiscreteMonitor::in_order(Tick index) const noexcept {
     const Tick newest = times_.newest();
     return newest < 0 || index == newest + 1 || (index > newest && index - 1 <= closed_);
@@ -134,21 +140,27 @@ void DiscreteMonitor::advance(Tick index, double time) {
 void DiscreteMonitor::note(Tick before) {
     if (zone_) return; // it provides the changes
     const Tick newest = times_.newest();
-    for (std::size_t i = 0; i < outputs_.size(); ++i) {
-        if (decides_) {
-            news_[i].clear();
-            if (eager_) {
-                waiting_[i].collect(*eager_, outputs_[i], newest, newest, news_[i]);
-            } else {
-                waiting_[i].collect(*engine_, outputs_[i], newest, newest, news_[i]);
-            }
-            if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
-            continue;
+    for (std::size_t i = 0; decides_ && i < outputs_.size(); ++i) {
+        news_[i].clear();
+        if (eager_) {
+            waiting_[i].collect(*eager_, outputs_[i], newest, newest, news_[i]);
+        } else {
+            waiting_[i].collect(*engine_, outputs_[i], newest, newest, news_[i]);
         }
-        changes_[i].collect(*engine_, outputs_[i], before, newest);
+        if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
     }
+    unread_ = !decides_;
+    before_ = before;
     if (at_start_) at_start_->read(*engine_, final_up_to());
     if (causes_) causes_->read(*engine_, *at_start_, newest);
+}
+
+// What the engine keeps until its next change, which few ask for.
+void DiscreteMonitor::read_changes() const {
+    if (!unread_) return;
+    unread_ = false;
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+        changes_[i].collect(*engine_, outputs_[i], before_, times_.newest());
 }
 
 Tick DiscreteMonitor::lag(std::size_t output) const noexcept {
@@ -161,6 +173,7 @@ Tick DiscreteMonitor::final_up_to() const noexcept {
 }
 
 void DiscreteMonitor::settle() {
+    read_changes();
     std::ranges::fill(wanted_, forever);
     const Tick closed = final_up_to();
     Tick oldest = closed;
@@ -265,6 +278,7 @@ Tick DiscreteMonitor::held(std::size_t output) const noexcept {
 
 std::vector<BoundChange> DiscreteMonitor::changes(std::size_t output) const {
     if (decides_) return {};
+    read_changes();
     auto found = zone_ ? zone_->changes(output) : changes_[output].runs(*engine_, outputs_[output]);
     for (BoundChange& run : found)
         run.bounds = unsigned_zeros(run.bounds);
@@ -323,6 +337,11 @@ std::size_t DiscreteMonitor::bytes() const noexcept {
 // ---- state --------------------------------------------------------------------------------------
 
 void DiscreteMonitor::transfer(Snapshot& snapshot) {
+    if (snapshot.loading()) {
+        unread_ = false;
+    } else {
+        read_changes();
+    }
     if (zone_) {
         zone_->transfer(snapshot);
     } else if (eager_) {

@@ -52,6 +52,10 @@ class DiscreteMonitor {
     [[nodiscard]] std::optional<Tick> place(double time) const noexcept {
         return times_.place(time);
     }
+    // Gives the first sample an index, so that earlier ones may follow. Returns false, with nothing
+    // done, where what has no value depends on the start of the trace.
+    bool begin_at(Tick index) noexcept;
+
     // Whether a sample at this time is in order.
     [[nodiscard]] bool in_order(Tick index) const noexcept;
 
@@ -145,9 +149,11 @@ class DiscreteMonitor {
     std::vector<Bounds> row_;           // of a sample that may be late
     std::vector<std::uint32_t> given_;  // its inputs
     bool decides_;
-    std::vector<std::vector<Decision>> news_; // by output
-    std::vector<BoundChanges> changes_;       // by output
-    std::vector<Tick> open_;                  // by output, the first tick without a verdict
+    std::vector<std::vector<Decision>> news_;   // by output
+    mutable std::vector<BoundChanges> changes_; // by output
+    mutable bool unread_ = false;               // those of the last sample, before which the newest
+    Tick before_ = -1;                          // was this one
+    std::vector<Tick> open_;                    // by output, the first tick without a verdict
     std::vector<Tick> kept_; // by output, the first tick whose bounds the end still gives
     std::vector<Tick> wanted_;
     Tick closed_ = -1;
@@ -161,6 +167,7 @@ class DiscreteMonitor {
     void follow(const Graph& graph, DiscreteSettings settings);
     void advance(Tick index, double time);
     void note(Tick before);
+    void read_changes() const;
     void decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end);
 };
 

@@ -24,12 +24,15 @@ class SampleTimes {
     // The index of a time, if it is on the grid that the newest sample continues.
     [[nodiscard]] std::optional<Tick> place(double time) const noexcept {
         if (!std::isfinite(time)) return std::nullopt;
-        if (newest_ < 0) return 0;
+        if (newest_ < 0) return first_;
         const double steps = std::round((time - last_) / period_);
         if (std::fabs(steps) > farthest) return std::nullopt;
         if (std::fabs(time - last_ - steps * period_) > tolerance_ * period_) return std::nullopt;
         return newest_ + static_cast<Tick>(steps);
     }
+
+    // The index of the first sample, which has not come yet; 0 otherwise.
+    void begin_at(Tick index) noexcept { first_ = index; }
 
     // The last index whose time is not after this one.
     [[nodiscard]] Tick floor(double time) const noexcept {
@@ -110,6 +113,7 @@ class SampleTimes {
     static constexpr double farthest = 281'474'976'710'656.0; // 2^48
 
     std::vector<Anchor> anchors_; // samples that do not continue the one before
+    Tick first_ = 0;
     Tick newest_ = -1;
     double last_ = 0.0;
     double period_;

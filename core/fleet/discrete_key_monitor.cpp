@@ -138,6 +138,7 @@ class DiscreteEarly final : public KeyMonitor {
     std::optional<double> mark_; // the last watermark
     std::vector<Seen> early_;    // that came before it is known where the trace starts, in order
     std::optional<early::DiscreteMonitor> rehearsal_; // which has taken them
+    bool begins_anywhere_ = false;                    // whether it takes earlier ones
     // What these changed when the trace started, until the next sample.
     std::optional<std::vector<early::BoundChange>> noted_;
     std::vector<std::pair<Tick, double>> moments_; // the first samples and their times, likewise
@@ -228,6 +229,14 @@ class DiscreteEarly final : public KeyMonitor {
         return seen.tick + static_cast<Tick>(steps);
     }
 
+    // That of a time before all others.
+    [[nodiscard]] std::optional<Tick> preceding(const Seen& seen, double time) const noexcept {
+        const auto place = rehearsal_->place(time);
+        return begins_anywhere_ && place && *place > rehearsal_->closed() && *place < seen.tick
+                   ? place
+                   : std::nullopt;
+    }
+
     // Whether a sample would be the same one if it had come in order.
     [[nodiscard]] bool fits(std::vector<Seen>::const_iterator after, double time, Tick tick) const {
         return rehearsal_->place(time) == tick &&
@@ -238,8 +247,9 @@ class DiscreteEarly final : public KeyMonitor {
     // for one that cannot be taken then.
     void keep(Seen&& seen) {
         const auto after = std::ranges::upper_bound(early_, seen.time, {}, &Seen::time);
-        if (rehearsal_ && after != early_.begin()) {
-            const auto tick = following(*std::prev(after), seen.time);
+        if (rehearsal_) {
+            const auto tick = after == early_.begin() ? preceding(*after, seen.time)
+                                                      : following(*std::prev(after), seen.time);
             if (tick && fits(after, seen.time, *tick)) {
                 (void)learn(*rehearsal_, seen);
                 seen.tick = *tick;
@@ -249,6 +259,7 @@ class DiscreteEarly final : public KeyMonitor {
         }
         early_.insert(after, std::move(seen));
         rehearsal_.emplace(program_.groups.front().graph, settings_of(program_));
+        begins_anywhere_ = rehearsal_->begin_at(*program_.lateness);
         for (Seen& each : early_) {
             (void)learn(*rehearsal_, each);
             each.tick = rehearsal_->newest();

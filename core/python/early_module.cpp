@@ -137,6 +137,9 @@ void add_early_monitor(const nb::module_& module, const Exceptions& exceptions) 
              "Violation and satisfaction that the newest sample causes for an output at a sample.")
         .def("caused", &EarlyMonitor::caused, nb::arg("output"),
              "The same as runs (first, last, violation, satisfaction), where there is any.")
+        .def("begin_at", &EarlyMonitor::begin_at, nb::arg("sample"),
+             "Number the first sample, so that earlier ones may follow. Return False where it must "
+             "be 0.")
         .def("place", &EarlyMonitor::place, nb::arg("time"), "The index of a time, or None.")
         .def("known", &EarlyMonitor::known, nb::arg("variable"), nb::arg("sample"),
              "What is known of an input at a sample.")

@@ -108,6 +108,11 @@ nb::object EarlyMonitor::learn(double time,
     return checked(failure ? fail(*failure, *index, time) : result());
 }
 
+bool EarlyMonitor::begin_at(early::Tick sample) {
+    guard_.require_idle();
+    return sample >= 0 && sample < early::forever && monitor_.begin_at(sample);
+}
+
 nb::object EarlyMonitor::watermark(double time) {
     guard_.require_idle();
     if (const auto failure = monitor_.watermark(time)) {

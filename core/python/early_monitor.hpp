@@ -72,6 +72,7 @@ class EarlyMonitor : public EarlyBackend {
     // Runs (first, last, violation, satisfaction); the last one may never end.
     [[nodiscard]] std::vector<std::tuple<early::Tick, early::Tick, double, double>>
     caused(std::size_t output) const;
+    bool begin_at(early::Tick sample);
     [[nodiscard]] std::optional<early::Tick> place(double time) const;
     [[nodiscard]] std::pair<double, double> known(std::uint32_t input, early::Tick sample) const;
     [[nodiscard]] double time(early::Tick sample) const;

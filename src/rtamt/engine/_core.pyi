@@ -409,6 +409,9 @@ class EarlyMonitor:
     def caused(self, output: int) -> list[tuple[int, int, float, float]]:
         """The same as runs (first, last, violation, satisfaction), where there is any."""
 
+    def begin_at(self, sample: int) -> bool:
+        """Number the first sample, so that earlier ones may follow. Return False where it must be 0."""
+
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""
 

@@ -358,6 +358,10 @@ class PythonEarlyMonitor:
             for first, last, low, high in self._reports[output]
         ]
 
+    def begin_at(self, sample: int) -> bool:  # noqa: ARG002 - see the core
+        """Return False: the first sample is number 0."""
+        return False
+
     def place(self, time: float) -> int | None:
         """The index of a time, or None."""
         if not isfinite(time) or self.newest < 0:

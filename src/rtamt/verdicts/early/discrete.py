@@ -71,10 +71,10 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """Return a time in seconds and as it was given; raise :class:`TraceError` for anything else."""
         stamp = self._clock.read(time, self._count)
         if stamp is None:
-            return Timestamp(read_time(time, self.samples, None))
+            return Timestamp(read_time(time, self._count, None))
         if not isfinite(stamp.seconds):
             raise TraceError(
-                f"time is {stamp.seconds} at sample {self.samples}: give a finite number of seconds"
+                f"time is {stamp.seconds} at sample {self._count}: give a finite number of seconds"
             )
         return stamp
 

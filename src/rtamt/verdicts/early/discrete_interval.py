@@ -149,7 +149,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
-        index = self.samples
+        index = self._count
         stamp = self._stamp(time)
         seconds = stamp.seconds
         known = self._bounds_of(flat, index, seconds)
@@ -187,7 +187,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         samples, rehearsal = [(time, known)], self._rehearsal
         if rehearsal is None or not rehearsal.fits(time, float(self._step), self._tolerance):
             samples = sorted([*self._early, *samples], key=lambda sample: sample[0])
-            rehearsal = Rehearsal(self._session.open())
+            anywhere = not (self._replays or self._channels)
+            rehearsal = Rehearsal(self._session.open(), self._late if anywhere else None)
         remembered = {name: getattr(self, name) for name in self._remembered}
         backend = inner_of(self._backend)
         try:
@@ -195,8 +196,14 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             self._connect(rehearsal.backend)
             for each in samples:
                 self._check_late(each[0])
-                self._learn(*each)
-                rehearsal.add(each[0], self._backend.place(each[0]))
+                place = self._backend.place(each[0])
+                try:
+                    self._learn(*each)
+                except self._undefined as error:
+                    step, wrong = error.args
+                    error.args = step, rehearsal.number(wrong, place)
+                    raise
+                rehearsal.add(each[0], place)
             rehearsal.backend = inner_of(self._backend)
             rehearsal.events, rehearsal.snapshots = self._events, self._snapshots
         finally:

@@ -229,6 +229,71 @@ def test_error_that_a_late_sample_causes_has_the_time_of_the_sample_without_a_va
         monitor.update(10.5, y=-2.0)
 
 
+def test_first_samples_in_the_reverse_order_need_one_rehearsal_and_give_the_bounds_of_those_in_order(
+    monkeypatch,
+):
+    spec = rtamt.parse("historically[0:3](sqrt(x) >= 1) since y > 0", period=1)
+    reverse, other = (spec.monitor(verdict="interval", lateness=100) for _ in range(2))
+    opened = []
+    session = reverse._session.open
+    monkeypatch.setattr(reverse._session, "open", lambda: opened.append(session()) or opened[-1])
+    samples = [(t, {"x": 1.0 + t % 7, "y": float(t % 3)}) for t in range(1, 101)]
+    for (last, ends), (first, begins) in zip(reversed(samples), samples, strict=True):
+        reverse.update(last, **ends)
+        other.update(first, **begins)
+    assert len(opened) == 1
+    for monitor in (reverse, other):
+        with pytest.raises(EvaluationError, match=r"'sqrt\(x\)' has no value at sample 0, time 0 s"):
+            monitor.update(0, x=-1.0)
+        monitor.update(0, x=1.0, y=1.0)
+        assert monitor.changes() == []
+        monitor.update(101, x=2.0, y=1.0)
+        assert monitor.samples == 102
+    assert reverse.changes() == other.changes() != []
+    assert reverse.finish() == other.finish()
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_first_samples_in_the_reverse_order_fail_where_an_operation_depends_on_the_start(backend):
+    spec = rtamt.parse("sqrt(delay[1](x, 4)) >= 0", period=1, backend=backend)
+    monitor = spec.monitor(verdict="interval", lateness=9)
+    monitor.update(5, x=1.0)
+    monitor.update(4, x=1.0)
+    with pytest.raises(EvaluationError, match="has no value at sample 1, time 4 s"):
+        monitor.update(3, x=-1.0)
+    monitor.update(3, x=9.0)
+    monitor.finish()
+    assert [monitor.interval(t) for t in (3, 4, 5)] == [Interval(v, v) for v in (2.0, 3.0, 1.0)]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    ("time", "x", "message"),
+    [
+        (2, 50, "'x' is 50 at sample 2, time 2 s, outside its declared range [0, 10]"),
+        (inf, 5.0, "time is inf at sample 2: give a finite number of seconds"),
+        ("noon", 5.0, "time is 'noon' at sample 2, expected a number of seconds"),
+    ],
+)
+def test_error_names_the_number_of_a_sample_that_would_wait_for_the_start(backend, time, x, message):
+    monitor = rtamt.parse("x >= 1", period=1, backend=backend).monitor(**SETTINGS, lateness=4)
+    monitor.update(0, x=1.0)
+    monitor.update(1, x=1.0)
+    with pytest.raises(StlError) as caught:
+        monitor.update(time, x=x)
+    assert str(caught.value).startswith(message)
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_error_names_the_earliest_of_several_instants_that_one_late_sample_leaves_without_a_value(backend):
+    spec = rtamt.parse("sqrt(delay[1](x, 9) + ahead[1](x)) < 1", period=1, backend=backend)
+    monitor = spec.monitor(verdict="interval", lateness="4s")
+    for time, x in ((0, 5.0), (1, -3.0), (5, -3.0)):
+        monitor.update(time, x=x)
+    with pytest.raises(EvaluationError, match="has no value at sample 2, time 2 s"):
+        monitor.update(3, x=-1.0)  # which is read at 2 s and at 4 s
+
+
 @pytest.mark.parametrize("backend", ["cpp", "python"])
 @pytest.mark.parametrize("again", [lambda monitor: monitor, copy.copy])
 @pytest.mark.parametrize(
