@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError
 from rtamt.language.units.durations import UNITS
-from rtamt.lazy.modules import dt
+from rtamt.lazy.modules import dt, np
 from rtamt.lazy.patterns import lazy_pattern
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 
@@ -136,7 +136,9 @@ def check_index(values: Any, name: str) -> None:
 
     Such values are a series of pandas or an array of xarray.
     """
-    if isinstance(values, list | tuple):
+    if isinstance(values, list | tuple):  # asked first: the name of NumPy's arrays loads NumPy
+        return
+    if isinstance(values, np.ndarray):
         return
     indexes = values.indexes.values() if is_labelled(values) else [getattr(values, "index", None)]
     found = [named for index in indexes for named in _times_in_index(index)]
