@@ -19,16 +19,14 @@ class Chunks:
     def __init__(self, spec: Specification, chunks: Iterator[Trace], *, bound: bool = False) -> None:
         self._chunks = chunks if bound else map(spec.binding.applied, chunks)
         self._counts: Counter[str] = Counter()
+        #: The last chunk, whose notes include those of all before.
         self.last: Trace | None = None
-        #: The notes of the last chunk, which include those of all before.
-        self.remarks: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[Trace]:
         for chunk in self._chunks:
             if self.last is not None:
                 self._counts.update({name: len(self.last[name].values) for name in self.last})
             self.last = chunk
-            self.remarks = chunk.remarks
             yield chunk
 
     def before(self, error: StlError) -> int:

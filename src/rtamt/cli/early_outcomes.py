@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.chunks import Chunks
 from rtamt.cli.outcome import Outcome, moment_of, plain_time
-from rtamt.cli.reading_options import choice_for, is_resampled, oldest_held, on_time_base
+from rtamt.cli.reading_options import choice_for, is_resampled, notes_on, oldest_held, on_time_base
 from rtamt.errors import StlError
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
@@ -61,6 +61,8 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
     except StlError:  # the check of the whole recording reports what is wrong
         return None
     assert check.decided is not None
+    assert chunks.last is not None
+    notes = notes_on(chunks.last, spec, reading)
     seconds = (time.perf_counter() - begin) / len(rows)
     return [
         Outcome(
@@ -73,7 +75,7 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
             part.samples,
             part.period,
             notes=(
-                *chunks.remarks,
+                *notes,
                 f"{_stop(row, rows)} at {moment_of(part.decided_at, part.start)}, {_UNREAD}",
             ),
             decided_at=plain_time(part.decided_at),

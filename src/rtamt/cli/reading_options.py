@@ -13,6 +13,7 @@ from rtamt.cli.command import (
     options,
 )
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.formula import Apply, postorder
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
@@ -285,6 +286,18 @@ def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading)
             variable=error.variable,
         ) from None
     return mine
+
+
+def notes_on(data: Trace, spec: Specification, reading: Reading) -> tuple[str, ...]:
+    """Return the notes of a verdict on a recording: on the data, and on a period that nothing determines."""
+    bounded = any(
+        isinstance(node, Apply) and node.interval is not None and not node.interval.implied
+        for node in postorder(spec.formula)
+    )
+    given = reading.time is not None or spec.period is not None or not spec.domain.sampled
+    if given or not bounded or any(data.channel(name).times is not None for name in data):
+        return data.remarks
+    return (*data.remarks, "no column holds timestamps: the samples are taken to be 1 s apart")
 
 
 def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:

@@ -24,6 +24,7 @@ from rtamt.cli.reading_options import (
     choice_for,
     how_to_mend,
     is_resampled,
+    notes_on,
     on_time_base,
     read_for,
 )
@@ -277,6 +278,8 @@ class _ChunkedRun:
         """Return the outcome of each row."""
         assert self._chunks is not None
         chunks, rows = self._chunks, self._requirement.rows or (self._requirement,)
+        assert chunks.last is not None
+        notes = notes_on(chunks.last, self._requirement.spec, self._reading)
         seconds = (time.perf_counter() - begin) / len(rows)
         return [
             Outcome(
@@ -288,7 +291,7 @@ class _ChunkedRun:
                 moment_of(part.first_violation, part.start),
                 part.samples,
                 part.period,
-                notes=chunks.remarks,
+                notes=notes,
                 **episodes_of(part.episodes, part.start),
                 seconds=seconds,
             )
@@ -329,13 +332,15 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         return [failed(requirement, trace, f"{place}{error}{how_to_mend(error, whole)}", begin)]
     found = []
     for row, part in zip(requirement.rows or (requirement,), parts, strict=True):
-        found.append(_outcome(row, trace, part, whole, begin))
+        found.append(_outcome(row, trace, part, notes_on(whole, spec, reading), begin))
         begin = time.perf_counter()
     return found
 
 
-def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, begin: float) -> Outcome:
-    """Return the outcome of one requirement on ``data``."""
+def _outcome(
+    requirement: Requirement, trace: str, result: Result, notes: tuple[str, ...], begin: float
+) -> Outcome:
+    """Return the outcome of one requirement."""
     try:
         satisfied, violated = result.satisfied, first_violation(result)
         # A plot shows several requirements together, and episodes are those of one.
@@ -353,7 +358,7 @@ def _outcome(requirement: Requirement, trace: str, result: Result, data: Trace, 
         moment_of(violated, recording.origin),
         recording.samples,
         recording.domain.period,
-        notes=data.remarks,
+        notes=notes,
         **episodes_of(episodes, recording.origin),
         seconds=time.perf_counter() - begin,
         result=result,

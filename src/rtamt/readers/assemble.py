@@ -9,6 +9,7 @@ from rtamt.errors import TraceError, choices, did_you_mean
 from rtamt.language.units.durations import NANOSECOND
 from rtamt.lazy import dataclasses
 from rtamt.lazy.modules import np
+from rtamt.readers.first_column import FirstColumn, possible_field
 from rtamt.readers.gaps import Gaps
 from rtamt.readers.numbers import numbers_of
 from rtamt.readers.silence import Silences
@@ -59,12 +60,19 @@ class Selection:
     signals: tuple[tuple[str, Field], ...]
     #: Whether the caller named the columns, so that one that is no number is an error.
     named: bool
+    #: The first column, read in addition because it may hold the timestamps.
+    possible: Field | None = None
 
     @property
     def fields(self) -> tuple[Field, ...]:
         """The columns to read from the table: the timestamps first."""
-        first = () if self.time_field is None else (self.time_field,)
-        return first + tuple(field for _, field in self.signals)
+        return self.leading + tuple(field for _, field in self.signals)
+
+    @property
+    def leading(self) -> tuple[Field, ...]:
+        """The column of timestamps, or that which may hold them, if there is one."""
+        first = self.time_field or self.possible
+        return () if first is None else (first,)
 
 
 def trace_of(source: Source, choice: Choice) -> Trace:
@@ -72,8 +80,12 @@ def trace_of(source: Source, choice: Choice) -> Trace:
     channels: dict[str, Channel] = {}
     notes, losses = list(source.notes), list(source.losses)
     silences = Silences()
-    for place, selection in enumerate(_aligned(source, choice)):
+    selections = _aligned(source, choice)
+    first_column = _first_column(selections)
+    for place, selection in enumerate(selections):
         raws = selection.table.load(selection.fields)
+        if first_column is not None:
+            first_column.take(raws[0])
         losses += selection.table.losses
         timestamps = timestamps_of(source, selection, choice)
         gaps = _gaps(source, selection, choice)
@@ -90,7 +102,14 @@ def trace_of(source: Source, choice: Choice) -> Trace:
         channels = {name: channels[name] for name in choice.columns if name in channels}
     channels = _one_kind(channels, source.name)
     losses += silences.losses()
-    return Trace(channels, source=source.name, notes=notes, losses=losses, origin=source.origin)
+    return Trace(
+        channels,
+        source=source.name,
+        notes=notes,
+        losses=losses,
+        origin=source.origin,
+        possible_times=None if first_column is None else first_column.possible_times,
+    )
 
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
@@ -100,8 +119,11 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     gaps = [_gaps(source, selection, choice) for selection in selections]
     before = [0] * len(selections)
     silences = Silences()
+    first_column = _first_column(selections)
     for chunk in _raw_chunks(source, selections):
         channels: dict[str, Channel] = {}
+        if first_column is not None:
+            first_column.take(chunk[0][0])
         for i, (selection, raws) in enumerate(zip(selections, chunk, strict=True)):
             if len(selections) > 1 and not len(raws[0]):
                 continue  # nothing of this table
@@ -131,15 +153,24 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
             notes=notes,
             losses=losses,
             origin=source.origin,
+            possible_times=None if first_column is None else first_column.possible_times,
         )
 
 
 def _aligned(source: Source, choice: Choice) -> list[Selection]:
-    """Return the selection of each table, all with the same clock."""
+    """Return the selection of each table, all with the same clock; that of the only one may lack it."""
     selections = select(source, choice)
+    if len(selections) == 1 and selections[0].signals and not selections[0].leading and choice.time is None:
+        (only,) = selections
+        selections = [dataclasses.replace(only, possible=possible_field(only.table.fields))]
     if source.align is not None:
         source.align(_places(source, selections))
     return selections
+
+
+def _first_column(selections: Sequence[Selection]) -> FirstColumn | None:
+    possible = next((each.possible for each in selections if each.possible is not None), None)
+    return None if possible is None else FirstColumn(possible)
 
 
 def _places(source: Source, selections: Sequence[Selection]) -> list[int]:
@@ -334,7 +365,7 @@ def _channels(
     times = None
     if timestamps is not None:
         times = timestamps.times(raws[0], before, copy=copy)
-    values = raws if timestamps is None else raws[1:]
+    values = raws[len(selection.leading) :]
     made, left_out = {}, []
     for (name, field), raw in zip(selection.signals, values, strict=True):
         try:

@@ -41,11 +41,12 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A selected column: its name in the result, its position in the file, and whether it may contain NaN."""
+    """A selected column: its name in the result, its position in the file, and whether it may contain NaN, or text."""
 
     name: str
     position: int
     skip_nan: bool = False
+    lenient: bool = False
 
 
 # ---- the header ----------------------------------------------------------------------------------

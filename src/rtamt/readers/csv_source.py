@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from codecs import getincrementaldecoder
 from io import TextIOWrapper
-from itertools import chain, islice
+from itertools import chain, islice, pairwise
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError
@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 #: Lines that are examined to distinguish columns of numbers from columns of text.
 _SAMPLE = 100
 
+#: The cell in place of one that is no number, where a column is lenient.
+_NAN = ("nan",)
+
 #: Bytes that are examined to decide whether a header is UTF-8.
 _BEGINNING = 1 << 20
 
@@ -55,8 +58,9 @@ def open_csv(path: str) -> Source:
         for i in range(len(header.names))
     ]
     fields = [field_of(column, _kind(cells[i])) for i, column in enumerate(header.names)]
-    if not header.names[0] and all(map(is_number, cells[0])) and is_axis(list(map(float, cells[0]))):
-        fields[0] = replace(fields[0], axis=True)
+    first = list(map(float, cells[0])) if all(map(is_number, cells[0])) else []
+    rising = len(first) == len(sample) and all(a < b for a, b in pairwise(first))
+    fields[0] = replace(fields[0], axis=not header.names[0] and is_axis(first), rising=rising)
 
     def chunks(wanted: Sequence[Field]) -> Iterator[list[Raw]]:
         try:
@@ -90,7 +94,7 @@ def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list
     """Yield columns block by block: by pyarrow and numpy as long as lines are plain numbers, then cell by cell."""
     # The first of several columns with one name.
     places = {name: i for i, name in reversed(list(enumerate(header.names)))}
-    columns = [Column(f.column, places[f.column], f.skip_nan) for f in wanted]
+    columns = [Column(f.column, places[f.column], f.skip_nan, f.lenient) for f in wanted]
     line, end = header.line, 0
     for block in plain_blocks(path, header, columns):
         for part in block.parts:
@@ -119,7 +123,13 @@ def _blocks(
     for several in blocks(chain(block, lines), replace(header, line=line)):
         numbers = [number for number, _ in several]
         for column, place in zip(cells, columns, strict=True):
-            column.extend([row[place.position] for _, row in several], numbers)
+            texts = [row[place.position] for _, row in several]
+            try:
+                column.extend(texts, numbers)
+            except TraceError:
+                if not place.lenient:
+                    raise
+                column.extend(_NAN * len(texts), numbers)
         yield [column.take() for column in cells]
 
 

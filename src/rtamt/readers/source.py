@@ -41,6 +41,8 @@ class Field:
     ``kind``: "number", "time" (dates, timestamps of a known unit), "text", or "" while unknown. ``skip_nan``:
     whether a NaN in it is a missing value, and no mistake. ``type``: of the variable, if its values may be names.
     ``alias``: another name, which listings leave out. ``axis``: whether it looks like timestamps, whatever its name.
+    ``rising``: whether its first numbers increase, as far as they are known. ``lenient``: whether cells of CSV files
+    may be no numbers, and are then NaN.
     """
 
     column: str
@@ -51,6 +53,8 @@ class Field:
     type: ValueType | None = field(default=None, compare=False)
     alias: str = field(default="", compare=False)
     axis: bool = field(default=False, compare=False)
+    rising: bool = field(default=True, compare=False)
+    lenient: bool = field(default=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

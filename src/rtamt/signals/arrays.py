@@ -53,6 +53,10 @@ class WithTimeBases(ABC):
         """Return n values for each name, and ``"time"`` in seconds if there are timestamps."""
 
     @abstractmethod
+    def require_period(self, names: Collection[str]) -> None:
+        """Raise :class:`TraceError` where nothing but an assumed period gives the times of samples."""
+
+    @abstractmethod
     def on_own_time_bases(self, names: Collection[str]) -> Mapping[str, tuple[Any, Any]]:
         """Return times and values for each name."""
 
@@ -80,14 +84,23 @@ def units_of(data: Any) -> Mapping[str, str]:
 
 
 def columns_of(
-    data: Any, names: Sequence[str], unit: str | None = None, types: Types = NO_TYPES, *, copy: bool = True
+    data: Any,
+    names: Sequence[str],
+    unit: str | None = None,
+    types: Types = NO_TYPES,
+    *,
+    copy: bool = True,
+    regular: bool = True,
 ) -> tuple[Timestamps | None, dict[str, FloatArray], int]:
     """Return the timestamps (None if there are none), a column for each name, and their common length.
 
-    ``types``: of the variables that may be given by the names of members. ``copy``: see :func:`array`.
+    ``types``: of the variables that may be given by the names of members. ``copy``: see :func:`array`. ``regular``:
+    whether the period of samples without timestamps is known.
     """
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, WithTimeBases):
+        if not regular:
+            data.require_period(names)
         data = data.on_one_time_base(names)
     keys = _keys(data)
     if not is_mapping(data):

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 from rtamt.errors import TraceError, choices
 from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -85,3 +86,17 @@ def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
     hint = f"; rtamt.load('{name}') reads a file" if name.endswith(".stl") else choices(name, keys, "signals")
     return TraceError(f"the data has no '{name}'{hint}", variable=name)
+
+
+def possible_times(column: str) -> TraceError:
+    """Return the error for a first column that may hold the timestamps, where nothing gives the times of samples."""
+    from shlex import quote
+
+    called = f" '{column}'" if column else ", which has no name,"
+    choice = f"choose it with time={column!r}, on the command line --time-column {quote(column)}"
+    return TraceError(
+        f"the first column{called} may hold the timestamps: its values increase, but not by 1 from row to row; "
+        f"{choice if column else 'give it a name and choose it with time=, on the command line --time-column'}, "
+        f"or give the period of the samples, such as period='1s', on the command line --period 1s",
+        variable=TIME,
+    )

@@ -356,7 +356,7 @@ def record_discrete(
     from the timestamps. ``unit``: of timestamps that are numbers, by default seconds. ``types``: of the variables
     that are no plain numbers. Raises :class:`TraceError`.
     """
-    stamped, columns, n = columns_of(data, names, unit, types)
+    stamped, columns, n = columns_of(data, names, unit, types, regular=period is not None)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
     inferred, original = False, None

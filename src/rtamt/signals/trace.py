@@ -18,7 +18,7 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
-from rtamt.signals.data_errors import missing_sample
+from rtamt.signals.data_errors import missing_sample, possible_times
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
@@ -81,7 +81,7 @@ class Trace(WithTimeBases):
     1.0
     """
 
-    __slots__ = ("_channels", "_conversions", "_losses", "_notes", "_origin", "_source")
+    __slots__ = ("_channels", "_conversions", "_losses", "_notes", "_origin", "_possible_times", "_source")
 
     def __init__(
         self,
@@ -92,6 +92,7 @@ class Trace(WithTimeBases):
         losses: Sequence[str] = (),
         conversions: Sequence[str] = (),
         origin: np.datetime64 | None = None,
+        possible_times: str | None = None,
     ) -> None:
         self._channels = dict(channels)
         self._source = source
@@ -99,6 +100,7 @@ class Trace(WithTimeBases):
         self._losses = tuple(losses)
         self._conversions = tuple(conversions)
         self._origin = origin
+        self._possible_times = possible_times
 
     # ---- contents --------------------------------------------------------------------------------
 
@@ -279,6 +281,16 @@ class Trace(WithTimeBases):
             return {TIME: times, **result}
         return result or {name: channel.values for name, channel in self._channels.items()}
 
+    def require_period(self, names: Collection[str]) -> None:
+        """Raise :class:`TraceError` where samples can only be taken to be one period apart, and none is given.
+
+        That is so if there are no timestamps, but a first column that may hold them, and that no formula reads.
+        """
+        column = self._possible_times
+        if column is None or any(self.channel(name).column == column for name in names if name != TIME):
+            return
+        raise possible_times(column)
+
     def on_own_time_bases(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
         """Return dense-time data: (times, values) for each name."""
         result = {}
@@ -364,6 +376,7 @@ class Trace(WithTimeBases):
             losses=(*self._losses, *losses),
             conversions=(*self._conversions, *conversions),
             origin=self._origin,
+            possible_times=self._possible_times,
         )
 
     def _timed(self) -> list[Any]:

@@ -40,7 +40,12 @@ class DiscreteStream(Stream):
         """See :class:`Stream`."""
         # The monitor takes the samples now, and nothing else reads them later.
         timestamps, columns, n = arrays.columns_of(
-            chunk, self.spec.input_names, self.unit, self.spec.types, copy=False
+            chunk,
+            self.spec.input_names,
+            self.unit,
+            self.spec.types,
+            copy=False,
+            regular=not self._inferred,
         )
         if not n:
             return

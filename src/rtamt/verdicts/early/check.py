@@ -142,6 +142,7 @@ class DiscreteEarlyCheck(EarlyCheck):
         super().__init__(specs)
         self._tolerance = tolerance
         self._period = specs[0].period
+        self._given = self._period is not None
         self._samples = 0
         self._last: float | None = None
         self._start: Any = None
@@ -151,7 +152,7 @@ class DiscreteEarlyCheck(EarlyCheck):
 
     def take(self, chunk: Any) -> bool:
         """See :class:`EarlyCheck`."""
-        timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types)
+        timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types, regular=self._given)
         if not n:
             return False
         if self._period is None:

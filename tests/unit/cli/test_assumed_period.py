@@ -1,0 +1,64 @@
+"""The period of 1 s that is assumed where nothing else is known: noted, or rejected."""
+
+import json
+
+import pytest
+
+SPEC = "always[0:2](x > 0)"
+NOTE = "no column holds timestamps: the samples are taken to be 1 s apart"
+UNKNOWN = (
+    "the first column 'Zeit' may hold the timestamps: its values increase, but not by 1 from row to row; choose it "
+    "with time='Zeit', on the command line --time-column Zeit, or give the period of the samples, such as period='1s', "
+    "on the command line --period 1s"
+)
+
+
+@pytest.fixture(autouse=True)
+def recordings(write):
+    write("zeit.csv", "Zeit,x\n0,1\n0.1,2\n0.2,-1\n0.3,4\n")
+    write("seq.csv", "seq,x\n5,1\n6,2\n7,-1\n8,4\n")
+
+
+@pytest.mark.parametrize(
+    "command", [("check",), ("check", "--early"), ("explain",), ("plot", "-o", "p.svg")], ids=" ".join
+)
+def test_commands_reject_a_first_column_that_may_hold_the_timestamps(run, command):
+    name, *options = command
+    answer = run(name, SPEC, "zeit.csv", *options)
+    assert (answer.code, answer.err) == (2, f"rtamt: zeit.csv: {UNKNOWN}\n")
+
+
+@pytest.mark.parametrize("options", [("--period", "1s"), ("--time-column", "")])
+def test_a_period_or_no_column_at_all_is_a_choice_without_a_note(run, options):
+    answer = run("check", SPEC, "zeit.csv", "--json", *options)
+    row = json.loads(answer.out)
+    assert (answer.code, row["robustness"], row["period"], "notes" in row) == (1, -1, 1, False)
+
+
+def test_the_column_is_a_choice(run):
+    answer = run("check", "always[0:200ms](x > 0)", "zeit.csv", "--time-column", "Zeit", "--json")
+    assert json.loads(answer.out)["period"] == 0.1
+
+
+@pytest.mark.parametrize("early", [(), ("--early",)])
+def test_the_assumed_period_is_noted_once_beside_bounds_in_time(run, write, early):
+    write("a.stl", "always[0:2](x > 0)")
+    write("b.stl", "always[0:1](x > -3)")
+    answer = run("check", "a.stl", "b.stl", "seq.csv", *early)
+    assert answer.code == 1
+    assert answer.out.count(f"note: seq.csv: {NOTE}\n") == 1
+    assert NOTE not in run("check", "always(x > 0)", "seq.csv", *early).out
+
+
+def test_the_assumed_period_is_noted_where_a_file_is_read_in_chunks(run, monkeypatch):
+    monkeypatch.setattr("rtamt.cli.runner.LARGE", 0)
+    assert json.loads(run("check", SPEC, "seq.csv", "--json").out)["notes"] == [NOTE]
+    assert run("check", SPEC, "zeit.csv").err == f"rtamt: zeit.csv: {UNKNOWN}\n"
+
+
+def test_a_requirement_is_rejected_whether_or_not_another_reads_the_first_column(run, write):
+    write("a.stl", "always(Zeit >= 0)")
+    write("b.stl", "always(x > -3)")
+    answer = run("check", "a.stl", "b.stl", "zeit.csv", "--json")
+    first, second = map(json.loads, answer.out.splitlines())
+    assert (answer.code, first["satisfied"], second["error"]) == (2, True, f"zeit.csv: {UNKNOWN}")

@@ -1,0 +1,160 @@
+"""A first column that may hold the timestamps, under a name that is not that of a time column."""
+
+from __future__ import annotations
+
+import sqlite3
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+import polars as pl
+import pytest
+
+import rtamt
+from rtamt.errors import TraceError
+from rtamt.readers import csv_arrow, csv_source
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+SPEC = rtamt.parse("always[0:2](x > 0)")
+
+
+def rejected(column: str) -> str:
+    return (
+        f"the first column '{column}' may hold the timestamps: its values increase, but not by 1 from row to row; "
+        f"choose it with time='{column}', on the command line --time-column {column}, or give the period of the "
+        f"samples, such as period='1s', on the command line --period 1s"
+    )
+
+
+def evaluated(source: Any, **options: Any) -> float:
+    return SPEC.evaluate(rtamt.read(source, **options)).robustness
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "log.csv"
+    path.write_text(text)
+    return path
+
+
+FRAME = pd.DataFrame({"Zeit": [0.0, 0.1, 0.2, 0.3], "x": [1, 2, -1, 4]})
+
+
+def as_parquet(folder: Path) -> Any:
+    FRAME.to_parquet(folder / "log.parquet")
+    return folder / "log.parquet", {}
+
+
+def as_excel(folder: Path) -> Any:
+    FRAME.to_excel(folder / "log.xlsx", index=False)
+    return folder / "log.xlsx", {}
+
+
+def as_sql(folder: Path) -> Any:
+    with sqlite3.connect(folder / "log.db") as database:
+        FRAME.to_sql("log", database, index=False)
+    return f"sqlite:///{folder / 'log.db'}", {"query": "select * from log"}
+
+
+SOURCES: dict[str, Callable[[Path], Any]] = {
+    "CSV": lambda folder: (written(folder, FRAME.to_csv(index=False)), {}),
+    "Parquet": as_parquet,
+    "Excel": as_excel,
+    "SQL": as_sql,
+    "pandas": lambda _: (FRAME, {}),
+    "polars": lambda _: (pl.from_pandas(FRAME), {}),
+    "dict": lambda _: (FRAME.to_dict("list"), {}),
+    "array": lambda _: (FRAME.to_records(index=False), {}),
+}
+
+
+@pytest.mark.parametrize("columns", [None, ["x"]], ids=["all", "selected"])
+@pytest.mark.parametrize("kind", SOURCES)
+def test_every_source_is_rejected_if_its_first_column_may_hold_the_timestamps(
+    tmp_path: Path, kind: str, columns: list[str] | None
+) -> None:
+    source, options = SOURCES[kind](tmp_path)
+    trace = rtamt.read(source, columns=columns, **options)
+    with pytest.raises(TraceError) as caught:
+        SPEC.evaluate(trace)
+    assert str(caught.value) == rejected("Zeit")
+    assert SPEC.evaluate(trace, period="1s").robustness == -1
+
+
+@pytest.mark.parametrize("name", ["Zeit", "tick_ms", "frame", "seq", "step", "zeit_s", "sekunden"])
+def test_the_choice_of_a_column_or_of_none_is_followed(tmp_path: Path, name: str) -> None:
+    path = written(tmp_path, f"{name},x\n0,1\n2,2\n4,-1\n6,4\n")
+    with pytest.raises(TraceError, match=f"'{name}' may hold the timestamps"):
+        evaluated(path)
+    assert rtamt.read(path, time=name, time_unit="s").names == ("x",)
+    assert evaluated(path, time="") == -1
+
+
+def test_a_period_in_the_specification_is_a_choice(tmp_path: Path) -> None:
+    path = written(tmp_path, "Zeit,x\n0,1\n0.1,2\n0.2,-1\n0.3,4\n")
+    spec = rtamt.parse("always[0:200ms](x > 0)", period="100ms")
+    assert spec.evaluate(rtamt.read(path)).robustness == -1
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        pytest.param("5,1\n6,2\n7,-1\n8,4\n", id="counts the rows"),
+        pytest.param("0.1,1\n0.3,2\n0.2,-1\n0.4,4\n", id="decreases"),
+        pytest.param("0.1,1\n,2\n0.3,-1\n0.4,4\n", id="has an empty cell"),
+        pytest.param("0.1,1\nnan,2\n0.3,-1\n0.4,4\n", id="has NaN"),
+        pytest.param("0.1,1\noff,2\n0.3,-1\n0.4,4\n", id="has text"),
+        pytest.param("off,1\non,2\non,-1\noff,4\n", id="is text"),
+    ],
+)
+def test_another_first_column_leaves_the_samples_one_second_apart(tmp_path: Path, rows: str) -> None:
+    path = written(tmp_path, "first,x\n" + rows)
+    assert evaluated(path, columns=["x"]) == -1
+
+
+def test_text_behind_the_examined_rows_of_a_column_that_no_formula_reads_is_no_error(tmp_path: Path) -> None:
+    rows = [f"{i / 10},1\n" for i in range(csv_source._SAMPLE + 50)]
+    path = written(tmp_path, "".join(["first,x\n", *rows, "off,-1\n", "0.5,2\n"]))
+    assert rtamt.parse("always(x > 0)").evaluate(rtamt.read(path, columns=["x"])).robustness == -1
+
+
+def test_a_first_column_that_the_formula_reads_is_a_signal(tmp_path: Path) -> None:
+    path = written(tmp_path, "distance,x\n1,1\n3,2\n7,-1\n")
+    spec = rtamt.parse("always(distance > x)")
+    assert spec.evaluate(rtamt.read(path)).robustness == 0
+    assert spec.evaluate(rtamt.read(path, columns=spec.input_names)).robustness == 0
+    renamed = rtamt.parse("always(d > x)")
+    assert renamed.evaluate(rtamt.read(path, names={"d": "distance"})).robustness == 0
+
+
+def test_chunks_are_rejected_where_the_count_of_rows_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rtamt.readers.csv.BLOCK", 3)
+    path = written(tmp_path, "seq,x\n" + "".join(f"{i},1\n" for i in (1, 2, 3, 4, 5, 6, 8, 9)))
+
+    def chunks() -> Iterator[rtamt.Trace]:
+        return rtamt.scan(path, columns=["x"])
+
+    with pytest.raises(TraceError) as caught:
+        rtamt.check_stream(SPEC, chunks())
+    assert str(caught.value) == rejected("seq")
+    assert rtamt.check_stream(SPEC, chunks(), period="1s").satisfied
+    counting = written(tmp_path, "seq,x\n" + "".join(f"{i},1\n" for i in range(8)))
+    assert rtamt.check_stream(SPEC, rtamt.scan(counting, columns=["x"])).satisfied
+
+
+def test_a_large_file_is_rejected_by_the_quick_reader_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(csv_arrow, "_WORTH", 0)
+    path = written(tmp_path, "Zeit,x\n0,1\n0.1,2\n0.2,-1\n0.3,4\n")
+    with pytest.raises(TraceError, match="'Zeit' may hold the timestamps"):
+        evaluated(path, columns=["x"])
+
+
+def test_a_selection_of_a_trace_is_rejected_like_it() -> None:
+    trace = rtamt.read({"Zeit": [0, 2, 4, 6], "x": [1, 2, -1, 4]})
+    with pytest.raises(TraceError, match="'Zeit' may hold the timestamps"):
+        SPEC.evaluate(trace.select(["x"]))
