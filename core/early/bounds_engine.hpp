@@ -131,6 +131,8 @@ class BoundsEngine {
     // The sum of the bounds of all windows, without those that have no end: how far from a sample a
     // value may be that it changes, and that others do not share from there on.
     [[nodiscard]] Tick reach() const noexcept;
+    // Whether an operation may have no value.
+    [[nodiscard]] bool may_fail() const noexcept { return partial_; }
     // Whether operations that may have no value read more than one tick, or the start of the trace.
     [[nodiscard]] bool reads_start() const noexcept { return fallible_; }
     // The newest tick with samples, -1 before the first.

@@ -96,7 +96,11 @@ std::optional<DenseMonitor::Failure> DenseMonitor::attempt() {
     samples_.collect(observations_);
     begins_ = samples_.start() && !begun_;
     std::optional<Failure> failure;
-    if (begins_) failure = engine_.wrong_constant();
+    if (begins_) {
+        failure = engine_.wrong_constant();
+    } else if (!begun_) {
+        failure = rehearsal_.attempt(samples_, engine_);
+    }
     if (!failure) {
         engine_.settle_inputs(std::ranges::min(samples_.settled()));
         const Tick seen = samples_.start() ? newest() : -1;
@@ -111,6 +115,7 @@ std::optional<DenseMonitor::Failure> DenseMonitor::attempt() {
 
 void DenseMonitor::reject() {
     engine_.revert();
+    rehearsal_.reject();
     samples_.rollback();
 }
 
@@ -118,7 +123,11 @@ void DenseMonitor::accept() {
     samples_.commit();
     begun_ = begun_ || begins_;
     finished_ = samples_.ended();
-    if (!begun_) return;
+    if (!begun_) {
+        rehearsal_.accept();
+        return;
+    }
+    if (begins_) rehearsal_.clear();
     for (DenseOutput& output : outputs_)
         output.collect(engine_, start(), at_, begins_ ? -1 : *before_ - start(), newest());
     if (at_start_) at_start_->read(engine_);
@@ -217,7 +226,7 @@ void DenseMonitor::settle() {
 }
 
 std::size_t DenseMonitor::bytes() const noexcept {
-    std::size_t sum = engine_.bytes() + samples_.bytes();
+    std::size_t sum = engine_.bytes() + samples_.bytes() + rehearsal_.bytes();
     for (const DenseOutput& output : outputs_)
         sum += output.bytes();
     return sum;
@@ -230,6 +239,7 @@ void DenseMonitor::transfer(Snapshot& snapshot) {
     for (DenseOutput& output : outputs_)
         output.transfer(snapshot);
     samples_.transfer(snapshot);
+    if (snapshot.loading()) rehearsal_.clear(); // it takes the samples again
     checked::tick(snapshot, closed_, -1);
     snapshot.item(begun_);
     snapshot.item(finished_);

@@ -10,6 +10,7 @@
 #include "bounds_engine.hpp"
 #include "causation.hpp"
 #include "dense_output.hpp"
+#include "dense_rehearsal.hpp"
 #include "samples.hpp"
 
 #include <cstddef>
@@ -124,6 +125,7 @@ class DenseMonitor {
   private:
     BoundsEngine engine_;
     Samples samples_;
+    DenseRehearsal rehearsal_; // of the samples until the trace starts
     std::vector<DenseOutput> outputs_;
     std::optional<BoundsAtStart> at_start_;
     std::optional<Causes> causes_;

@@ -54,17 +54,20 @@ void Samples::close(Tick time) noexcept {
     find_start();
 }
 
-// No sample can arrive up to the closed tick, so the first one after it is the first of all.
-std::optional<Tick> Samples::first_start() const noexcept {
-    if (now_.start || inputs_.empty()) return now_.start;
-    Tick start = -forever;
+std::optional<Tick> Samples::latest_first() const noexcept {
+    std::optional<Tick> latest;
     for (const Column& column : inputs_) {
         if (column.empty()) return std::nullopt;
-        const Tick first = column.front().time;
-        if (lateness_ && first > now_.closed) return std::nullopt;
-        start = std::max(start, first);
+        latest = std::max(latest, std::optional(column.front().time)); // none is less than any
     }
-    return start;
+    return latest;
+}
+
+// No sample can arrive up to the closed tick, so the first one after it is the first of all.
+std::optional<Tick> Samples::first_start() const noexcept {
+    if (now_.start) return now_.start;
+    const auto start = latest_first();
+    return lateness_ && start > now_.closed ? std::nullopt : start;
 }
 
 void Samples::find_start() noexcept {
@@ -126,6 +129,25 @@ void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
         if (added.time <= absolute(settled_[added.input])) continue; // it is among them
         const Column& column = inputs_[added.input];
         learn(added.input, added.time, added.time, column[after(column, added.time) - 1].bounds);
+    }
+}
+
+void Samples::collect_first(Tick origin, Tick from, Tick before,
+                            std::vector<BoundsEngine::Observation>& observations) const {
+    observations.clear();
+    const auto learn = [&](std::uint32_t input, const Sample& sample) {
+        const Tick tick = sample.time - origin;
+        observations.push_back({input, tick, tick, sample.bounds});
+    };
+    for (std::uint32_t i = 0; i < inputs_.size(); ++i) {
+        const Column& column = inputs_[i];
+        for (std::size_t k = after(column, from - 1); k < column.size() && column[k].time < before;
+             ++k)
+            learn(i, column[k]);
+    }
+    for (const auto& [input, time, _] : added_) {
+        if (time < std::max(from, before)) continue; // it is among them, or before the start
+        learn(input, inputs_[input][after(inputs_[input], time) - 1]);
     }
 }
 

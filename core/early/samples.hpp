@@ -52,11 +52,17 @@ class Samples {
 
     // What has become known since the last commit; ticks count from the start of the trace.
     void collect(std::vector<BoundsEngine::Observation>& observations);
+    // Before the start: the own ticks of samples from a time on, of all that are before another
+    // time, and of those added since the last commit. Ticks count from `origin`.
+    void collect_first(Tick origin, Tick from, Tick before,
+                       std::vector<BoundsEngine::Observation>& observations) const;
 
     // The bounds of an input at a time, as far as they are known.
     [[nodiscard]] Bounds known(std::uint32_t input, Tick time) const noexcept;
 
     [[nodiscard]] std::optional<Tick> start() const noexcept { return now_.start; }
+    // Before the start: where it is, unless an earlier sample comes. None while an input has none.
+    [[nodiscard]] std::optional<Tick> latest_first() const noexcept;
     // The newest sample of any input, and of one.
     [[nodiscard]] std::optional<Tick> newest() const noexcept { return now_.newest; }
     [[nodiscard]] std::optional<Tick> newest(std::uint32_t input) const noexcept;
@@ -65,6 +71,10 @@ class Samples {
     // Up to which tick of the trace each input is known.
     [[nodiscard]] const std::vector<Tick>& settled() const noexcept { return settled_; }
 
+    // Whether samples of an input may come in any order.
+    [[nodiscard]] bool late() const noexcept { return lateness_.has_value(); }
+    // What is known of each input before it is seen.
+    [[nodiscard]] const std::vector<Bounds>& ranges() const noexcept { return ranges_; }
     [[nodiscard]] std::size_t inputs() const noexcept { return inputs_.size(); }
     [[nodiscard]] std::size_t bytes() const noexcept;
 

@@ -54,7 +54,8 @@ class DenseKnowledge:
     anything. ``finished``: no more samples will arrive. ``closed``: of variables the tick up to which, inclusive,
     no more samples will arrive; without one that of the newest sample. ``later``: what is supposed of variables where
     nothing but the range is known after their newest samples: bounds from each time on, the last for ever. ``end``:
-    the tick of the newest sample of any variable, also of others; by default of these.
+    the tick of the newest sample of any variable, also of others; by default of these. ``begins``: the tick at which
+    the trace is supposed to begin.
     """
 
     samples: Mapping[str, Samples]
@@ -63,16 +64,24 @@ class DenseKnowledge:
     closed: Mapping[str, int] = field(default_factory=dict)
     later: Mapping[str, Samples] = field(default_factory=dict)
     end: int | None = None
+    begins: int | None = None
 
     @property
     def start(self) -> int | None:
         """The tick at which the trace begins; None while the first sample of a variable may still arrive."""
-        firsts = []
+        if self.begins is not None:
+            return self.begins
         for name, (times, _, _) in self.samples.items():
             if not len(times) or (int(times[0]) > self.until(name) and not self.finished):
                 return None
-            firsts.append(int(times[0]))
-        return max(firsts)
+        return self.latest_first
+
+    @property
+    def latest_first(self) -> int | None:
+        """The tick at which it begins unless an earlier sample arrives; None while a variable has none."""
+        if not all(len(times) for times, _, _ in self.samples.values()):
+            return None
+        return max(int(times[0]) for times, _, _ in self.samples.values())
 
     def until(self, name: str) -> int:
         """Return the tick up to which a variable that has samples is as well known as it will ever be."""

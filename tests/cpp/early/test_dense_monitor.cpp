@@ -203,3 +203,40 @@ TEST_CASE("a sample that makes an operation undefined changes nothing") {
     REQUIRE(!monitor.take(12, std::span(&fine, 1)));
     CHECK(monitor.at(0, 11) == Bounds{2, 2});
 }
+
+TEST_CASE("a first sample that makes an operation undefined changes nothing") {
+    Graph graph;
+    graph.inputs = 2;
+    Node atom;
+    atom.steps = {{Opcode::input, 0}, {Opcode::sqrt, 0}, {Opcode::input, 1}, {Opcode::add, 1, 2}};
+    graph.nodes = {atom};
+    DenseSettings late = settings(graph, false);
+    late.lateness = 5;
+    late.several = true;
+    DenseMonitor monitor(graph, late);
+    const auto take = [&](Tick time, std::uint32_t input, double value) {
+        const DenseMonitor::Given given{input, Interval::of(value)};
+        return monitor.take(time, std::span(&given, 1));
+    };
+    REQUIRE(!take(3, 0, -1)); // the trace may start later
+    REQUIRE(!take(5, 1, 1));
+    const std::size_t bytes = monitor.bytes();
+    for (const Tick time : {Tick{2}, Tick{3}}) {
+        const auto failure = take(time, 1, 1);
+        REQUIRE(failure);
+        CHECK(failure->tick == 3);
+    }
+    const DenseMonitor::Given given{0, Interval::of(4)};
+    monitor.stage(4, std::span(&given, 1), std::nullopt);
+    REQUIRE(!monitor.attempt());
+    monitor.reject();
+    CHECK(monitor.bytes() == bytes);
+    const auto failure = take(5, 0, -4);
+    REQUIRE(failure);
+    CHECK(failure->tick == 5);
+    REQUIRE(!take(4, 0, 4));
+    CHECK(!monitor.trace_start());
+    REQUIRE(!take(20, 0, 9));
+    CHECK(monitor.trace_start() == 5);
+    CHECK(monitor.at(0, 5) == Bounds{3, 3});
+}

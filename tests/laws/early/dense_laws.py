@@ -24,7 +24,6 @@ from rtamt.rewrite.ground import ground
 from rtamt.rewrite.semantics import boolean
 from tests.laws.early.definition import DEFINITION, TICK
 from tests.laws.early.laws import NothingToCheck, given, whole_horizon
-from tests.laws.early.monitors import PYTHON
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -265,28 +264,6 @@ def tight(case: DenseCase, made: Implementation, most: int = 300) -> None:
     for i, (lower, upper) in enumerate(found[: end - start + 1]):
         assert min(values[i] for values in reached) == lower
         assert max(values[i] for values in reached) == upper
-
-
-def fails_alike(case: DenseCase, made: Implementation) -> None:
-    """The same updates fail as with the Python back end, and leave the bounds as they were."""
-    for kind in ("dense_interval", "dense_eager"):
-        both = [getattr(each, kind)(case.formula, case.names, case.ranges) for each in (made, PYTHON)]
-        for t, row in case.updates:
-            values = {name: given(known) for name, known in row.items()}
-            before = [each.start() for each in both] if kind == "dense_interval" else None
-            fails = [_fails(monitor, t, values) for monitor in both]
-            assert fails[0] == fails[1]
-            if fails[0]:
-                assert before is None or before == [each.start() for each in both]
-                break
-
-
-def _fails(monitor: Any, t: int, values: Mapping[str, Any]) -> bool:
-    try:
-        monitor.update(t, **values)
-    except EvaluationError:
-        return True
-    return False
 
 
 def eager(case: DenseCase, made: Implementation) -> None:

@@ -19,7 +19,7 @@ from itertools import count, islice
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple
 
-from tests.laws.early import dense_laws, engines, laws, reports, specifications
+from tests.laws.early import dense_failures, dense_laws, engines, laws, reports, specifications
 from tests.laws.early.cases import ANYTHING, arrivals, case, dense_case, value
 from tests.laws.early.definition import DEFINITION
 from tests.laws.early.monitors import IMPLEMENTATIONS, PYTHON
@@ -134,7 +134,12 @@ def dense_corrected(rng: Random, made: Implementation) -> None:
 
 
 def dense_fails_alike(rng: Random, made: Implementation) -> None:
-    dense_laws.fails_alike(dense_case(rng, partial=rng.random() < 0.5), made)
+    dense_failures.alike(dense_case(rng, partial=rng.random() < 0.5), made)
+
+
+def dense_late_fails_alike(rng: Random, made: Implementation) -> None:
+    drawn = dense_case(rng, partial=rng.random() < 0.8)
+    dense_failures.late_alike(drawn, made, arrivals(rng, drawn))
 
 
 def dense_tight(rng: Random, made: Implementation) -> None:
@@ -198,6 +203,7 @@ LAWS: list[Law] = [
     dense_late,
     dense_corrected,
     dense_fails_alike,
+    dense_late_fails_alike,
     dense_tight,
     dense_eager,
     dense_causes,
@@ -218,6 +224,7 @@ COMPARISONS: list[Law] = [
     dense_start,
     dense_corrected,
     dense_fails_alike,
+    dense_late_fails_alike,
     dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
@@ -231,7 +238,13 @@ def laws_of(made: Implementation) -> list[Law]:
     excluded = (
         COMPARISONS
         if made is DEFINITION
-        else [dense_fails_alike, specification_as_defined, reports_as_defined, engines_agree]
+        else [
+            dense_fails_alike,
+            dense_late_fails_alike,
+            specification_as_defined,
+            reports_as_defined,
+            engines_agree,
+        ]
         if made is PYTHON
         else []
     )

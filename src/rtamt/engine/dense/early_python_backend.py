@@ -135,6 +135,8 @@ class PythonDenseEarlyMonitor:
 
     def _take(self, came: _Came, now: int) -> None:
         """Go on with all that came; an operation without a value leaves everything as it was."""
+        if self._lateness is not None:
+            self._rehearse(came)
         found, earlier = [], []
         for place in range(len(self._formulas)):
             parts = list(self._earlier[place])
@@ -147,6 +149,16 @@ class PythonDenseEarlyMonitor:
         self._before, self._came, self._found, self._causes = self._came, came, found, {}
         self._start = None
         self._earlier_before, self._earlier = self._earlier, tuple(earlier)
+
+    def _rehearse(self, came: _Came) -> None:
+        """Raise the error for samples that have no value if their trace starts at the latest first one of them."""
+        knowledge = self._knowledge(came)
+        for formulas, parts in zip(self._formulas, self._earlier, strict=True):
+            for (formula, names), unseen in zip(formulas, parts, strict=True):
+                known = knowledge.of(names)
+                first = known.latest_first
+                if known.start is None and first is not None:
+                    bounds(formula, replace(known, begins=first), self._tick, earlier=unseen)
 
     def _limits(self, names: tuple[str, ...]) -> tuple[Pair, ...]:
         return tuple(self._ranges[name] for name in names)
