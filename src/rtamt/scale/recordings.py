@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import glob
 import os
+import stat
 import tempfile
 from contextlib import contextmanager
+from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
@@ -16,6 +18,9 @@ from rtamt.readers.formats import SUFFIXES, is_bag
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+
+#: Bytes at the beginning and at the end of a file that its digest covers.
+_END = 2**19
 
 
 class Recording(NamedTuple):
@@ -62,7 +67,10 @@ def _known(paths: Iterable[str]) -> list[str]:
 
 
 def version_of(path: str) -> str:
-    """Return the version of a local recording: when it was last written, and its size; of a folder, of all files."""
+    """Return the version of a local recording, of a folder that of all its files: the time, the size and a digest.
+
+    A copy or a restored backup may have the time and the size of other content.
+    """
     paths = [path]
     if os.path.isdir(path):
         paths = sorted(os.path.join(folder, name) for folder, _, names in os.walk(path) for name in names)
@@ -72,8 +80,21 @@ def version_of(path: str) -> str:
             known = os.stat(each)
         except OSError as error:
             raise UsageError(f"cannot read '{each}': {error.strerror}") from None
-        parts.append(f"{known.st_mtime_ns}-{known.st_size}")
+        digest = _digest(each, known.st_size) if stat.S_ISREG(known.st_mode) else ""
+        parts.append(f"{known.st_mtime_ns}-{known.st_size}-{digest}")
     return "+".join(parts)
+
+
+def _digest(path: str, size: int) -> str:
+    """Return the digest of a file, of the beginning and the end of a large one; empty if it cannot be read."""
+    try:
+        with open(path, "rb") as file:
+            found = blake2b(file.read(_END), digest_size=16)
+            file.seek(max(_END, size - _END))
+            found.update(file.read(_END))
+    except OSError:  # the check reports it
+        return ""
+    return found.hexdigest()
 
 
 def _remote(pattern: str) -> list[Recording]:

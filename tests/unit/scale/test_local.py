@@ -123,6 +123,27 @@ def test_only_new_and_changed_recordings_are_computed_again(folder, tmp_path):
     assert after[-3:] == expected(6, str(folder / "6.csv"))
 
 
+@pytest.mark.parametrize("number", [1, 200_000], ids=["small", "large"])
+@pytest.mark.parametrize("place", ["begin", "end"])
+def test_a_recording_replaced_by_one_of_equal_size_and_time_is_computed_again(tmp_path, number, place):
+    path, manifest = tmp_path / "log.csv", tmp_path / "done.jsonl"
+    comment = "#aaaaaaa\n" * number
+
+    def write(x):
+        rows = f"0,{x},1\n0.5,{x},1\n"
+        path.write_text("time,x,y\n" + (rows + comment if place == "begin" else comment + rows))
+        os.utime(path, ns=(7, 7))
+
+    write(2)
+    job = Job(suite())
+    first, before = computed(job, recordings_of([str(path)]), manifest)
+    assert (first, computed(job, recordings_of([str(path)]), manifest)) == (1, (0, before))
+    write(9)
+    again, after = computed(job, recordings_of([str(path)]), manifest)
+    assert again == 1
+    assert after != before
+
+
 @pytest.mark.parametrize(
     ("other", "same"),
     [
