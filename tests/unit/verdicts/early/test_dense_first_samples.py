@@ -93,3 +93,18 @@ def test_no_requirement_keeps_a_sample_that_leaves_another_without_a_value(backe
     monitor.update(4, x=7.0, y=5.0)
     monitor.finish()
     assert monitor.interval(wrong) == Interval(2.0**0.5, 2.0**0.5)
+
+
+@BACKENDS
+def test_correction_repairs_a_first_sample_that_holds_no_value_up_to_the_start(backend):
+    monitor = interval("sqrt(x) >= y", backend, on_correction="replay")
+    monitor.update(3, x=-1.0)
+    monitor.update(5, y=0.0)
+    with pytest.raises(EvaluationError, match=r"'sqrt\(x\)' has no value at time 5 s"):
+        monitor.update(20, x=4.0)
+    monitor.update(3, x=9.0)
+    monitor.update(2, y=0.0)
+    with pytest.raises(EvaluationError, match=r"'sqrt\(x\)' has no value at time 3 s"):
+        monitor.update(3, x=-1.0)
+    monitor.update(20, x=4.0)
+    assert monitor.interval(3) == Interval(3.0, 3.0)
