@@ -14,6 +14,7 @@ from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import complain
 from rtamt.errors import BoundError, SpecificationError, StlError, UsageError, choices, did_you_mean, readable
 from rtamt.files import is_device, nearest_file, open_text, write_bytes, write_text
+from rtamt.language.formula import Apply, postorder
 from rtamt.language.parsing.lexer import NAME
 from rtamt.language.units.durations import UNITS, decimal
 from rtamt.lazy.modules import np
@@ -230,6 +231,17 @@ def read_library(args: argparse.Namespace, time: str, file: str) -> Specificatio
         document.enumerations,
     )
     return spec if any(named) or document.groups else None
+
+
+def assumes_period(spec: Specification, time_column: str | None) -> bool:
+    """Return whether samples without timestamps are 1 s apart by default, and a formula has bounds in time.
+
+    ``time_column``: that of the options, "" for none.
+    """
+    if time_column is not None or spec.period is not None or not spec.domain.sampled:
+        return False
+    intervals = (node.interval for node in postorder(spec.formula) if isinstance(node, Apply))
+    return any(interval is not None and not interval.implied for interval in intervals)
 
 
 def settings_of(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:

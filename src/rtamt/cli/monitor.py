@@ -15,6 +15,7 @@ from rtamt.cli.command import (
     add_stamp_options,
     add_time_option,
     add_worst_case_option,
+    assumes_period,
     options,
     read_specification,
 )
@@ -184,13 +185,23 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
     if sys.stdin.isatty():
         complain("reading samples from the terminal, one JSON object per line; Ctrl-D ends")
     with nullcontext() if live is None else live:
-        return _follow(watched, samples, live, metrics, keep_going=args.keep_going)
+        assumed = assumes_period(spec, args.time_column)
+        return _follow(watched, samples, live, metrics, assumed=assumed, keep_going=args.keep_going)
 
 
 def _follow(
-    watched: Feed, samples: Samples, live: Live | None, metrics: Metrics | None, *, keep_going: bool
+    watched: Feed,
+    samples: Samples,
+    live: Live | None,
+    metrics: Metrics | None,
+    *,
+    assumed: bool,
+    keep_going: bool,
 ) -> int:
-    """Feed the monitor from stdin until the end of input; return the exit code."""
+    """Feed the monitor from stdin until the end of input; return the exit code.
+
+    ``assumed``: whether nothing determines the period of samples without timestamps, and it matters.
+    """
     code = OK
     for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
         try:
@@ -200,6 +211,10 @@ def _follow(
         else:
             while samples.conversions:
                 complain(f"note: {STDIN}: {samples.conversions.pop(0)}")
+            if assumed and sample is not None:
+                if sample[0] is None:
+                    complain(f"note: {STDIN}: the samples have no timestamps and are taken to be 1 s apart")
+                assumed = False
             problem = watched.take(*sample, number) if sample is not None else ""
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)

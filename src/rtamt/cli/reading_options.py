@@ -10,10 +10,10 @@ from rtamt.cli.command import (
     add_specification_options,
     add_stamp_options,
     add_time_option,
+    assumes_period,
     options,
 )
 from rtamt.errors import TraceError, UsageError
-from rtamt.language.formula import Apply, postorder
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
@@ -290,12 +290,7 @@ def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading)
 
 def notes_on(data: Trace, spec: Specification, reading: Reading) -> tuple[str, ...]:
     """Return the notes of a verdict on a recording: on the data, and on a period that nothing determines."""
-    bounded = any(
-        isinstance(node, Apply) and node.interval is not None and not node.interval.implied
-        for node in postorder(spec.formula)
-    )
-    given = reading.time is not None or spec.period is not None or not spec.domain.sampled
-    if given or not bounded or any(data.channel(name).times is not None for name in data):
+    if not assumes_period(spec, reading.time) or any(data.channel(name).times is not None for name in data):
         return data.remarks
     return (*data.remarks, "no column holds timestamps: the samples are taken to be 1 s apart")
 

@@ -62,3 +62,15 @@ def test_a_requirement_is_rejected_whether_or_not_another_reads_the_first_column
     answer = run("check", "a.stl", "b.stl", "zeit.csv", "--json")
     first, second = map(json.loads, answer.out.splitlines())
     assert (answer.code, first["satisfied"], second["error"]) == (2, True, f"zeit.csv: {UNKNOWN}")
+
+
+@pytest.mark.parametrize("stdin", ["Zeit,x\n0,1\n0.1,2\n", '{"x": 1}\n{"x": 2}\n'], ids=["CSV", "JSON"])
+def test_a_monitor_notes_once_that_the_samples_of_a_stream_have_no_timestamps(run, stdin):
+    note = "rtamt: note: stdin: the samples have no timestamps and are taken to be 1 s apart\n"
+    assert run("monitor", SPEC, stdin=stdin).err == note
+    assert run("monitor", SPEC, "--period", "1s", stdin=stdin).err == ""
+    assert run("monitor", "once(x > 0)", stdin=stdin).err == ""
+
+
+def test_a_monitor_of_samples_with_timestamps_has_no_note(run):
+    assert run("monitor", SPEC, stdin="time,x\n0,1\n1,2\n").err == ""

@@ -80,7 +80,7 @@ def test_a_formula_may_read_time(run):
 
 def test_a_bad_line_ends_the_monitor_and_nothing_is_printed_after_it(run):
     stdin = jsonl({"x": 5}, {"x": 4}, {"y": 1}, {"x": 1})
-    assert run("monitor", "always[0:1](x >= 3)", stdin=stdin) == (
+    assert run("monitor", "always[0:1](x >= 3)", "--period", "1s", stdin=stdin) == (
         2,
         '{"time": 0.0, "robustness": 1.0}\n',
         "rtamt: stdin, line 3: the data has no 'x'; signals: y\n",
@@ -296,7 +296,7 @@ def test_a_key_that_is_given_twice_is_rejected(run):
 
 def test_each_requirement_stands_in_the_line(run):
     spec = "require R1: eventually[0:1](x >= 3); require R2: x <= 6"
-    answer = run("monitor", spec, stdin='{"x": 2}\n{"x": 5}\n{"x": 7}\n')
+    answer = run("monitor", spec, "--period", "1s", stdin='{"x": 2}\n{"x": 5}\n{"x": 7}\n')
     assert [json.loads(line) for line in answer.out.splitlines()] == [
         {"time": 0, "robustness": 2, "requirements": {"R1": 2, "R2": 4}},
         {"time": 1, "robustness": 1, "requirements": {"R1": 4, "R2": 1}},
