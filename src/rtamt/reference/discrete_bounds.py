@@ -42,7 +42,8 @@ class Knowledge:
 
     ``ranges`` are the declared ones, which hold for all later samples; without one, a variable may be
     anything. ``finished``: no more samples will arrive. ``closed``: how many samples, from the first on,
-    are as well known as they will ever be; by default all n.
+    are as well known as they will ever be; by default all n. ``reached``: how many samples the trace has, if the
+    others are supposed; by default all n.
     """
 
     columns: Mapping[str, Enclosure]
@@ -50,6 +51,7 @@ class Knowledge:
     ranges: Mapping[str, Range] = field(default_factory=dict)
     finished: bool = False
     closed: int | None = None
+    reached: int | None = None
 
     def until(self, n: int) -> Knowledge:
         """Return the knowledge after the first ``n`` samples."""
@@ -88,6 +90,7 @@ def bounds(
     own: list[Enclosure] = [] if parts is None else parts
     inside: set[int] | None = None  # once an operation has no value
     closed = known.n if known.closed is None else known.closed
+    reached = known.n if known.reached is None else known.reached
 
     def step(node: Formula, below: tuple[Enclosure, ...]) -> Enclosure:
         nonlocal inside
@@ -97,7 +100,7 @@ def bounds(
             depth = ahead[id(node)]
             final = known.n if known.finished else 0 if depth is None else closed - depth
             # Known exactly, or not better later.
-            certain = _exact(node, below, len(wrong)) & (np.arange(len(wrong)) < known.n)
+            certain = _exact(node, below, len(wrong)) & (np.arange(len(wrong)) < reached)
             certain[: max(0, final)] = True
             if (wrong & certain).any():
                 i = int((wrong & certain).argmax())

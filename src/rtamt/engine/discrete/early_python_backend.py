@@ -332,7 +332,7 @@ class PythonEarlyMonitor:
                     ranges[name] = (low, high)
             n += first == last
         formula = self._start if output is None else self._outputs[output]
-        supposed = Knowledge(columns, n, ranges, closed=known.closed)
+        supposed = Knowledge(columns, n, ranges, closed=known.closed, reached=known.n)
         start = self._anchors.get(0, 0.0)
         earlier = self._earlier_of(formula)
         return self._pair(bounds(formula, supposed, self._period, start, earlier=earlier), sample)

@@ -83,6 +83,22 @@ def test_robustness_lies_within_the_bounds_under_a_prediction_that_comes_true(se
         assume(False)
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("text", "x", "y", "bounds"),
+    [
+        ("eventually[0:2](x + y >= 1)", [inf], [-inf], Interval(1.0, inf)),
+        ("eventually[0:2](sqrt(minimum[0:1](x)) + y >= 1)", [-9, -3], [1, 1], Interval(1.0, inf)),
+    ],
+)
+def test_an_operation_without_a_value_under_a_prediction_is_no_error(backend, text, x, y, bounds):
+    monitor = rtamt.parse(text, backend=backend).monitor(verdict="interval", at="every")
+    monitor.update(0, x=1, y=1)
+    assert monitor.interval(0, prediction={"x": (x, x), "y": (y, y)}) == bounds
+    with pytest.raises(EvaluationError, match="has no value at sample 1"):
+        monitor.update(1, x=x[0], y=y[0])
+
+
 def dense_draw(rng, drawn, came):
     """Draw a prediction that the signals fulfil behind the newest samples, or None for some variables."""
     prediction = {}
