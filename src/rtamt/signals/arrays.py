@@ -16,7 +16,7 @@ from rtamt.lazy.modules import dt, np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
-from rtamt.signals.time_columns import check_frame, check_mapping, is_labelled
+from rtamt.signals.time_columns import check_first_column, check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -105,6 +105,8 @@ def columns_of(
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
+        if not regular:
+            check_first_column(data, TIME, names)
     elif TIME not in keys:
         check_mapping(data, TIME, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}

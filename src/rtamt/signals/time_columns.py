@@ -114,6 +114,30 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
         )
 
 
+def check_first_column(frame: Any, time: str, names: Collection[str]) -> None:
+    """Raise :class:`TraceError` if the first column of a frame without the column ``time`` may hold the timestamps.
+
+    Its numbers then increase, but not by 1 from row to row, and no variable of ``names`` is read from it. Only where no
+    period is given.
+    """
+    columns = list(frame.columns)
+    if not columns or time in columns or columns[0] in names:
+        return
+    values = frame[columns[0]]
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):  # no numbers
+        return
+    steps = np.diff(numbers) if numbers.ndim == 1 else np.empty(0)
+    if len(steps) and (steps > 0).all() and (steps != 1).any():
+        raise TraceError(
+            f"the frame may have its timestamps in its first column '{columns[0]}', whose values increase, but not by "
+            f"1 from row to row: read the frame with rtamt.read(frame, time='{columns[0]}'), or give the period of the "
+            f"samples, such as period='1s'",
+            variable=time,
+        )
+
+
 def check_mapping(data: Mapping[Any, Any], time: str, names: Collection[str]) -> None:
     """Raise :class:`TraceError` if a mapping without the key ``time`` may have its timestamps elsewhere.
 

@@ -154,6 +154,22 @@ def test_a_large_file_is_rejected_by_the_quick_reader_as_well(
         evaluated(path, columns=["x"])
 
 
+@pytest.mark.parametrize("frame", [FRAME, pl.from_pandas(FRAME)], ids=["pandas", "polars"])
+def test_an_evaluation_of_a_frame_itself_rejects_its_first_column_unless_a_period_is_given(
+    frame: Any,
+) -> None:
+    for _ in range(3):
+        with pytest.raises(TraceError) as caught:
+            SPEC.evaluate(frame)
+        assert str(caught.value) == (
+            "the frame may have its timestamps in its first column 'Zeit', whose values increase, but not by 1 from "
+            "row to row: read the frame with rtamt.read(frame, time='Zeit'), or give the period of the samples, such "
+            "as period='1s'"
+        )
+        assert SPEC.evaluate(frame, period="1s").robustness == -1
+        assert SPEC.evaluate(frame[["x"]]).robustness == -1
+
+
 def test_a_selection_of_a_trace_is_rejected_like_it() -> None:
     trace = rtamt.read({"Zeit": [0, 2, 4, 6], "x": [1, 2, -1, 4]})
     with pytest.raises(TraceError, match="'Zeit' may hold the timestamps"):
