@@ -63,6 +63,7 @@ void BoundsEngine::begin(Tick newest) noexcept {
     clear();
     seen_before_ = seen_;
     seen_ = std::max(seen_, newest);
+    summed_ = seen_;
     if (!awaited_) return;
     for (State& state : nodes_)
         state.undefined_before = state.undefined;
@@ -96,6 +97,7 @@ void BoundsEngine::revert() {
         state.wrong_at = forever;
     }
     seen_ = seen_before_;
+    summed_ = seen_;
     complete_ = complete_before_;
     ended_ = false;
     clear();

@@ -222,6 +222,7 @@ class BoundsEngine {
     std::vector<Bounds> row_;                  // knowledge of the inputs at a tick
     Tick seen_ = -1;                           // the newest tick with samples
     Tick seen_before_ = -1;                    // the last change
+    Tick summed_ = -1;                         // the newest tick with samples, supposed ones too
     Tick complete_ = -1;                       // up to where all inputs are as well known as ever
     Tick complete_before_ = -1;                // the last change
     bool ended_ = false;                       // no more samples will arrive

@@ -128,6 +128,8 @@ std::optional<BoundsEngine::Failure> BoundsEngine::learn(std::span<const Observa
 std::optional<BoundsEngine::Failure>
 BoundsEngine::suppose(std::span<const Supposition> suppositions) {
     begin(seen_);
+    for (const Supposition& supposed : suppositions)
+        if (supposed.r < forever) summed_ = std::max(summed_, supposed.r);
     journaling_ = true;
     for (const Supposition& supposed : suppositions) {
         for (const std::uint32_t i : atoms_) {

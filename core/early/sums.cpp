@@ -1,9 +1,9 @@
 // Propagation of changes to sums: both registers at once, since inf - inf is undefined
 // for numbers and not for bounds.
 //
-// As far as samples have been seen, bounds are sums of bounds. Where a whole window lies beyond and
-// has the same bounds at every tick, the place of the window is open; a sum since the start is
-// bounded there by what was seen, or not at all.
+// As far as samples have been seen or are supposed one by one, bounds are sums of bounds. Where a
+// whole window lies beyond and has the same bounds at every tick, the place of the window is open;
+// a sum since the start is bounded there by what was seen, or not at all.
 #include "bounds_engine.hpp"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_up(std::uint32_t index, b
                 spans_.emplace_back(plus(piece.l, -own.high), plus(piece.r, -own.low));
             }
         }
-        if (seen_ > seen_before_) {
-            spans_.emplace_back(seen_before_ + 1 - own.high, seen_ - own.high);
+        if (summed_ > seen_before_) {
+            spans_.emplace_back(seen_before_ + 1 - own.high, summed_ - own.high);
         }
         std::ranges::sort(spans_);
     }
@@ -73,7 +73,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_windows(std::uint32_t ind
         const Run low = lower.at(begin);
         const Run high = upper.at(begin);
         same = std::min(low.end, high.end);
-        if (t + own.low >= 0 && end > seen_ && same >= end) {
+        if (t + own.low >= 0 && end > summed_ && same >= end) {
             const Tick last = std::min(r, plus(same, -own.high));
             lift(state, t, last, sums_[index].anywhere({low.value, -high.value}));
             t = plus(last, 1);
@@ -99,9 +99,9 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_all(std::uint32_t index, 
         lift(state, t, -own.high - 1, WindowSums::Add::identity);
         t = -own.high;
     }
-    t = std::min(t, seen_ + 1 - own.high); // what is unseen takes what was seen further
+    t = std::min(t, summed_ + 1 - own.high); // what is unseen takes what was seen further
     Bounds sum = t + own.high > 0 ? at(2 * index, t - 1) : WindowSums::Add::identity;
-    for (; t + own.high <= seen_; ++t) {
+    for (; t + own.high <= summed_; ++t) {
         sum = WindowSums::Add::join(at(own.a, t + own.high), sum);
         if (Interval::undefined(sum)) {
             has_no_value(index, 0, t, true);
@@ -110,7 +110,7 @@ std::optional<BoundsEngine::Failure> BoundsEngine::add_all(std::uint32_t index, 
         }
         lift(state, t, t, sum);
     }
-    const Tick unseen = seen_ + 1;
+    const Tick unseen = summed_ + 1;
     const bool rises = runs(own.a, 0).least(unseen, forever) >= 0;
     const bool falls = runs(own.a, 1).least(unseen, forever) >= 0;
     lift(state, t, forever, {rises ? sum.lower : -infinity, falls ? sum.upper : infinity});

@@ -99,6 +99,27 @@ def test_an_operation_without_a_value_under_a_prediction_is_no_error(backend, te
         monitor.update(1, x=x[0], y=y[0])
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("lateness", [None, "1s"])
+def test_a_sum_since_the_start_takes_in_predicted_samples(backend, lateness):
+    spec = rtamt.parse("always[0:3](sum(x) <= 10)", backend=backend)
+    monitor = spec.monitor(verdict="interval", lateness=lateness)
+    for t, x in enumerate([2, 1]):
+        monitor.update(t, x=x)
+    monitor.watermark(1)
+    before = monitor.interval(), monitor.interval(1)
+    assert before[0] == Interval(-inf, 7.0)
+    predicted = {"x": ([1, -5, 2], [3, 4, 2.5])}
+    # The sums are 2, 3, [4, 6], [-1, 10] and [1, 12.5].
+    assert monitor.interval(prediction=predicted) == Interval(0.0, 6.0)
+    assert monitor.interval(1, prediction=predicted) == Interval(-2.5, 6.0)
+    # The sample after the predicted ones may be anything.
+    assert monitor.interval(1, prediction={"x": ([1, -5], [3, 4])}) == Interval(-inf, 6.0)
+    assert (monitor.interval(), monitor.interval(1)) == before
+    monitor.update(2, x=9)
+    assert monitor.interval() == Interval(-inf, -2.0)
+
+
 def dense_draw(rng, drawn, came):
     """Draw a prediction that the signals fulfil behind the newest samples, or None for some variables."""
     prediction = {}
