@@ -38,6 +38,9 @@ class Places(Mapping["Formula", int]):
     def _found(self) -> dict[Formula, int]:
         return dict(self._pairs())
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (self._found,)
+
 
 class Origins(Sequence["Formula | None"]):
     """The formula of each instruction, computed on first use.
@@ -66,3 +69,6 @@ class Origins(Sequence["Formula | None"]):
     @cached_property
     def _found(self) -> tuple[Formula | None, ...]:
         return tuple(self._origins())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return tuple, (self._found,)
