@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from decimal import Decimal
 from fractions import Fraction
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 TOLERANCE = 0.1
 
 
-class DeferredTimes:
+class DeferredTimes(ABC):
     """Timestamps in seconds that become an array on first use; the array cannot be written."""
 
     __slots__ = ("_array", "_count")
@@ -45,8 +46,9 @@ class DeferredTimes:
             self._array = times
         return self._array
 
+    @abstractmethod
     def _made(self) -> FloatArray:
-        raise NotImplementedError
+        """Return the timestamps in an array of its own, which is then made read-only."""
 
 
 class RegularTimes(DeferredTimes):
