@@ -137,9 +137,12 @@ def terminal_width() -> int:
         chosen = 0
     if chosen > 0:
         return chosen
+    stream = sys.__stdout__
+    if stream is None:
+        return 80
     try:
-        return os.get_terminal_size(sys.__stdout__.fileno()).columns or 80  # type: ignore[union-attr] # as below
-    except (AttributeError, ValueError, OSError):  # no standard output, or one that is closed or no terminal
+        return os.get_terminal_size(stream.fileno()).columns or 80
+    except (ValueError, OSError):  # closed, or no terminal
         return 80
 
 
