@@ -358,7 +358,7 @@ class PythonEarlyMonitor:
             for first, last, low, high in self._reports[output]
         ]
 
-    def begin_at(self, sample: int) -> bool:  # noqa: ARG002 - see the core
+    def begin_at(self, _sample: int) -> bool:
         """Return False: the first sample is number 0."""
         return False
 
