@@ -50,7 +50,8 @@ class _Grid:
         self._formula = formula
         self._parts: dict[int, dict[Formula, StepBounds]] = {}  # by the identity of what is known
         last = max(max(int(times[-1]), now.until(name)) for name, (times, _, _) in now.samples.items())
-        self._size = last - start + 2 + 2 * sum(map(self._reach, postorder(core)))
+        # Two ticks after the last known one: a count is at most one more at the first of them, and unbounded after it.
+        self._size = last - start + 3 + 2 * sum(map(self._reach, postorder(core)))
         self._found: dict[Formula, list[Causation]] = {}
 
     def _bounds(self, node: Formula, known: DenseKnowledge) -> list[tuple[float, float]]:
