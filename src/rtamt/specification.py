@@ -229,6 +229,7 @@ class Specification(OnlineSpecification):
             self.input_names,
             own_time_bases=own_time_bases,
             source=data.source if isinstance(data, Trace) else "the data",
+            regular=own_time_bases or query.domain.step is not None,
         )
         return self.over(found.members), found.data
 

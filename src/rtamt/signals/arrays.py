@@ -68,6 +68,12 @@ class Timestamps(NamedTuple):
     original: NDArray[Any]
 
 
+class FrameColumns(dict[str, Any]):
+    """The columns of a frame under the names of variables: the first one is the first of the frame."""
+
+    __slots__ = ()
+
+
 def is_moment(time: Any) -> bool:
     """Return whether a time is a date or a duration, and not a number."""
     return isinstance(time, (dt.datetime, dt.timedelta, np.datetime64, np.timedelta64))
@@ -100,18 +106,29 @@ def columns_of(
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, WithTimeBases):
         if not regular:
-            data.require_period(names)
+            require_times(data, names)
         data = data.on_one_time_base(names)
     keys = _keys(data)
     if not is_mapping(data):
         check_frame(data, TIME, names)
-        if not regular:
-            check_first_column(data, TIME, names)
     elif TIME not in keys:
         check_mapping(data, TIME, names)
+    if not regular:
+        require_times(data, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
     times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
+
+
+def require_times(data: Any, names: Collection[str]) -> None:
+    """Raise :class:`TraceError` if the first column of data may hold the timestamps, and nothing reads it.
+
+    For samples whose period nothing gives. ``names``: the variables.
+    """
+    if isinstance(data, WithTimeBases):
+        data.require_period(names)
+    elif isinstance(data, FrameColumns) or not is_mapping(data):
+        check_first_column(data, list(data if isinstance(data, FrameColumns) else data.columns), TIME, names)
 
 
 def require_no_unit(data: Any, unit: str | None) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from rtamt.errors import TraceError, choices
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals.arrays import TIME, is_frame, is_mapping
+from rtamt.signals.arrays import TIME, FrameColumns, is_frame, is_mapping
 from rtamt.signals.time_columns import check_frame, split_unit
 
 if TYPE_CHECKING:
@@ -113,10 +113,13 @@ class Binding:
         used = {column for name, column in columns.items() if name in found} - set(self.names)
         return {**{key: value for key, value in data.items() if key not in used}, **found}
 
-    def _frame(self, data: Any) -> dict[Any, Any]:
-        columns = self.found_in(set(map(str, data.columns)))
+    def _frame(self, data: Any) -> FrameColumns:
+        names = list(data.columns)
+        columns = self.found_in(set(map(str, names)))
         check_frame(data, TIME, (*self.names, *columns.values()))
-        return self._mapping({name: data[name] for name in data.columns}, partial=False)
+        made = self._mapping({name: data[name] for name in names}, partial=False)
+        readers = [name for name, column in columns.items() if column in names[:1]]
+        return FrameColumns({name: made[name] for name in (*readers, *made)})
 
 
 def union(bindings: Iterable[Binding]) -> Binding:

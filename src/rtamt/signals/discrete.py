@@ -83,11 +83,14 @@ class Discrete(TimeDomain):
 
     period: Fraction | None
     tolerance: float
+    #: Whether nothing gave the period, so that it is 1 s.
+    assumed: bool = field(default=False, compare=False, repr=False)
 
     def __init__(self, period: Duration | None = None, tolerance: float = TOLERANCE) -> None:
         check_tolerance(tolerance)
         object.__setattr__(self, "period", None if period is None else positive_period(period))
         object.__setattr__(self, "tolerance", tolerance)
+        object.__setattr__(self, "assumed", False)
 
     @classmethod
     def of(cls, period: Duration | None, tolerance: float, resolution: Duration) -> Discrete:  # noqa: ARG003 - it has none
@@ -102,7 +105,11 @@ class Discrete(TimeDomain):
     @property
     def online(self) -> Discrete:
         """See :class:`TimeDomain`."""
-        return self if self.period is not None else Discrete(Fraction(1), self.tolerance)
+        if self.period is not None:
+            return self
+        found = Discrete(Fraction(1), self.tolerance)
+        object.__setattr__(found, "assumed", True)
+        return found
 
     def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`TimeDomain`."""

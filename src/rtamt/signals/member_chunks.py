@@ -15,6 +15,7 @@ from rtamt.signals.members import (
     members_of,
     names_of,
     on_one_time_base,
+    require_times_of_members,
     with_absences,
     with_aliases,
     with_gaps,
@@ -23,7 +24,7 @@ from rtamt.signals.time_columns import check_frame
 from rtamt.signals.trace import Trace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     from rtamt.signals.members import Fields
 
@@ -50,10 +51,16 @@ class Chunk(NamedTuple):
         }
 
 
-def chunk(data: Any, groups: Fields) -> Chunk:
-    """Return some samples of a stream with the members of groups as ordinary variables, of which there may be none."""
+def chunk(data: Any, groups: Fields, names: Collection[str], *, regular: bool) -> Chunk:
+    """Return some samples of a stream with the members of groups as ordinary variables, of which there may be none.
+
+    ``names``: the variables beside those of members. ``regular``: whether the period of samples without timestamps is
+    known.
+    """
     found = members_of(groups, names_of(data), aliases_of(data))
     known = columns_of_members(found, groups)
+    if not regular:
+        require_times_of_members(data, known, names)
     data = with_aliases(data, known)
     if isinstance(data, Trace):
         data = with_absences(data, [each.column(field) for each in known for field in each.fields])

@@ -19,7 +19,15 @@ from rtamt.lazy.tuples import NamedTuple
 from rtamt.rewrite.presence import channel_of
 from rtamt.rewrite.quantifiers import Members
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, WithTimeBases, field_of, is_frame, is_mapping, not_a_mapping
+from rtamt.signals.arrays import (
+    TIME,
+    WithTimeBases,
+    field_of,
+    is_frame,
+    is_mapping,
+    not_a_mapping,
+    require_times,
+)
 from rtamt.signals.inexact import gaps_of, items_of
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
@@ -93,18 +101,26 @@ def declared_fields(members: Mapping[str, tuple[str, ...]], groups: Fields) -> d
 
 
 def bound(
-    data: Any, groups: Fields, names: Collection[str], *, own_time_bases: bool, source: str = "the data"
+    data: Any,
+    groups: Fields,
+    names: Collection[str],
+    *,
+    own_time_bases: bool,
+    source: str = "the data",
+    regular: bool = True,
 ) -> Bound:
     """Return finished data with the members of groups as ordinary variables.
 
-    ``names``: the variables that formulas read in addition to those of members. Raises :class:`TraceError` for a group
-    without members.
+    ``names``: the variables that formulas read in addition to those of members. ``regular``: whether the period of
+    samples without timestamps is known. Raises :class:`TraceError` for a group without members.
     """
     known = names_of(data)
     members = members_of(groups, known, aliases_of(data))
     require_members(members, groups, known, source)
     read = _trace if isinstance(data, Trace) else _on_own_time_bases if own_time_bases else on_one_time_base
     columns = columns_of_members(members, groups)
+    if not regular:
+        require_times_of_members(data, columns, names)
     made, throughout = read(with_aliases(data, columns), columns, names)
     return Bound(made, Members(members, frozenset(throughout)))
 
@@ -141,6 +157,13 @@ def columns_of_members(members: Mapping[str, tuple[str, ...]], groups: Fields) -
         for member in members[name]:
             found.setdefault(member, {}).update({field: group.values(field) for field in fields})
     return [Member(member, fields) for member, fields in found.items()]
+
+
+def require_times_of_members(data: Any, members: Sequence[Member], names: Collection[str]) -> None:
+    """Raise :class:`TraceError` if the first column of data may hold the timestamps, see ``arrays.require_times``."""
+    known = {*names_of(data), *aliases_of(data)}
+    read = [*names, *(each.column(field) for each in members for field in each.fields)]
+    require_times(data, [name for name in read if name in known])
 
 
 def names_of(data: Any) -> list[str]:

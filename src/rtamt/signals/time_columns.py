@@ -12,7 +12,7 @@ from rtamt.lazy.patterns import lazy_pattern
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
 #: The names of time columns, in upper or lower case, optionally with a unit: ``Time [ms]``, ``time_ms``.
 NAMES = ("time", "t", "timestamp", "stamp", "datetime")
@@ -114,13 +114,12 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
         )
 
 
-def check_first_column(frame: Any, time: str, names: Collection[str]) -> None:
+def check_first_column(frame: Any, columns: Sequence[Any], time: str, names: Collection[str]) -> None:
     """Raise :class:`TraceError` if the first column of a frame without the column ``time`` may hold the timestamps.
 
     Its numbers then increase, but not by 1 from row to row, and no variable of ``names`` is read from it. Only where no
     period is given.
     """
-    columns = list(frame.columns)
     if not columns or time in columns or columns[0] in names:
         return
     values = frame[columns[0]]

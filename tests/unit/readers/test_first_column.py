@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import sqlite3
 from typing import TYPE_CHECKING, Any
 
@@ -174,3 +176,57 @@ def test_a_selection_of_a_trace_is_rejected_like_it() -> None:
     trace = rtamt.read({"Zeit": [0, 2, 4, 6], "x": [1, 2, -1, 4]})
     with pytest.raises(TraceError, match="'Zeit' may hold the timestamps"):
         SPEC.evaluate(trace.select(["x"]))
+
+
+GROUP = rtamt.parse('group cars = "car_*" { float x }; forall v in cars: always[0:2](v.x > 0)')
+BOUND = rtamt.parse('input float y = "x"\nalways[0:2](y > 0)')
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    "frame", [FRAME, pl.from_pandas(FRAME), rtamt.read(FRAME)], ids=["pandas", "polars", "trace"]
+)
+def test_a_monitor_rejects_the_first_column_of_a_chunk_unless_a_period_is_given(
+    frame: Any, backend: str
+) -> None:
+    spec = rtamt.parse(SPEC.text, backend=backend)
+    monitor = spec.monitor()
+    for each in (monitor, copy.copy(monitor), pickle.loads(pickle.dumps(monitor))):
+        with pytest.raises(TraceError, match=r"'Zeit'.* increase, but not by 1 from row to row"):
+            each.update_many(frame)
+        assert each.samples == 0
+    assert spec.monitor(period="1s").update_many(frame).values.tolist() == [-1, -1]
+    assert monitor.update_many(
+        {"x": frame["x"].values if frame is FRAME else [1, 2, -1, 4]}
+    ).values.tolist() == [-1, -1]
+
+
+def test_a_frame_is_looked_at_in_the_first_chunk_of_a_monitor_that_shows_more_than_one_row() -> None:
+    monitor = SPEC.monitor()
+    monitor.update_many(FRAME[:1])
+    with pytest.raises(TraceError, match="'Zeit'"):
+        monitor.update_many(FRAME[1:])
+    assert monitor.samples == 1
+    monitor.update_many(FRAME.assign(Zeit=[3, 1, 2, 3])[1:2])
+    monitor.update_many(FRAME[2:])
+    assert monitor.samples == 4
+
+
+@pytest.mark.parametrize("spec", [GROUP, BOUND], ids=["group", "recorded name"])
+def test_the_first_column_of_a_frame_is_rejected_beside_members_and_recorded_names(spec: Any) -> None:
+    frame = FRAME.rename(columns={"x": "car_1.x"}) if spec is GROUP else FRAME
+    for source in (frame, pl.from_pandas(frame), rtamt.read(frame)):
+        for take in (spec.evaluate, spec.monitor().update_many):
+            with pytest.raises(TraceError, match=r"'Zeit'.* increase, but not by 1 from row to row"):
+                take(source)
+        assert spec.evaluate(source, period="1s").robustness == -1
+        assert spec.monitor(period="1s").update_many(source).values.tolist() == [-1, -1]
+
+
+@pytest.mark.parametrize("spec", [GROUP, BOUND, SPEC], ids=["group", "recorded name", "own name"])
+def test_the_first_column_of_a_frame_may_be_a_variable(spec: Any) -> None:
+    frame = pd.DataFrame(
+        {"car_1.x" if spec is GROUP else "x": [1.0, 2.5, 3.5, 4.0], "z": [1.0, 2.5, 3.5, 4.0]}
+    )
+    assert spec.evaluate(frame).robustness == 1
+    assert spec.monitor().update_many(frame).values.tolist() == [1, 2.5]

@@ -74,6 +74,7 @@ class Monitor(MonitorBase, CheckedSamples):
         if episodes:
             self._remember_episodes(continuous=False)
         self._period = period
+        self._assumed = domain.assumed
         self._tolerance = domain.tolerance
         self._lags = [int(depth / period) for depth in self._depths]
         self._oldest = max(self._lags)  # the largest number of samples without a value
@@ -158,7 +159,18 @@ class Monitor(MonitorBase, CheckedSamples):
         taken = self._take_columns(data)
         if taken is not None:
             return taken
-        return self._push(*arrays.columns_of(data, self.input_names, self._times.unit, self._types))
+        regular = self.has_period(data)
+        return self._push(
+            *arrays.columns_of(data, self.input_names, self._times.unit, self._types, regular=regular)
+        )
+
+    def has_period(self, data: Any) -> bool:
+        """Return whether a chunk without timestamps needs none: the period was given, or earlier samples had it.
+
+        A frame is looked at as long as its first column is all that there is to see: in a short later chunk, any
+        variable may happen to increase.
+        """
+        return not self._assumed or (self.samples > 1 and not isinstance(data, arrays.WithTimeBases))
 
     def _take_columns(self, data: Any) -> Signal | None:
         """Take a chunk that needs no conversion; None for any other, which is not taken."""

@@ -190,7 +190,8 @@ class MemberMonitor(SampledMembers):
         Returns the new values as a Signal. Raises the errors of :meth:`update`.
         """
         data = self._binding.applied(data)
-        made = chunk(data, self._fields)
+        regular = self._outer.has_period(data)
+        made = chunk(data, self._fields, self.input_names, regular=regular)
         names = [*self.input_names, *made.columns]
         timestamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
         if n == 0:
