@@ -63,11 +63,11 @@ std::optional<Tick> Samples::latest_first() const noexcept {
     return latest;
 }
 
-// No sample can arrive up to the closed tick, so the first one after it is the first of all.
+// No sample can arrive up to the closed tick, so the first one right behind it is the first of all.
 std::optional<Tick> Samples::first_start() const noexcept {
     if (now_.start) return now_.start;
     const auto start = latest_first();
-    return lateness_ && start > now_.closed ? std::nullopt : start;
+    return lateness_ && start && *start - 1 > now_.closed ? std::nullopt : start;
 }
 
 void Samples::find_start() noexcept {

@@ -50,8 +50,9 @@ class DiscreteEarly final : public KeyMonitor {
         } else {
             keep(seen_of(sample));
             const double span = early_.back().time - early_.front().time;
-            if (std::nearbyint(span / monitor_.period()) >
-                static_cast<double>(*program_.lateness)) {
+            if (std::nearbyint(span / monitor_.period()) >=
+                    static_cast<double>(*program_.lateness) ||
+                is_first(early_.front().time, mark_)) {
                 begin();
             }
         }
@@ -62,7 +63,7 @@ class DiscreteEarly final : public KeyMonitor {
         if (!interval()) return KeyMonitor::watermark(time, index, rows);
         check_time(time);
         forget_start();
-        if (!early_.empty() && time >= early_.front().time) begin();
+        if (!early_.empty() && is_first(early_.front().time, time)) begin();
         if (const auto failure = monitor_.watermark(time)) {
             fail(*failure, monitor_.newest(), monitor_.last_time());
         }
@@ -202,6 +203,11 @@ class DiscreteEarly final : public KeyMonitor {
             if (sample.given[input] != 0) seen.known.push_back({input, sample.values[input]});
         }
         return seen;
+    }
+
+    // Whether a watermark excludes all samples before one.
+    [[nodiscard]] bool is_first(double time, std::optional<double> mark) const noexcept {
+        return mark && (*mark - time) / monitor_.period() + program_.tolerance >= -1;
     }
 
     // Whether a sample did not come too late, and was taken.

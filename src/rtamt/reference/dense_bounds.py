@@ -72,7 +72,7 @@ class DenseKnowledge:
         if self.begins is not None:
             return self.begins
         for name, (times, _, _) in self.samples.items():
-            if not len(times) or (int(times[0]) > self.until(name) and not self.finished):
+            if not len(times) or (int(times[0]) > self.until(name) + 1 and not self.finished):
                 return None
         return self.latest_first
 

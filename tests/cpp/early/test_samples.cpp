@@ -32,7 +32,7 @@ struct Model {
     [[nodiscard]] std::optional<Tick> start() const {
         Tick start = -1000;
         for (std::size_t i = 0; i < 2; ++i) {
-            if (inputs[i].empty() || inputs[i].begin()->first > until(i)) return std::nullopt;
+            if (inputs[i].empty() || inputs[i].begin()->first - 1 > until(i)) return std::nullopt;
             start = std::max(start, inputs[i].begin()->first);
         }
         return start;

@@ -196,7 +196,7 @@ class _DenseIntervals(_Dense):
         columns: dict[str, Any] = {}
         for name, own in samples.items():
             known = max([closed, *(own if self._lateness is None else ())])
-            if not own or (min(own) > known and not self._finished):
+            if not own or (min(own) > known + 1 and not self._finished):
                 columns[name] = (), (), ()
                 continue
             ticks = range(min(own), max(newest, known, *own) + 2)

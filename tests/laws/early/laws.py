@@ -165,6 +165,24 @@ def any_order(case: Case, made: Implementation, order: list[int]) -> None:
     assert finals[0] == finals[1]
 
 
+def late(case: Case, made: Implementation, order: list[int], lateness: int) -> None:
+    """Bounds of samples in any order are as defined by those that have arrived, once no earlier one can arrive."""
+    if made is DEFINITION:
+        raise NothingToCheck
+    monitor = made.interval(case.formula, case.names, case.ranges, lateness)
+    unseen, definition = (DEFINITION.interval(case.formula, case.names, case.ranges) for _ in range(2))
+    try:
+        for k, i in enumerate(order):
+            for each in (monitor, definition):
+                each.update(i, **{name: given(known) for name, known in case.samples[i].items()})
+            came = order[: k + 1]
+            expected = definition if max(came) - min(came) >= lateness else unseen
+            for t in range(case.n):
+                assert monitor.interval(t) == expected.interval(t)
+    except EvaluationError:
+        raise NothingToCheck from None
+
+
 def fails_alike(case: Case, made: Implementation, order: list[int], lateness: int) -> None:
     """The same samples, in any order within the lateness, fail as with the Python back end; or the end does."""
     for kind in ("interval", "eager"):

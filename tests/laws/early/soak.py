@@ -63,6 +63,13 @@ def any_order(rng: Random, made: Implementation) -> None:
     laws.any_order(drawn, made, order)
 
 
+def late(rng: Random, made: Implementation) -> None:
+    drawn = case(rng)
+    order = sorted(range(drawn.n), key=lambda i: i + rng.randint(0, 3))
+    lateness = max(max(order[: k + 1]) - i for k, i in enumerate(order))
+    laws.late(drawn, made, order, lateness + rng.choice((0, 0, 1, 3)))
+
+
 def tight(rng: Random, made: Implementation) -> None:
     drawn = case(rng, ranges=True, most=2, odd=False)
     laws.tight(drawn, made)
@@ -188,6 +195,7 @@ LAWS: list[Law] = [
     accepted,
     as_defined,
     any_order,
+    late,
     tight,
     fails_alike,
     eager,

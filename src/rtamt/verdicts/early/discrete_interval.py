@@ -176,8 +176,13 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         times = self._rehearse(time, known)
         self._early.append((time, known))
         assert self._late is not None
-        if round((times[-1] - times[0]) / float(self._step)) > self._late:
+        late = round((times[-1] - times[0]) / float(self._step)) >= self._late
+        if late or self._is_first(times[0], self._mark):
             self._start()
+
+    def _is_first(self, time: float, mark: float | None) -> bool:
+        """Return whether a watermark excludes all samples before one."""
+        return mark is not None and (mark - time) / float(self._step) + self._tolerance >= -1
 
     def _rehearse(self, time: float, known: dict[str, tuple[float, float] | None]) -> list[float]:
         """Raise the error for a sample that cannot be taken once the trace starts, and every later one with it.
@@ -281,7 +286,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             raise self._no_value(error) from None
 
     def _watermark(self, time: float) -> None:
-        if self._early and time >= min(then for then, _ in self._early):
+        if self._early and self._is_first(min(then for then, _ in self._early), time):
             self._start()
         else:
             self._note({})

@@ -10,7 +10,7 @@ from math import inf
 import pytest
 
 import rtamt
-from rtamt import EvaluationError, Interval, StlError
+from rtamt import EvaluationError, Interval, StlError, TraceError
 from rtamt.verdicts.early.discrete_interval import latest
 
 SETTINGS = {"verdict": "interval", "ranges": {"x": (0, 10)}}
@@ -233,7 +233,7 @@ def test_first_samples_in_the_reverse_order_need_one_rehearsal_and_give_the_boun
     monkeypatch,
 ):
     spec = rtamt.parse("historically[0:3](sqrt(x) >= 1) since y > 0", period=1)
-    reverse, other = (spec.monitor(verdict="interval", lateness=100) for _ in range(2))
+    reverse, other = (spec.monitor(verdict="interval", lateness=101) for _ in range(2))
     opened = []
     session = reverse._session.open
     monkeypatch.setattr(reverse._session, "open", lambda: opened.append(session()) or opened[-1])
@@ -250,7 +250,40 @@ def test_first_samples_in_the_reverse_order_need_one_rehearsal_and_give_the_boun
         monitor.update(101, x=2.0, y=1.0)
         assert monitor.samples == 102
     assert reverse.changes() == other.changes() != []
+    assert len(opened) == 1
     assert reverse.finish() == other.finish()
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", [rtamt.Discrete("1s"), rtamt.Dense("1s")])
+def test_trace_starts_as_soon_as_no_earlier_sample_can_arrive(time, backend):
+    def monitor(**settings):
+        made = rtamt.parse("always[0:1](x >= 3)", time=time, backend=backend).monitor(
+            verdict="interval", **settings
+        )
+        made.watermark(-5)
+        return made
+
+    late = monitor(lateness="2s")
+    late.update(2, x=5.0)
+    late.update(1, x=4.0)
+    assert late.interval() == Interval(-inf, inf)
+    late.update(3, x=6.0)  # one at 0 s would be too late
+    assert late.interval().upper == 1.0
+    replays = monitor(on_correction="replay")
+    replays.update(0, x=4.0)
+    assert replays.interval() == Interval(-inf, 1.0)
+    for declare in (lambda each: each.watermark(-1), lambda each: each.advance(1)):
+        before, after = monitor(lateness="2s"), monitor(lateness="2s")
+        declare(before)
+        before.update(0, x=4.0)
+        after.update(0, x=4.0)
+        declare(after)
+        for each in (before, after):
+            assert each.interval() == Interval(-inf, 1.0)
+            each.update(1, x=5.0)
+            with pytest.raises(TraceError, match="later than the lateness of 2 s allows"):
+                each.update(-1, x=3.0)
 
 
 @pytest.mark.parametrize("backend", ["cpp", "python"])
