@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import plots
+import start_up
 import summary
 from cases import LONGEST, PATIENCE
 
@@ -25,6 +26,7 @@ def write(
     folder: Path,
     running: list[Tool],
     absent: list[tuple[str, str]],
+    starts: dict[str, start_up.Start],
     many: dict[str, Any],
     machine: list[dict[str, Any]],
     facts: dict[str, Any],
@@ -34,10 +36,10 @@ def write(
     drawn = plots.draw(folder / "plots", running)
     parts = [
         head(facts),
-        summary.write(ratios(running), ready(running), machine),
+        summary.write(ratios(running), start_up.ratios(starts), machine),
         how(running, absent),
         *(table(group, running, drawn) for group in groups(running)),
-        start_up(running),
+        start_up.section(starts),
         at_once(many),
         known(many),
         against_the_machine(machine),
@@ -62,7 +64,8 @@ def how(running: list[Tool], absent: list[tuple[str, str]]) -> str:
     missing = "\n".join(f"- {name}: {reason}" for name, reason in absent)
     return f"""## How this was measured
 
-Every tool runs in a separate process and a separate environment. Figures are processor times of that
+Every tool runs in a separate process and a separate environment, in which its wheel or source package is
+installed, ours too. Figures are processor times of that
 process, and wall-clock times only at start-up and for threads. The cache is shared with other processes, so
 ratios are more meaningful than times. The number in parentheses is a tool's time divided by ours: the median of the
 ratios of all rounds. Formulas are parsed and samples are converted to the input format of the tool (lists, dicts;
@@ -154,21 +157,6 @@ def amount(seconds: float) -> str:
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds * 1e9:.3g} ns"
-
-
-def ready(running: list[Tool]) -> dict[str, float]:
-    """Return the ratio of the start-up time of every other tool to ours."""
-    ours = median(running[0].start_up)
-    return {t.label: median(t.start_up) / ours for t in running[1:] if not t.label.startswith("this")}
-
-
-def start_up(running: list[Tool]) -> str:
-    """Return how long each process takes to be ready: Python, the tool, and its adapter."""
-    lines = ["## Start-up: Python, the tool imported, its adapter ready", "", "| tool | time |", "|---|---:|"]
-    lines += [
-        f"| {tool.label} | {amount(median(tool.start_up))} |" for tool in running if "(" not in tool.label
-    ]
-    return "\n".join(lines)
 
 
 def at_once(many: dict[str, Any]) -> str:

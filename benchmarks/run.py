@@ -25,27 +25,17 @@ from cases import LIMIT, LONGEST, Case, cases  # first: it says where the module
 from asking import Talk, tree  # isort: skip
 from peers import HERE, PEERS  # isort: skip
 
+import own_wheel
+import start_up
+from start_up import ENV, compiled
+
 from rtamt.language.parsing.parser import parse_formula
 
 ROUNDS = 5
 PATIENCE = 10.0  # seconds for an answer
 SLOWEST = 1.0  # the limit of one update in seconds, extrapolated from the previous case
-#: Python reads the bytecode of all that a tool imports: it is written before the clock runs (`compiled`).
-ENV = ("env", "-u", "PYTHONDONTWRITEBYTECODE")
-#: Everything that the interpreter of a tool imports but its standard library, which came compiled.
-IMPORTED = "import sys, site; print(*site.getsitepackages(), *sys.path, sep='\\n')"
 FOLDER = Path(__file__).parent
-SOURCE = FOLDER.parent / "src"
 FUSED = FOLDER.parent / "build" / "bench" / "benchmarks" / "fused_bench"
-
-
-def compiled(python: str) -> None:
-    """Compile the modules of a tool's environment and its adapter to bytecode, as an installation does."""
-    said = subprocess.run([*ENV, python, "-c", IMPORTED], check=True, capture_output=True, text=True).stdout
-    found = {path for path in said.splitlines() if path.endswith("-packages")}
-    folders = [*sorted(found), str(HERE), *([str(SOURCE)] if python == sys.executable else [])]
-    # A package may hold a template or test that is no valid Python; it is not imported either.
-    subprocess.run([*ENV, python, "-m", "compileall", "-qq", *folders], check=False)
 
 
 class Tool:
@@ -54,25 +44,12 @@ class Tool:
     def __init__(self, label: str, command: list[str], env: dict[str, str] | None = None) -> None:
         compiled(command[0])
         settings = [f"{name}={value}" for name, value in (env or {}).items()]
-        self._command = [*ENV, *settings, *command]
-        self.talk = Talk(self._command, PATIENCE)
-        self.start_up: list[float] = []
-        self.start_again()
+        self.python = command[0]
+        self.talk = Talk([*ENV, *settings, *command], PATIENCE)
         self.label = label
         self.version = self.talk.peer
         self.figures: dict[Case, list[float]] = defaultdict(list)
         self.refusals: dict[Case, str] = {}
-
-    def start_again(self) -> None:
-        """Time one more start: Python, the tool's import, and what its adapter imports.
-
-        A start that is not timed comes before it: otherwise the first tool of a round would load the caches of
-        the machine for the others, which share the interpreter.
-        """
-        Talk(self._command, PATIENCE).close()
-        start = time.perf_counter()
-        Talk(self._command, PATIENCE).close()
-        self.start_up.append(time.perf_counter() - start)
 
     def ask(self, case: Case, before: Case | None, limit: float) -> None:
         """Time a case, unless it was refused or, by the smaller one before it, would take too long."""
@@ -125,9 +102,12 @@ class Tool:
         return max(1.0, median(self.figures[case]) / median(self.figures[last])) if last.x >= 1000 else 1.0
 
 
-def tools(alone: bool) -> tuple[list[Tool], list[tuple[str, str]]]:
-    """Start every tool; return those that run, and of the others why they do not."""
-    this = [sys.executable, str(HERE / "ask_this.py")]
+def tools(alone: bool, quick: bool) -> tuple[list[Tool], list[tuple[str, str]]]:
+    """Start every tool; return those that run, and of the others why they do not.
+
+    Ours is the wheel; to try everything quickly, what runs this.
+    """
+    this = [sys.executable if quick else own_wheel.python(), str(HERE / "ask_this.py")]
     running = [Tool("this", this), Tool("this (python)", this, {"RTAMT_BENCH_BACKEND": "python"})]
     running.insert(1, Tool("this (step)", this, {"RTAMT_BENCH_STEP": "1"}))
     absent = [("RTAMT's C++ back end", "in no wheel or source package on PyPI")]
@@ -156,9 +136,6 @@ def measure(running: list[Tool], quick: bool) -> int:
             for tool in running:
                 tool.ask(case, last.get(case.key), 0.01 if quick else LIMIT)
             last[case.key] = case
-        if not quick:
-            for tool in running:
-                tool.start_again()
     return rounds
 
 
@@ -184,8 +161,10 @@ def main() -> None:
     import report
 
     begin, load = time.perf_counter(), os.getloadavg()
-    running, absent = tools(arguments.alone)
+    running, absent = tools(arguments.alone, arguments.quick)
     rounds = measure(running, arguments.quick)
+    interpreters = {tool.label: tool.python for tool in running if "(" not in tool.label}
+    starts = start_up.measure(interpreters, 1 if arguments.quick else start_up.PROCESSES)
     command = [sys.executable, str(FOLDER / "many.py"), *(["--quick"] if arguments.quick else [])]
     many = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     machine = fused(arguments.quick) if FUSED.exists() else []
@@ -196,7 +175,7 @@ def main() -> None:
         "seconds": time.perf_counter() - begin,
         "load": (load[0], os.getloadavg()[0]),
     }
-    report.write(arguments.out, running, absent, many, machine, facts)
+    report.write(arguments.out, running, absent, starts, many, machine, facts)
     early = [sys.executable, str(FOLDER / "early.py"), "1000" if arguments.quick else "100000"]
     subprocess.run([*early, "--into", str(arguments.out / "RESULTS.md")], check=True)
     print(f"written: {arguments.out / 'RESULTS.md'}", file=sys.stderr)

@@ -15,7 +15,8 @@ FOLDER = Path(__file__).parents[2] / "benchmarks"
 PEERS = FOLDER.parent / "conformance" / "peers"
 sys.path[:0] = [str(FOLDER), str(PEERS)]
 
-import summary  # noqa: E402 - found by the line above
+import start_up  # noqa: E402 - found by the line above
+import summary  # noqa: E402 - found in the path set above
 import timescales  # noqa: E402 - found in the path set above
 from cases import Case  # noqa: E402 - found in the path set above
 
@@ -100,3 +101,20 @@ def test_the_reader_of_a_tool_is_timed_without_the_adapter(monkeypatch):
     answer = timing.measure(None, reading, {"var": "a"}, "dense", "online", {"kind": "parse"})
     assert done == [("written", {"var": "a"}, "dense", "online", ["a"])] + ["read"] * 5
     assert answer == {"seconds": 1}
+
+
+def test_every_program_that_is_started_prints_the_verdict_and_is_counted_but_for_its_first_process():
+    starts = start_up.measure({"this": sys.executable}, 2)
+    assert list(starts) == [start_up.ALONE, "this"]
+    assert all(len(start.verdict) == len(start.processor) == 2 for start in starts.values())
+    assert all(seconds > 0 for start in starts.values() for seconds in (*start.verdict, *start.processor))
+
+
+def test_start_up_is_compared_process_by_process():
+    starts = {
+        start_up.ALONE: start_up.Start([0.01, 0.01, 0.01], [0.01, 0.01, 0.01]),
+        "this": start_up.Start([0.05, 0.05, 0.05], [0.02, 0.04, 0.05]),
+        "Reelay": start_up.Start([0.05, 0.05, 0.06], [0.04, 0.04, 0.01]),
+    }
+    assert start_up.ratios(starts) == {"Reelay": 1.0}
+    assert "| Reelay | 50.0 ms | 40.0 ms | 30.0 ms |" in start_up.section(starts)
