@@ -159,7 +159,7 @@ def evaluate_all(
     for number in apart:
         results[number] = specs[number].evaluate(data, tolerance=tolerance, **reading)
     for group in groups:
-        trace = group.way.recording(data)
+        trace = group.recording(data)
         for number, asking in group.asked.items():
             with _place(number):
                 asking.spec._check(asking.query, trace)
@@ -206,9 +206,9 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     if spec.groups:
         over, bound = spec._over_data(query, data)
         return evaluate_requirements(over, bound)
-    recording = spec._with_units(
-        query.record(spec._sample(query, spec.binding.applied(data)), spec.input_names, spec.types)
-    )
+    sampled = spec._sample(query, spec.binding.applied(data))
+    recording = spec._with_units(query.record(sampled, spec.input_names, spec.types))
+    spec._require_period(query, sampled)
     if spec.resolved is not None:
         recording = recording.ended_by(spec.resolved[0].input_names)
     spec._check(query, recording)

@@ -14,6 +14,7 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
+from rtamt.signals.arrays import require_times_of_each
 from rtamt.specification_online import OnlineSpecification
 
 if TYPE_CHECKING:
@@ -161,6 +162,7 @@ class Specification(OnlineSpecification):
             # Signals with separate time bases need conversion even if they are plain; this is detected once.
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
+        self._require_period(query, data)
         if self.units:
             recording = self._with_units(recording)
         self._check(query, recording)
@@ -232,6 +234,11 @@ class Specification(OnlineSpecification):
             regular=own_time_bases or query.domain.step is not None,
         )
         return self.over(found.members), found.data
+
+    def _require_period(self, query: Query, data: Any) -> None:
+        """Raise :class:`TraceError` if one of several requirements needs a period that nothing gives."""
+        if len(self.requirements) > 1 and query.domain.sampled and query.domain.period is None:
+            require_times_of_each(data, [one.input_names for one in self.requirements.values()])
 
     def _sample(self, query: Query, data: Any) -> Any:
         """Return data with the samples that the sampling rule takes of it."""

@@ -13,6 +13,7 @@ from rtamt.cli.reading_options import names_of, reading_of
 from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.tuples import NamedTuple
 from rtamt.readers.sql import shown
 from rtamt.specification_loader import packs
 
@@ -163,17 +164,31 @@ def specification_paths(given: Sequence[str]) -> list[str]:
     return found
 
 
-def result_of_one(args: Namespace, command: str) -> tuple[str, Result]:
-    """Evaluate one specification over one recording; return the name of the recording, and the result."""
-    requirement, trace, reading = _one(args, command)
-    ((_, result),) = _results([replace(requirement, rows=())], trace, reading).items()
-    return shown(trace), result
+class Evaluated(NamedTuple):
+    """One recording: its name, the result of each requirement, and the notes that belong to the verdicts."""
+
+    trace: str
+    results: dict[str, Result]
+    notes: list[str]
+
+    @property
+    def listed_notes(self) -> str:
+        """The notes, as ``rtamt check`` prints them; each is a line."""
+        return "".join(f"\nnote: {self.trace}: {note}" for note in self.notes)
 
 
-def results_of_one(args: Namespace, command: str) -> tuple[str, dict[str, Result]]:
-    """Evaluate one specification over one recording; return its name, and the result of each requirement."""
+def result_of_one(args: Namespace, command: str) -> tuple[Evaluated, Result]:
+    """Evaluate one specification over one recording as a whole; return what is known, and the result."""
     requirement, trace, reading = _one(args, command)
-    return shown(trace), _results([requirement], trace, reading)
+    evaluated = _results([replace(requirement, rows=())], trace, reading)
+    ((_, result),) = evaluated.results.items()
+    return evaluated, result
+
+
+def results_of_one(args: Namespace, command: str) -> Evaluated:
+    """Evaluate each requirement of one specification over one recording."""
+    requirement, trace, reading = _one(args, command)
+    return _results([requirement], trace, reading)
 
 
 def _one(args: Namespace, command: str) -> tuple[Requirement, str, Reading]:
@@ -185,8 +200,9 @@ def _one(args: Namespace, command: str) -> tuple[Requirement, str, Reading]:
     return requirement, trace, reading_of(args, requirement.spec.input_names, whole=True)
 
 
-def _results(requirements: list[Requirement], trace: str, reading: Reading) -> dict[str, Result]:
-    found = {}
+def _results(requirements: list[Requirement], trace: str, reading: Reading) -> Evaluated:
+    found: dict[str, Result] = {}
+    notes: dict[str, None] = {}
     for row, outcome in zip(
         each_requirement(requirements), evaluate(requirements, trace, reading), strict=True
     ):
@@ -194,10 +210,11 @@ def _results(requirements: list[Requirement], trace: str, reading: Reading) -> d
             complain(f"{row.label}, {outcome.trace}: {outcome.unchecked}")
         if outcome.result is not None:
             found[row.written.name] = outcome.result
+            notes.update(dict.fromkeys(outcome.notes))
         elif outcome.error:
             raise CommandError(outcome.error)
     if not found:
         raise CommandError(
             f"{shown(trace)}: nothing was checked: every requirement reads signals that the recording lacks"
         )
-    return found
+    return Evaluated(shown(trace), found, list(notes))

@@ -234,14 +234,17 @@ def read_library(args: argparse.Namespace, time: str, file: str) -> Specificatio
 
 
 def assumes_period(spec: Specification, time_column: str | None) -> bool:
-    """Return whether samples without timestamps are 1 s apart by default, and a formula has bounds in time.
+    """Return whether samples without timestamps are 1 s apart by default, and a formula has bounds in time or a rate.
 
     ``time_column``: that of the options, "" for none.
     """
     if time_column is not None or spec.period is not None or not spec.domain.sampled:
         return False
-    intervals = (node.interval for node in postorder(spec.formula) if isinstance(node, Apply))
-    return any(interval is not None and not interval.implied for interval in intervals)
+    return any(
+        node.op.timed or (node.interval is not None and not node.interval.implied)
+        for node in postorder(spec.formula)
+        if isinstance(node, Apply)
+    )
 
 
 def settings_of(args: argparse.Namespace, time: str, *, runs: bool) -> Settings:

@@ -15,6 +15,7 @@ from rtamt.explain.explanation import SHORT
 if TYPE_CHECKING:
     import argparse
 
+    from rtamt.cli.arguments import Evaluated
     from rtamt.explain.explanation import Explanation
 
 _DESCRIPTION = """\
@@ -31,7 +32,8 @@ is its robustness. Of a cause with many intervals, those closest to the critical
 --json prints one object: {"trace", "formula", "time", "satisfied", "robustness", "first_violation", "critical",
 "implicant"}. If SPEC has several requirements, it prints one object per line, with "requirement" as the first
 key. "end" is null for an interval of the implicant that never ends; "closed" states whether an interval
-contains its end. "reads" lists the samples of signals that a predicate depends on.
+contains its end. "reads" lists the samples of signals that a predicate depends on. "notes" lists what was assumed,
+left out or lost of the recording, if anything.
 Infinities are the strings "inf" and "-inf", because JSON has none.
 
 examples:
@@ -54,22 +56,28 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate the trace and explain the results."""
     with Progress() as progress:
         progress.show("evaluating")
-        trace, results = results_of_one(args, "explain")
+        evaluated = results_of_one(args, "explain")
         try:
-            explanations = {name: part.explain(instant(args.at, part)) for name, part in results.items()}
+            explanations = {
+                name: part.explain(instant(args.at, part)) for name, part in evaluated.results.items()
+            }
         except StlError as error:
-            raise CommandError(f"{trace}: {error}") from error
+            raise CommandError(f"{evaluated.trace}: {error}") from error
     alone = len(explanations) == 1
     if args.json:
         for name, explanation in explanations.items():
-            say(_as_json({} if alone else {"requirement": name}, trace, explanation))
+            say(_as_json({} if alone else {"requirement": name}, evaluated, explanation))
     else:
         texts = {
             name: explanation.text(None if args.all else SHORT) for name, explanation in explanations.items()
         }
-        say("\n\n".join(text if alone else f"{name}: {text}" for name, text in texts.items()))
+        whole = "\n\n".join(text if alone else f"{name}: {text}" for name, text in texts.items())
+        say(f"{whole}\n{evaluated.listed_notes}" if evaluated.notes else whole)
     return OK if all(explanation.satisfied for explanation in explanations.values()) else VIOLATED
 
 
-def _as_json(of: dict[str, str], trace: str, explanation: Explanation) -> str:
-    return json_text({**of, "trace": trace, **explanation.to_dict()}, default=str)  # dates are texts
+def _as_json(of: dict[str, str], evaluated: Evaluated, explanation: Explanation) -> str:
+    notes = {"notes": evaluated.notes} if evaluated.notes else {}
+    return json_text(
+        {**of, "trace": evaluated.trace, **explanation.to_dict(), **notes}, default=str
+    )  # dates are texts

@@ -78,9 +78,9 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"--rerun is '{args.rerun}', which is no recording of Rerun; write to a file .rrd")
     with Progress() as progress:
         progress.show("evaluating")
-        trace, results = results_of_one(args, "export")
+        evaluated = results_of_one(args, "export")
         try:
-            content = content_of(results, bounds=args.bounds)
+            content = content_of(evaluated.results, bounds=args.bounds)
             if args.output is not None:
                 progress.show(f"writing {args.output}")
                 write_content(content, args.output)
@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
                 progress.show(f"writing {args.rerun}")
                 log_content(content, args.rerun)
         except StlError as error:
-            raise CommandError(f"{trace}: {error}") from error
+            raise CommandError(f"{evaluated.trace}: {error}") from error
     if args.layout is not None:
         write_output(args.layout, f"{json_text(layout_of(content), indent=2)}\n")
     verdicts = [finding.verdict for finding in content.findings]
@@ -96,4 +96,6 @@ def run(args: argparse.Namespace) -> int:
     for path in (args.output, args.layout, args.rerun):
         if path is not None:
             say(f"{path}: {counted}")
+    if evaluated.notes:
+        say(evaluated.listed_notes.lstrip("\n"))
     return OK

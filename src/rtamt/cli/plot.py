@@ -71,10 +71,10 @@ def run(args: argparse.Namespace) -> int:
     figure = _window() if args.output is None else _sheet(args.output)
     with Progress() as progress:
         progress.show("evaluating")
-        trace, result = result_of_one(args, "plot")
+        evaluated, result = result_of_one(args, "plot")
         if isinstance(result.known, Mapping):
             raise CommandError(
-                f"{trace}: the requirements start at different times, so that they have no plot in common; "
+                f"{evaluated.trace}: the requirements start at different times, so that they have no plot in common; "
                 "'rtamt report' plots each of them"
             )
         try:
@@ -82,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
             ends = (instant(args.start, result, "--from"), instant(args.end, result, "--to"))
             window = seen.window(*ends, args.zoom)
         except StlError as error:
-            raise CommandError(f"{trace}: {error}") from error
+            raise CommandError(f"{evaluated.trace}: {error}") from error
     if args.tree:
         draw_tree(seen, figure)
     else:
@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
             figure.savefig(new, dpi=150)
     except OSError as error:
         raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
-    say(f"{args.output}: {seen.verdict}")
+    say(f"{args.output}: {seen.verdict}{evaluated.listed_notes}")
     return OK
 
 

@@ -11,13 +11,14 @@ from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.tuples import NamedTuple
+from rtamt.signals.arrays import require_times_of_each
 from rtamt.signals.binding import Binding, union
 from rtamt.signals.sampling import sampled
 from rtamt.verdicts.preparation import is_storable, prepare
 from rtamt.verdicts.prepared import Asked, Found, Prepared
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.engine import OnlineMonitor
@@ -65,13 +66,18 @@ class Way:
         """The variables."""
         return self.binding.names
 
-    def recording(self, data: Any) -> DomainTrace:
-        """Normalise a recording; raise :class:`TraceError` for wrong data."""
+    def recording(self, data: Any, read: Collection[Sequence[str]] = ()) -> DomainTrace:
+        """Normalise a recording; raise :class:`TraceError` for wrong data.
+
+        ``read``: the variables of each requirement.
+        """
         data = self.binding.applied(data)
         if self.rule is not None:
             period = self.domain.period or self.rule.period
             data = sampled(data, self.inputs, self.rule, period, self.unit)
         trace = self._query.record(data, self.inputs, self.types)
+        if len(read) > 1 and self.domain.sampled and self.domain.period is None:
+            require_times_of_each(data, read)
         return trace.ended_by(self.ending) if self.ending else trace
 
     @cached_property
@@ -162,10 +168,21 @@ class Group:
             found = self._programs[step] = Programs(tuple(parts))
         return found
 
+    def recording(self, data: Any) -> DomainTrace:
+        """Normalise a recording; raise :class:`TraceError` for wrong data."""
+        return self.way.recording(data, self._read)
+
+    @cached_property
+    def _read(self) -> Sequence[Sequence[str]]:
+        """The variables of each requirement, also of several in one specification."""
+        specs = (asking.spec for asking in self.asked.values())
+        found = [one.input_names for spec in specs for one in spec.requirements.values()]
+        return found or [*self.inputs.values()]
+
     def evaluate(self, data: Any) -> Iterator[tuple[int, Found | StlError, DomainTrace | None]]:
         """Yield for each requirement what is found of it, or why it cannot be evaluated, and its recording."""
         try:
-            trace = self.way.recording(data)
+            trace = self.recording(data)
         except StlError as error:
             if len(self.inputs) == 1:
                 yield next(iter(self.inputs)), error, None

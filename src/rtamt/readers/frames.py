@@ -145,7 +145,7 @@ def _pandas(frame: Any) -> Source:
             str(name): index.get_level_values(i) for i, name in enumerate(index.names) if name is not None
         }
         columns = {name: _pandas_column(each.to_series()) for name, each in levels.items()} | columns
-    elif type(index).__name__ != "RangeIndex" or is_stamps(field_of(str(index.name)).name):
+    elif getattr(index, "step", 0) != 1 or is_stamps(field_of(str(index.name)).name):  # 1: numbers of rows
         name = str(index.name) if index.name is not None else "index"
         dated = type(index).__name__ in {"DatetimeIndex", "TimedeltaIndex"}
         # A column that has the name of timestamps comes first, as in an evaluation of the frame.
@@ -217,7 +217,9 @@ def _xarray(data: Any) -> Source:
         along = {str(name): v for name, v in data.data_vars.items() if v.dims == (dim,)}
         if not along:
             continue
-        columns = {name: _floats(v.values) for name, v in along.items()}
+        # The coordinate of the dimension comes first: it may hold the timestamps, whatever its name.
+        columns = {str(dim): data.coords[dim].values} if dim in data.coords else {}
+        columns.update((name, _floats(v.values)) for name, v in along.items())
         units = {name: str(v.attrs.get("units", "")) for name, v in along.items()}
         for coord in [c for c in data.coords if data.coords[c].dims == (dim,)]:
             columns[str(coord)] = data.coords[coord].values

@@ -19,7 +19,7 @@ from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.time_columns import check_first_column, check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -112,7 +112,7 @@ def columns_of(
     if not is_mapping(data):
         check_frame(data, TIME, names)
     elif TIME not in keys:
-        check_mapping(data, TIME, names)
+        check_mapping(data, TIME, names, regular=regular)
     if not regular:
         require_times(data, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
@@ -127,8 +127,17 @@ def require_times(data: Any, names: Collection[str]) -> None:
     """
     if isinstance(data, WithTimeBases):
         data.require_period(names)
-    elif isinstance(data, FrameColumns) or not is_mapping(data):
+    elif isinstance(data, FrameColumns) or (not is_mapping(data) and hasattr(data, "columns")):
         check_first_column(data, list(data if isinstance(data, FrameColumns) else data.columns), TIME, names)
+
+
+def require_times_of_each(data: Any, requirements: Iterable[Collection[str]]) -> None:
+    """Raise the error of :func:`require_times` for any of several requirements, each given by its variables.
+
+    One that reads what may be the timestamps does not decide for the others.
+    """
+    for names in requirements:
+        require_times(data, names)
 
 
 def require_no_unit(data: Any, unit: str | None) -> None:

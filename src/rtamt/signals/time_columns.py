@@ -120,15 +120,18 @@ def check_first_column(frame: Any, columns: Sequence[Any], time: str, names: Col
     Its numbers then increase, but not by 1 from row to row, and no variable of ``names`` is read from it. Only where no
     period is given.
     """
-    if not columns or time in columns or columns[0] in names:
+    if time in columns:
         return
-    values = frame[columns[0]]
-    try:
-        numbers = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):  # no numbers
-        return
-    steps = np.diff(numbers) if numbers.ndim == 1 else np.empty(0)
-    if len(steps) and (steps > 0).all() and (steps != 1).any():
+    index = getattr(frame, "index", None)
+    if index is not None and numbers_no_rows(index):
+        name = _index_called(index)
+        raise TraceError(
+            f"the frame may have its timestamps in {name}, whose values increase, but not by 1 from row to row: read "
+            f"the frame with rtamt.read(frame, time='{'index' if index.name is None else index.name}'), or give the "
+            f"period of the samples, such as period='1s'",
+            variable=time,
+        )
+    if columns and columns[0] not in names and increases_otherwise(frame[columns[0]]):
         raise TraceError(
             f"the frame may have its timestamps in its first column '{columns[0]}', whose values increase, but not by "
             f"1 from row to row: read the frame with rtamt.read(frame, time='{columns[0]}'), or give the period of the "
@@ -137,15 +140,43 @@ def check_first_column(frame: Any, columns: Sequence[Any], time: str, names: Col
         )
 
 
-def check_mapping(data: Mapping[Any, Any], time: str, names: Collection[str]) -> None:
+def numbers_no_rows(index: Any) -> bool:
+    """Return whether the integers of an index of pandas increase, but not by 1 from row to row."""
+    if getattr(getattr(index, "dtype", None), "kind", "") not in ("i", "u"):
+        return False
+    return increases_otherwise(index)
+
+
+def increases_otherwise(values: Any) -> bool:
+    """Return whether values are numbers that increase, but not by 1 from one to the next.
+
+    >>> [increases_otherwise(values) for values in ([0, 10, 20], [5, 6, 7], [0, 2, 1], ["a", "b"])]
+    [True, False, False, False]
+    """
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    steps = np.diff(numbers) if numbers.ndim == 1 else np.empty(0)
+    return bool(len(steps) and (steps > 0).all() and (steps != 1).any())
+
+
+def _index_called(index: Any) -> str:
+    return "its index" if index.name is None else f"its index '{index.name}'"
+
+
+def check_mapping(
+    data: Mapping[Any, Any], time: str, names: Collection[str], *, regular: bool = True
+) -> None:
     """Raise :class:`TraceError` if a mapping without the key ``time`` may have its timestamps elsewhere.
 
-    They may be under a key with another name of timestamps, or in the index of a series; ``names``: the variables.
+    They may be under a key with another name of timestamps, or in the index of a series; ``names``: the variables,
+    ``regular``: see :func:`check_index`.
     """
     heads = {name.split(".")[0] for name in names}
     for key in data:
         if key in names or key in heads:
-            check_index(data[key], str(key))
+            check_index(data[key], str(key), regular=regular)
         elif is_stamps(split_unit(str(key))[0]):
             raise TraceError(
                 f"the data may have its timestamps in '{key}', but those of a mapping are read from its key '{time}': "
@@ -154,17 +185,18 @@ def check_mapping(data: Mapping[Any, Any], time: str, names: Collection[str]) ->
             )
 
 
-def check_index(values: Any, name: str) -> None:
+def check_index(values: Any, name: str, *, regular: bool = False) -> None:
     """Raise :class:`TraceError` if values have an index that may hold their timestamps, which nothing reads.
 
-    Such values are a series of pandas or an array of xarray.
+    Such values are a series of pandas or an array of xarray. ``regular``: whether the period of samples without
+    timestamps is known, so that integers that do not count the rows are no question.
     """
     if isinstance(values, list | tuple):  # asked first: the name of NumPy's arrays loads NumPy
         return
     if isinstance(values, np.ndarray):
         return
     indexes = values.indexes.values() if is_labelled(values) else [getattr(values, "index", None)]
-    found = [named for index in indexes for named in _times_in_index(index)]
+    found = [named for index in indexes for named in _times_in_index(index, regular=regular)]
     if found:
         raise TraceError(
             f"'{name}' may have its timestamps in {', '.join(found)}, but those of a mapping are read from its key "
@@ -178,16 +210,17 @@ def is_labelled(data: Any) -> bool:
     return hasattr(type(data), "indexes") and hasattr(type(data), "coords")
 
 
-def _times_in_index(index: Any) -> list[str]:
+def _times_in_index(index: Any, *, regular: bool = True) -> list[str]:
     """Return an index of pandas, or those of its levels, that may hold timestamps, as a message calls them."""
     if getattr(index, "nlevels", 1) > 1:
         return [f"its index '{name}'" for name in index.names if _is_called_so(name)]
     name = getattr(index, "name", None)
     # Rows are numbered by integers: what is measured is no number of a row.
     measured = getattr(getattr(index, "dtype", None), "kind", "") == "f"
+    measured = measured or (not regular and numbers_no_rows(index))
     if not (measured or _is_called_so(name) or _are_dated(index)):
         return []
-    return ["its index" if name is None else f"its index '{name}'"]
+    return [_index_called(index)]
 
 
 def _is_called_so(name: Any) -> bool:

@@ -33,6 +33,7 @@ class DiscreteStream(Stream):
         self._inferred = domain.period is None
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
+        self._read = [one.input_names for one in spec.requirements.values()]
         # The timestamps of positions where something is violated, and of the first.
         self._kept: dict[int, Any] = {}
 
@@ -49,6 +50,8 @@ class DiscreteStream(Stream):
         )
         if not n:
             return
+        if self._inferred and len(self._read) > 1:
+            arrays.require_times_of_each(chunk, self._read)
         if self._monitor is None:
             self._monitor = self._begin(timestamps)
         known = push_samples(self._monitor, timestamps, columns, n)

@@ -1,6 +1,7 @@
 """The period of 1 s that is assumed where nothing else is known: noted, or rejected."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -62,6 +63,41 @@ def test_a_requirement_is_rejected_whether_or_not_another_reads_the_first_column
     answer = run("check", "a.stl", "b.stl", "zeit.csv", "--json")
     first, second = map(json.loads, answer.out.splitlines())
     assert (answer.code, first["satisfied"], second["error"]) == (2, True, f"zeit.csv: {UNKNOWN}")
+
+
+@pytest.mark.parametrize("early", [(), ("--early",)])
+def test_a_requirement_that_reads_the_first_column_does_not_decide_for_the_others_of_its_file(
+    run, write, early, monkeypatch
+):
+    write("two.stl", "require A: always(Zeit >= 0)\nrequire B: always[0:2](x > 0)")
+    for large in (None, 0):
+        if large is not None:
+            monkeypatch.setattr("rtamt.cli.runner.LARGE", large)
+        answer = run("check", "two.stl", "zeit.csv", "--json", *early)
+        first, second = map(json.loads, answer.out.splitlines())
+        assert (answer.code, first["satisfied"], second["error"]) == (2, True, f"zeit.csv: {UNKNOWN}")
+    assert run("explain", "two.stl", "zeit.csv").err == f"rtamt: zeit.csv: {UNKNOWN}\n"
+
+
+@pytest.mark.parametrize("formula", ["always(rate(x) < 9)", "always(duration(x > 0) < 9)", "integral(x) < 9"])
+def test_the_assumed_period_is_noted_where_a_value_counts_seconds(run, formula):
+    assert json.loads(run("check", formula, "seq.csv", "--json").out)["notes"] == [NOTE]
+    assert "notes" not in json.loads(run("check", "count(x > 0) < 9", "seq.csv", "--json").out)
+
+
+def test_every_command_about_one_recording_notes_the_assumed_period(run):
+    assert run("explain", SPEC, "seq.csv").out.endswith(f"\n\nnote: seq.csv: {NOTE}\n")
+    assert json.loads(run("explain", SPEC, "seq.csv", "--json").out)["notes"] == [NOTE]
+    assert run("plot", SPEC, "seq.csv", "-o", "p.svg").out.endswith(f"\nnote: seq.csv: {NOTE}\n")
+    assert run("export", SPEC, "seq.csv", "-o", "p.mcap").out.endswith(f"\nnote: seq.csv: {NOTE}\n")
+    run("report", SPEC, "seq.csv", "-o", "p.html")
+    assert NOTE in Path("p.html").read_text()
+
+
+def test_explain_notes_what_was_left_out_of_a_recording(run, write):
+    write("nan.csv", "time,x\n0,1\n1,nan\n2,4\n")
+    answer = run("explain", "always(x > 0)", "nan.csv", "--time", "dense", "--skip-nan", "x")
+    assert answer.out.endswith("\n\nnote: nan.csv: left out, NaN: 1 sample of x, the first at 1 s\n")
 
 
 @pytest.mark.parametrize("stdin", ["Zeit,x\n0,1\n0.1,2\n", '{"x": 1}\n{"x": 2}\n'], ids=["CSV", "JSON"])

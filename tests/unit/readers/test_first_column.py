@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 import polars as pl
 import pytest
+import xarray as xr
 
 import rtamt
 from rtamt.errors import TraceError
@@ -82,6 +83,88 @@ def test_every_source_is_rejected_if_its_first_column_may_hold_the_timestamps(
         SPEC.evaluate(trace)
     assert str(caught.value) == rejected("Zeit")
     assert SPEC.evaluate(trace, period="1s").robustness == -1
+
+
+ROWS = "whose values increase, but not by 1 from row to row"
+
+
+@pytest.mark.parametrize(
+    "index", [[0, 10, 20], [0, 3, 4], pd.RangeIndex(0, 30, 10), pd.Index([1, 5, 6], dtype="uint64")], ids=str
+)
+@pytest.mark.parametrize("name", [None, "tick"])
+def test_integers_in_an_index_that_do_not_count_the_rows_are_rejected_unless_a_period_is_given(
+    index: Any, name: str | None
+) -> None:
+    spec = rtamt.parse("always[0:2](x > 0)")
+    frame = pd.DataFrame({"x": [1, 2, -1]}, index=pd.Index(index, name=name))
+    called = f"its index '{name}'" if name else "its index"
+    in_frame = (
+        f"the frame may have its timestamps in {called}, {ROWS}: read the frame with rtamt.read(frame, "
+        f"time='{name or 'index'}'), or give the period of the samples, such as period='1s'"
+    )
+    in_series = (
+        f"'x' may have its timestamps in {called}, but those of a mapping are read from its key 'time': give them "
+        f"there, or the bare values, with to_numpy(), if the index holds no times"
+    )
+    cases = [
+        (frame, in_frame),
+        ({"x": frame["x"]}, in_series),
+        (rtamt.read(frame), rejected(name or "index")),
+    ]
+    numbered = pd.DataFrame({"x": [1, 2, -1]})
+    for _ in range(2):  # also after an evaluation that has prepared the next one
+        for data, message in cases:
+            with pytest.raises(TraceError) as caught:
+                spec.evaluate(data)
+            assert str(caught.value) == message
+            assert spec.evaluate(data, period=1).robustness == -1
+        assert spec.evaluate(numbered).robustness == -1
+    assert rtamt.read(frame, time=name or "index", time_unit="ms")["x"].times[-1] == index[-1] / 1000
+
+
+@pytest.mark.parametrize(
+    "index", [None, [5, 6, 7], [2, 0, 1], [0, 0, 1], ["a", "b", "c"], pd.RangeIndex(7, 10)], ids=str
+)
+def test_an_index_that_counts_the_rows_or_does_not_increase_leaves_samples_one_period_apart(
+    index: Any,
+) -> None:
+    frame = pd.DataFrame({"x": [1, 2, -1]}, index=index)
+    for data in (frame, {"x": frame["x"]}, rtamt.read(frame)):
+        assert SPEC.evaluate(data).robustness == -1
+
+
+def test_integers_in_the_index_of_a_frame_with_a_column_of_timestamps_are_not_considered() -> None:
+    frame = pd.DataFrame({"x": [1, 2, -1], "time": [0, 1, 2]}, index=[0, 10, 20])
+    assert SPEC.evaluate(frame).robustness == SPEC.evaluate(rtamt.read(frame)).robustness == -1
+
+
+def test_integers_along_a_dimension_of_xarray_are_rejected_unless_they_count_the_rows() -> None:
+    data = xr.Dataset({"x": ("step", [1, 2, -1])}, coords={"step": [0, 10, 20]})
+    with pytest.raises(TraceError) as caught:
+        SPEC.evaluate(rtamt.read(data))
+    assert str(caught.value) == rejected("step")
+    assert SPEC.evaluate(rtamt.read(data.assign_coords(step=[4, 5, 6]))).robustness == -1
+
+
+TWO = "require A: always(Zeit >= 0)\nrequire B: always[0:2](x > 0)"
+
+
+@pytest.mark.parametrize(
+    "evaluate",
+    [
+        lambda data: rtamt.parse(TWO).evaluate(data),
+        lambda data: rtamt.evaluate_all([rtamt.parse(TWO)], data),
+        lambda data: rtamt.evaluate_all([*rtamt.parse(TWO).requirements.values()], data),
+        lambda data: rtamt.check_stream(rtamt.parse(TWO), [data]),
+    ],
+    ids=["evaluate", "evaluate_all", "evaluate_all of several", "check_stream"],
+)
+def test_a_requirement_that_reads_the_column_does_not_decide_for_another(
+    evaluate: Callable[[Any], Any],
+) -> None:
+    for data in (FRAME, rtamt.read(FRAME)):
+        with pytest.raises(TraceError, match="first column 'Zeit'"):
+            evaluate(data)
 
 
 @pytest.mark.parametrize("name", ["Zeit", "tick_ms", "frame", "seq", "step", "zeit_s", "sekunden"])

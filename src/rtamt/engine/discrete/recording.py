@@ -76,7 +76,10 @@ def frame_columns(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
         seen = _Seen(columns, names, wanted)
         if TIME in wanted:  # otherwise the check depends on more than names
             _last_seen = seen
-    if TIME not in seen.wanted and len(columns) and columns[0] not in names:
+    if TIME not in seen.wanted and (
+        (len(columns) and columns[0] not in names)
+        or (library == "pandas" and getattr(data.index, "step", 0) != 1)
+    ):
         return None  # the conversion of the samples considers whether a period is given
     if library == "pandas" and len(columns) * len(data.index) <= _SMALL and columns.is_unique:
         rows = data.values.T  # a frame takes longer to return a column than an evaluation of it takes

@@ -143,6 +143,7 @@ class DiscreteEarlyCheck(EarlyCheck):
         self._tolerance = tolerance
         self._period = specs[0].period
         self._given = self._period is not None
+        self._read = [spec.input_names for spec in specs]
         self._samples = 0
         self._last: float | None = None
         self._start: Any = None
@@ -155,6 +156,8 @@ class DiscreteEarlyCheck(EarlyCheck):
         timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types, regular=self._given)
         if not n:
             return False
+        if not self._given and len(self._read) > 1:
+            arrays.require_times_of_each(chunk, self._read)
         if self._period is None:
             self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
         if not self._samples:
