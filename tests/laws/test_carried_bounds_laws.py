@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rtamt
-from rtamt.compiler.program import Program
+from rtamt.compiler.program import Program, records_of
 from rtamt.errors import EvaluationError
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Const, Var, fold
@@ -109,7 +109,7 @@ def test_a_graph_that_does_not_fit_its_instructions_is_refused():
     for instructions in (program.instructions[:-1], (*program.instructions, program.instructions[-1])):
         last = (len(instructions) - 1,) * len(program.outputs)
         metadata = replace(program.metadata, meanings={})
-        code = replace(program, instructions=instructions, outputs=last, metadata=metadata).to_bytes()
+        code = replace(program, records=records_of(instructions), outputs=last, metadata=metadata).to_bytes()
         with pytest.raises(c_api.RefusedError, match="its graph is damaged"):
             c_api.Monitor(code)
 

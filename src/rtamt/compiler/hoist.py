@@ -18,6 +18,7 @@ from collections import Counter
 from math import isfinite, isinf
 
 from rtamt.compiler.places import Origins, Places
+from rtamt.compiler.program import CODES, records_of
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
@@ -35,6 +36,9 @@ _OPPOSITE = {
     "run_max": "run_min",
     "shift": "shift",
 }
+_MOVED = frozenset(CODES[opcode] for opcode in _OPPOSITE)
+_CONST, _NEG, _ADD, _SUB = (CODES[opcode] for opcode in ("const", "neg", "add", "sub"))
+_LINEAR = _NEG, _ADD, _SUB
 
 
 class _Move(NamedTuple):
@@ -53,7 +57,10 @@ def hoist(program: Program) -> Program:
 
 def _moves(program: Program) -> dict[int, _Move]:
     """Return the instructions to move, each of them equal to another one then."""
-    found = [(place, program.instructions[place]) for place in _alike(program)]
+    alike = _alike(program)
+    if not alike:  # most
+        return {}
+    found = [(place, program.instructions[place]) for place in alike]
     moves = {place: move for place, ins in found if (move := _move(program, ins)).operations}
     readers = Counter(move.window for move in moves.values())
     readers.update(ins for _, ins in found if ins in readers)
@@ -63,24 +70,25 @@ def _moves(program: Program) -> dict[int, _Move]:
 def _alike(program: Program) -> list[int]:
     """Return the windows and delays that can become equal to another one: in most programs none."""
     by_length: dict[tuple[int, int], list[int]] = {}
-    instructions = program.instructions
-    for place in [place for place, ins in enumerate(instructions) if ins[0] in _OPPOSITE]:
-        ins = instructions[place]
-        by_length.setdefault((ins.n, ins.lag), []).append(place)
+    moved = _MOVED
+    for place, record in enumerate(program.records):
+        if record[0] in moved:
+            by_length.setdefault((record[4], record[6]), []).append(place)
     found: list[int] = []
     for windows in by_length.values():
         if len(windows) > 1:
             roots = [_root(program, place) for place in windows]
-            seen = Counter(roots)
-            found += [place for place, root in zip(windows, roots, strict=True) if seen[root] > 1]
+            if len(set(roots)) < len(roots):
+                seen = Counter(roots)
+                found += [place for place, root in zip(windows, roots, strict=True) if seen[root] > 1]
     return sorted(found)
 
 
 def _root(program: Program, window: int) -> int:
     """Return what the operand of a window is without all negations, sums and differences with constants."""
-    place = program.instructions[window].a
-    assert place is not None
-    while (before := _variable(program, place)) is not None:
+    records = program.records
+    place = records[window][1]
+    while records[place][0] in _LINEAR and (before := _variable(program, place)) is not None:
         place = before
     return place
 
@@ -106,13 +114,11 @@ def _move(program: Program, ins: Instruction) -> _Move:
 
 def _variable(program: Program, place: int) -> int | None:
     """Return the operand of a negation, or of a sum or difference with a finite constant, that is no constant."""
-    opcode, a, b, *_ = program.instructions[place]
-    if opcode == "neg":
+    code, a, b, *_ = program.records[place]
+    if code == _NEG:
         return a
-    if opcode not in ("add", "sub"):
+    if code not in (_ADD, _SUB):
         return None
-    assert a is not None
-    assert b is not None
     fixed = _is_finite_constant(program, b)
     if fixed == _is_finite_constant(program, a):
         return None
@@ -120,8 +126,8 @@ def _variable(program: Program, place: int) -> int | None:
 
 
 def _is_finite_constant(program: Program, place: int) -> bool:
-    ins = program.instructions[place]
-    return ins.opcode == "const" and isfinite(ins.x) and place not in program.parametric
+    record = program.records[place]
+    return record[0] == _CONST and isfinite(record[5]) and place not in program.parametric
 
 
 def _move_instructions(program: Program, moves: dict[int, _Move]) -> Program:
@@ -151,7 +157,7 @@ def _move_instructions(program: Program, moves: dict[int, _Move]) -> Program:
         places[place] = value
     return replace(
         program,
-        instructions=tuple(instructions),
+        records=records_of(instructions),
         origins=Origins(lambda: [program.origins[source] for source in sources]),
         outputs=tuple(places[output] for output in program.outputs),
         value_of=Places(

@@ -14,7 +14,7 @@ from math import inf
 from rtamt.compiler.emission import Emission
 from rtamt.compiler.order import is_derived, order_of
 from rtamt.compiler.places import Origins, Places
-from rtamt.compiler.program import CallSite, Instruction, Program, instruction
+from rtamt.compiler.program import CODES, NO_OPERAND, CallSite, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.lazy_modules import shares
 from rtamt.language.operators import Ahead, Bounds, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from rtamt.language.records import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
 
-#: Their hashes are computed once.
-_SLIDES = {reduce: f"slide_{reduce}" for reduce in ("max", "min", "sum")}
+#: Those of windows of bounded length.
+_SLIDES = {reduce: CODES[f"slide_{reduce}"] for reduce in ("max", "min", "sum")}
 _IDENTITY = {"max": -inf, "min": inf}
 
 #: Looking up a member of an enumeration takes as long as the rest of an instruction.
@@ -68,7 +68,7 @@ class Lowering(Emission, ABC):
         self.clip = clip
         self.formulas: tuple[Formula, ...] = ()
         self.parameters: dict[Parameter, int] = {}
-        #: The index of each node, by its identity.
+        #: The index of each operator's node, by its identity.
         self.found: dict[int, int] = {}
         self.variables: dict[str, int] = {}
         self.orders: dict[Operator, Order] = {}
@@ -87,7 +87,7 @@ class Lowering(Emission, ABC):
         ``cores``: the lowering of the formulas in core operators.
         """
         return Program(
-            tuple(map(instruction, self.instructions)),
+            tuple(self.records),
             self.inputs,
             outputs,
             self.period,
@@ -101,7 +101,7 @@ class Lowering(Emission, ABC):
     def places_of_nodes(self) -> Iterator[tuple[Formula, int]]:
         """Yield the nodes of the formulas, and the instruction of each."""
         for node in postorder(*self.formulas):
-            yield node, self.found[id(node)]
+            yield node, self.found[id(node)] if isinstance(node, Apply) else self._lower_leaf(node)
 
     def lower(self, formulas: Sequence[Formula]) -> list[int]:
         """Emit the instructions of formulas, operands first, and return the index of each formula's last one.
@@ -109,65 +109,102 @@ class Lowering(Emission, ABC):
         Operators that are expanded and have a recipe are expanded here: the instructions and their order are those of
         the expansion. Others must have been expanded before.
         """
-        # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
-        self.formulas, found = tuple(formulas), self.found
-        orders, pointwise = self.orders, self.pointwise
-        stack: list[Any] = [*formulas[::-1]]  # nodes; None where what the next task reads has been found
-        tasks: list[tuple[Apply, Any, list[int] | None]] = []
-        while stack:
-            node = stack.pop()
-            if node is None:
-                node, task, parts = tasks.pop()
-                if parts is not None:
-                    found[id(node)] = self._lower_group(node, task, parts)
-                elif task is not None:
-                    opcode, first, second = task
-                    args = node.args
-                    a, b = found[id(args[first])], None if second is None else found[id(args[second])]
-                    found[id(node)] = pointwise(opcode, node, a, b)
-                else:
-                    operands = self.align([found[id(arg)] for arg in node.args])
-                    found[id(node)] = self._lower_apply(node, node.op.kernel, operands)
-            elif id(node) in found:
-                continue
-            elif isinstance(node, Apply):
-                args = node.args
-                try:
-                    alone, groups = orders[node.op]
-                except KeyError:
-                    alone, groups = orders[node.op] = order_of(node.op)
-                if groups:
-                    parts = [-1] * len(args)
-                    for group in groups[::-1]:
-                        tasks.append((node, group, parts))
-                        stack.append(None)
-                        stack += [args[place] for place in group.reads[::-1]]
-                    continue
-                tasks.append((node, alone, None))
-                stack.append(None)
-                if alone is None:
-                    stack += args[::-1]
-                else:
-                    _, first, second = alone
-                    if second is not None:
-                        stack.append(args[second])
-                    stack.append(args[first])
-            else:
-                found[id(node)] = self._lower_leaf(node)
-        return [found[id(formula)] for formula in formulas]
+        self.formulas = tuple(formulas)
+        return [
+            self._lower(formula) if isinstance(formula, Apply) else self._lower_leaf(formula)
+            for formula in formulas
+        ]
 
-    def _lower_group(self, node: Apply, group: Group, parts: list[int]) -> int:
-        """Emit steps of a recipe, and return the index of the last one; ``parts``: of its operands and steps so far."""
-        for place in group.reads:
-            parts[place] = self.found[id(node.args[place])]
-        for opcode, core, places in group.steps:
-            if opcode is not None:  # most
-                parts.append(self.pointwise(opcode, node, *[parts[place] for place in places]))
-            elif isinstance(core, Apply):
-                operands = self.align([parts[place] for place in places])
-                parts.append(self._lower_apply(core, core.op.kernel, operands))
+    def _lower(self, formula: Apply) -> int:
+        """Emit the instructions of an operator and of what is below it, and return the index of its own."""
+        # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
+        found, orders = self.found, self.orders
+        leaf, pointwise = self._lower_leaf, self.pointwise
+        stack: list[Any] = [formula]  # of operators
+        while (
+            stack
+        ):  # a node is visited again until its operands, in the order in which it reads them, are lowered
+            node = stack[-1]
+            if id(node) in found:
+                stack.pop()
+                continue
+            args = node.args
+            try:
+                alone, groups = orders[node.op]
+            except KeyError:
+                alone, groups = orders[node.op] = order_of(node.op)
+            place: int | None
+            if alone is None:
+                place = self._lower_groups(node, groups, stack) if groups else self._lower_alone(node, stack)
+                if place is None:
+                    continue
             else:
-                parts.append(self._lower_leaf(core))
+                code, first, second = alone
+                left = args[first]
+                if left.__class__ is not Apply:
+                    a = leaf(left)
+                elif id(left) in found:
+                    a = found[id(left)]
+                else:
+                    if second is not None and args[second].__class__ is Apply:
+                        stack.append(args[second])
+                    stack.append(left)
+                    continue
+                if second is None:
+                    place = pointwise(code, node, a)
+                else:
+                    right = args[second]
+                    if right.__class__ is not Apply:
+                        b = leaf(right)
+                    elif id(right) in found:
+                        b = found[id(right)]
+                    else:
+                        stack.append(right)
+                        continue
+                    place = pointwise(code, node, a, b)
+            found[id(node)] = place
+            stack.pop()
+        return found[id(formula)]
+
+    def _operand(self, node: Formula, stack: list[Any]) -> int | None:
+        """Return the index of an operand; None if it has to be lowered first, for which it is put on the stack."""
+        if not isinstance(node, Apply):
+            return self._lower_leaf(node)
+        place = self.found.get(id(node))
+        if place is None:
+            stack.append(node)
+        return place
+
+    def _lower_alone(self, node: Apply, stack: list[Any]) -> int | None:
+        """Return the index of a node that is not expanded; None if an operand has to be lowered first."""
+        places = []
+        for arg in node.args:
+            place = self._operand(arg, stack)
+            if place is None:
+                return None
+            places.append(place)
+        return self._lower_apply(node, node.op.kernel, self.align(places))
+
+    def _lower_groups(self, node: Apply, groups: Sequence[Group], stack: list[Any]) -> int | None:
+        """Emit steps of a recipe, and return the index of the last one; None if an operand has to be lowered first.
+
+        Steps that were emitted before are found again.
+        """
+        parts = [-1] * len(node.args)
+        for reads, steps in groups:
+            for place in reads:
+                part = self._operand(node.args[place], stack)
+                if part is None:
+                    return None
+                parts[place] = part
+            for code, core, places in steps:
+                if code is not None:  # most
+                    parts.append(self.pointwise(code, node, *[parts[place] for place in places]))
+                elif isinstance(core, Apply):
+                    operands = self.align([parts[place] for place in places])
+                    parts.append(self._lower_apply(core, core.op.kernel, operands))
+                else:
+                    parts.append(self._lower_leaf(core))
         return parts[-1]
 
     def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
@@ -175,7 +212,7 @@ class Lowering(Emission, ABC):
         if isinstance(kernel, Window):  # most
             return self.window(node, kernel, args[0])
         if isinstance(kernel, Pointwise):
-            return self.pointwise(kernel.opcode, node, *args)
+            return self.pointwise(CODES[kernel.opcode], node, *args)
         if isinstance(kernel, Sum):
             return self.sum(node, args[0])
         if isinstance(kernel, Rank):
@@ -193,20 +230,18 @@ class Lowering(Emission, ABC):
     def _lower_leaf(self, node: Formula) -> int:
         """Return the index of a variable or a constant."""
         if isinstance(node, Var):
-            assert not node.bound, "quantifiers are resolved before"
             place = self.variables.get(node.name)  # most occur several times
             if place is None:
-                row = ("input", None, None, self.places[node.name], 0.0, 0)
-                place = self.variables[node.name] = self.emit(row, node)
+                assert not node.bound, "quantifiers are resolved before"
+                place = self.variables[node.name] = self.add("input", node, n=self.places[node.name])
             return place
         assert isinstance(node, Const)
         if isinstance(node, Parameter):
-            # Never merged with another constant: its value may be changed.
             known = self.parameters.get(node)
             if known is None:
-                known = self.parameters[node] = self.append(("const", None, None, 0, node.value, 0), node)
+                known = self.parameters[node] = self.parameter(node.value, node)
             return known
-        return self.emit(("const", None, None, 0, node.value, 0), node)
+        return self.constant(node.value, node)
 
     # ---- intervals in steps ------------------------------------------------------------------------
 
@@ -236,24 +271,32 @@ class Lowering(Emission, ABC):
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
-    def pointwise(self, opcode: str, origin: Formula, a: int, b: int | None = None) -> int:
+    def pointwise(self, code: int, origin: Formula, a: int, b: int = NO_OPERAND) -> int:
         """Lower an operator on values at one instant, over operands that need not be aligned."""
-        lag = self.instructions[a][5]
-        if b is not None and (other := self.instructions[b][5]) != lag:  # as align() does
+        lags = self.lags
+        lag = lags[a]
+        if b != NO_OPERAND and (other := lags[b]) != lag:  # as align() does
             if other < lag:
                 b = self.delayed(b, lag)
             else:
                 a, lag = self.delayed(a, other), other
-        return self.emit((opcode, a, b, 0, 0.0, lag), origin)
+        record = (code, a, b, 0, 0, 0.0, lag)
+        new = len(lags)
+        index = self.index_of.setdefault(record, new)
+        if index == new:  # as emit() does
+            self.records.append(record)
+            lags.append(lag)
+            self.origins.append(origin)
+        return index
 
     def window(self, node: Apply, kernel: Window, x: int) -> int:
         """Lower the largest or smallest value in a window."""
         begin, end = self.bounds(node)
         fill = _IDENTITY[kernel.reduce]
-        lag = self.lag(x)
+        lag = self.lags[x]
         if node.op.tense is _PAST:
             if end is None:
-                x = self.emit(Instruction(f"run_{kernel.reduce}", x, lag=lag), node)
+                x = self.add(f"run_{kernel.reduce}", node, x, lag=lag)
             else:
                 x = self.slide(kernel.reduce, x, end - begin + self.point, lag, node)
             return self.moved(x, begin, fill, lag, node) if begin else x
@@ -277,7 +320,7 @@ class Lowering(Emission, ABC):
         order = nominal - k + 1 if outside > 0 else k
         width = end - begin + self.point
         past = node.op.tense is Tense.PAST
-        lag = self.lag(x) + (0 if past else end)
+        lag = self.lags[x] + (0 if past else end)
         if order == 1 and (self.point or outside > 0):
             if width == self.point and not past:
                 return self.moved(x, 0, outside, lag, node) if end else x
@@ -286,7 +329,7 @@ class Lowering(Emission, ABC):
             order = min(
                 order, width + 1
             )  # of a window that is clipped to the trace, so many are never inside
-            x = self.emit(Instruction(f"rank_{reduce}", x, n=width, x=float(order), lag=lag), node)
+            x = self.add(f"rank_{reduce}", node, x, n=width, x=float(order), lag=lag)
         return self.moved(x, begin, outside, lag, node) if past and begin else x
 
     def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
@@ -303,13 +346,13 @@ class Lowering(Emission, ABC):
             most = operand.value * width
             if 0 <= most <= 2**53:  # exact in any order
                 return self.counting(x, most, lag, origin)
-        return self.emit((_SLIDES[reduce], x, None, width, 0.0, lag), origin)
+        return self.emit((_SLIDES[reduce], x, NO_OPERAND, 0, width, 0.0, lag), origin)
 
     def counting(self, x: int, most: float, lag: int, origin: Formula) -> int:
         """Return the sum over a window of a whole number: the sum so far, but no more than of a whole window."""
-        total = self.emit(Instruction("run_sum", x, lag=lag), origin)
-        limit = self.emit(Instruction("const", x=most), origin)
-        return self.emit(Instruction("min", total, limit, lag=lag), origin)
+        total = self.add("run_sum", origin, x, lag=lag)
+        limit = self.constant(most, origin)
+        return self.add("min", origin, total, limit, lag=lag)
 
     def sum(self, node: Apply, x: int) -> int:
         """Lower the sum over a window of the past.
@@ -317,30 +360,28 @@ class Lowering(Emission, ABC):
         The operand is delayed, not the sum: that of a window which lies later than the last sample may have no value.
         """
         begin, end = self.bounds(node)
-        lag = self.lag(x)
+        lag = self.lags[x]
         if end == begin:
             x = self.moved(x, begin, 0.0, lag, node) if begin else x
         else:
             x = self.late(x, lag + begin)
             if end is None:
-                x = self.emit(Instruction("run_sum", x, lag=lag), node)
+                x = self.add("run_sum", node, x, lag=lag)
             else:
                 x = self.slide("sum", x, end - begin + self.point, lag, node)
         for opcode, factor in seconds_per_step(self.period) if node.op.timed else ():
-            x = self.emit(
-                Instruction(opcode, x, self.emit(Instruction("const", x=factor), node), lag=self.lag(x)), node
-            )
+            x = self.add(opcode, node, x, self.constant(factor, node), lag=self.lags[x])
         return x
 
     def slid(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
         """Return a window over an operand of since or until, delayed to their lag (except for constants)."""
-        return self.delayed(self.slide(reduce, x, width, self.lag(x), origin), lag)
+        return self.delayed(self.slide(reduce, x, width, self.lags[x], origin), lag)
 
     def shift_by_one(self, node: Apply, kernel: Shift, x: int) -> int:
         """Lower an operator that reads the previous or next sample."""
         if node.op.tense is Tense.PAST:
-            return self.moved(x, 1, kernel.fill, self.lag(x), node)
-        return self.moved(x, 0, kernel.fill, self.lag(x) + 1, node)
+            return self.moved(x, 1, kernel.fill, self.lags[x], node)
+        return self.moved(x, 0, kernel.fill, self.lags[x] + 1, node)
 
     @abstractmethod
     def ahead_of(self, node: Apply, x: int) -> int:
@@ -349,37 +390,37 @@ class Lowering(Emission, ABC):
     def since(self, node: Apply, hold: int, goal: int) -> int:
         """φ since[a, b] ψ is once[a, b] ψ, φ on (t - a, t], and (φ since ψ) a ago: O(1) state apart from windows."""
         begin, end = self.bounds(node)
-        lag = max(self.lag(hold), self.lag(goal))
-        x = self.emit(Instruction("since", hold, goal, lag=lag), node)
+        lag = max(self.lags[hold], self.lags[goal])
+        x = self.add("since", node, hold, goal, lag=lag)
         if end is not None:
             recent = self.slid("max", goal, end - begin + self.point, lag, node)
-            x = self.emit(Instruction("min", x, recent, lag=lag), node)
+            x = self.add("min", node, x, recent, lag=lag)
         if begin == 0:
             return x
         x = self.moved(x, begin, -inf, lag, node)
         held = self.slid("min", hold, begin, lag, node)
-        return self.emit(Instruction("min", x, held, lag=lag), node)
+        return self.add("min", node, x, held, lag=lag)
 
     def until(self, node: Apply, hold: int, goal: int) -> int:
         """φ until[a, b] ψ over the steps up to t + b; in the past tense (precedes) up to t."""
         begin, end = self.bounds(node)
         assert end is not None, "unbounded future is cut off before"
-        lag = max(self.lag(hold), self.lag(goal))
+        lag = max(self.lags[hold], self.lags[goal])
         known = lag + end if node.op.tense is Tense.FUTURE else lag
         return self.until_within(node, hold, goal, (begin, end), known)
 
     def call(self, node: Apply, args: list[int]) -> int:
         """Lower a custom operator to a call of its kernel, or else of its definition."""
         if not args:  # a constant operand determines how many values are needed, and when
-            args = [self.emit(Instruction("const"), node)]
+            args = [self.constant(0.0, node)]
         begin = 0 if node.interval is None else self.whole(node.interval.begin)
         end = self.end_of(node)
         ahead = self.ahead(node, end)
         site = CallSite(node, tuple(args), begin, end, ahead)
         # If the trace ends before the operator's last operand value, its result is known at the end.
-        lag = max(self.lag(i) for i in args) + (ahead if self.clip is None else min(ahead, self.clip))
+        lag = max(self.lags[i] for i in args) + (ahead if self.clip is None else min(ahead, self.clip))
         number = self.calls.setdefault(site, len(self.calls))
-        return self.emit(Instruction("call", n=number, lag=lag), node)
+        return self.add("call", node, n=number, lag=lag)
 
     def end_of(self, node: Apply) -> int | None:
         """Return the upper bound of an operator's interval in steps, None if unbounded."""
@@ -404,4 +445,4 @@ class Lowering(Emission, ABC):
 
     def chain(self, node: Apply, hold: int, goal: int, width: int, known: int) -> int:
         """Return until over a window that ends at the latest step, known at lag ``known``."""
-        return self.emit(Instruction("until", hold, goal, n=width, lag=known), node)
+        return self.add("until", node, hold, goal, n=width, lag=known)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+from rtamt.compiler.program import CODES
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Pointwise, Sort, builtin
 from rtamt.lazy.tuples import NamedTuple
@@ -21,22 +22,22 @@ if TYPE_CHECKING:
 class Group(NamedTuple):
     """Operands of an operator, and the steps of its recipe that are emitted once these are found.
 
-    Each step has the opcode of a pointwise operator, None for other nodes; the node; and the places of its operands.
+    Each step has the code of a pointwise operator, None for other nodes; the node; and the places of its operands.
     """
 
     reads: tuple[int, ...]
-    steps: tuple[tuple[str | None, Formula, tuple[int, ...]], ...]
+    steps: tuple[tuple[int | None, Formula, tuple[int, ...]], ...]
 
 
 class Order(NamedTuple):
     """How an operator is lowered.
 
-    ``alone``: the opcode and operands of its one instruction, if it is pointwise or expanded into such an operator.
+    ``alone``: the code and operands of its one instruction, if it is pointwise or expanded into such an operator.
     ``groups``: those of an operator that is expanded into several. One without either reads its operands from left to
     right.
     """
 
-    alone: tuple[str, int, int | None] | None
+    alone: tuple[int, int, int | None] | None
     groups: tuple[Group, ...]
 
 
@@ -45,7 +46,7 @@ def order_of(op: Operator) -> Order:
 
     >>> from rtamt.language.operators import STL
     >>> order_of(STL["le"]).alone, len(order_of(STL["implies"]).groups)
-    (('sub', 1, 0), 2)
+    ((8, 1, 0), 2)
     """
     return _builtin_order(op) if builtin(op.name) is op else _order(op)
 
@@ -75,18 +76,18 @@ def _order(op: Operator) -> Order:
 _builtin_order = cache(_order)
 
 
-def _alone(op: Operator, places: Sequence[int]) -> tuple[str, int, int | None] | None:
+def _alone(op: Operator, places: Sequence[int]) -> tuple[int, int, int | None] | None:
     if not isinstance(op.kernel, Pointwise) or not 1 <= len(places) <= 2:
         return None
     first, *second = places
-    return op.kernel.opcode, first, second[0] if second else None
+    return CODES[op.kernel.opcode], first, second[0] if second else None
 
 
 def _groups(recipe: Sequence[Step]) -> tuple[Group, ...]:
     groups: list[Group] = []
     for node, places, reads in recipe:
         kernel = node.op.kernel if isinstance(node, Apply) else None
-        step = kernel.opcode if isinstance(kernel, Pointwise) else None, node, places
+        step = CODES[kernel.opcode] if isinstance(kernel, Pointwise) else None, node, places
         if reads or not groups:
             groups.append(Group(reads, (step,)))
         else:

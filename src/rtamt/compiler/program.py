@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import struct
 import zlib
-from functools import cached_property, partial
+from functools import cached_property
+from itertools import starmap
 from math import isnan
 from types import MappingProxyType
 
-from rtamt.compiler.passes import bits_of, without_of
 from rtamt.errors import UsageError, shown
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.tuples import NamedTuple
@@ -28,13 +28,16 @@ from rtamt.signals.discrete import Discrete
 from rtamt.signals.time_domains import DOMAINS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.compiler.metadata import Metadata
     from rtamt.language.formula import Apply, Formula
     from rtamt.language.operators import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
+
+    #: An instruction as the core reads it: the code of its opcode, operands or NO_OPERAND, 0; ``n``, ``x`` and ``lag``.
+    Record = tuple[int, int, int, int, int, float, int]
 
 #: Opcodes in the order of the core's enumeration; a test compares the two.
 OPCODES = (
@@ -48,7 +51,8 @@ OPCODES = (
     "rank_max", "rank_min",
 )  # fmt: skip
 
-_CODES = {opcode: code for code, opcode in enumerate(OPCODES)}
+#: The code of each opcode.
+CODES = {opcode: code for code, opcode in enumerate(OPCODES)}
 
 #: Time domains, in the order of their codes.
 _DOMAINS = tuple(DOMAINS.values())
@@ -95,10 +99,21 @@ class Instruction(NamedTuple):
         return " ".join(parts)
 
 
-#: An instruction of all its fields, in half the time of calling Instruction.
-instruction: Callable[[tuple[str, int | None, int | None, int, float, int]], Instruction] = partial(
-    tuple.__new__, Instruction
-)
+def records_of(instructions: Iterable[Instruction]) -> tuple[Record, ...]:
+    """Return instructions as the core reads them."""
+    return tuple(
+        [
+            (CODES[opcode], NO_OPERAND if a is None else a, NO_OPERAND if b is None else b, 0, n, x, lag)
+            for opcode, a, b, n, x, lag in instructions
+        ]
+    )
+
+
+def instruction_of(record: Record) -> Instruction:
+    """Return the instruction that the core reads as ``record``."""
+    code, a, b, _, n, x, lag = record
+    first, second = (None if operand == NO_OPERAND else operand for operand in (a, b))
+    return Instruction(OPCODES[code], first, second, n, x, lag)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +154,8 @@ class Program:
     read from bytes have neither. ``metadata`` is for programs that run outside Python.
     """
 
-    instructions: tuple[Instruction, ...]
+    #: The instructions as the core reads them: most programs are run, and not looked at.
+    records: tuple[Record, ...]
     inputs: tuple[str, ...]
     outputs: tuple[int, ...]
     period: Fraction
@@ -157,17 +173,22 @@ class Program:
     #: Whether no sample takes longer than others, whatever the windows.
     worst_case: bool = False
 
+    @cached_property
+    def instructions(self) -> tuple[Instruction, ...]:
+        """The instructions."""
+        return tuple(map(instruction_of, self.records))
+
     @property
     def lags(self) -> tuple[int, ...]:
         """Samples (or ticks) after which each output's value at a sample is known."""
-        return tuple(self.instructions[i].lag for i in self.outputs)
+        return tuple([self.records[i][-1] for i in self.outputs])
 
     def with_parameters(self, values: Mapping[str, float]) -> Program:
         """Return the program with values of parameters."""
         instructions = list(self.instructions)
         for place, name in self.parametric.items():
             instructions[place] = instructions[place]._replace(x=values[name])
-        return replace(self, instructions=tuple(instructions), parameters=values)
+        return replace(self, records=records_of(instructions), parameters=values)
 
     def place_of(self, formula: Formula) -> int:
         """Return the instruction of a core sub-formula."""
@@ -219,21 +240,13 @@ class Program:
 
     @cached_property
     def _code(self) -> bytes:
+        from rtamt.compiler.passes import bits_of
+
         note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = _DOMAINS.index(self.domain)
-        counts = (
-            len(self.instructions),
-            len(self.inputs),
-            len(self.outputs),
-            len(note),
-            int(self.worst_case),
-        )
+        counts = len(self.records), len(self.inputs), len(self.outputs), len(note), int(self.worst_case)
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]
-        codes, pack, none = _CODES, _RECORD.pack, NO_OPERAND
-        parts += [
-            pack(codes[opcode], none if a is None else a, none if b is None else b, 0, n, x, lag)
-            for opcode, a, b, n, x, lag in self.instructions
-        ]
+        parts += starmap(_RECORD.pack, self.records)
         parts += [struct.pack(f"<{len(self.outputs)}I", *self.outputs), note]
         body = b"".join(parts)
         return body + struct.pack("<I", zlib.crc32(body))
@@ -248,6 +261,7 @@ class Program:
         True
         """
         from rtamt.compiler.metadata import Metadata, damaged
+        from rtamt.compiler.passes import without_of
 
         if not isinstance(code, (bytes, bytearray, memoryview)):
             raise UsageError(
@@ -273,15 +287,15 @@ class Program:
             raise damaged(f"it leaves out unknown passes ({bits})")
         if options > 1:
             raise damaged(f"it has unknown options ({options})")
-        records = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
-        instructions = tuple(_instruction(i, record, inputs) for i, record in enumerate(records))
+        read = _RECORD.iter_unpack(body[_HEADER.size : _HEADER.size + _RECORD.size * size])
+        records = tuple([_checked(i, record, inputs) for i, record in enumerate(read)])
         end = len(body) - length
         places = struct.unpack(f"<{outputs}I", body[end - 4 * outputs : end])
         if any(place >= size for place in places):
             raise damaged("it has an output that is no instruction")
         metadata, names, period = Metadata.from_bytes(body[end:], inputs, outputs)
         return Program(
-            instructions,
+            records,
             names,
             places,
             period,
@@ -310,7 +324,7 @@ class Program:
         return "\n".join(lines)
 
 
-def _instruction(index: int, record: tuple[int, int, int, int, int, float, int], inputs: int) -> Instruction:
+def _checked(index: int, record: Record, inputs: int) -> Record:
     from rtamt.compiler.metadata import damaged
 
     code, a, b, _, n, x, lag = record
@@ -323,5 +337,4 @@ def _instruction(index: int, record: tuple[int, int, int, int, int, float, int],
         raise damaged(f"instruction {index} ({opcode}) reads one that is not before it")
     if (opcode == "input" and not 0 <= n < inputs) or isnan(x):
         raise damaged(f"instruction {index} ({opcode}) holds a number that it cannot have")
-    first, second = (None if operand == NO_OPERAND else operand for operand in (a, b))
-    return Instruction(opcode, first, second, n, x, lag)
+    return code, a, b, 0, n, x, lag

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
+from rtamt.compiler.program import records_of
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.typing import TYPE_CHECKING
 
@@ -61,7 +62,7 @@ def sliced(program: Program, outputs: Sequence[int], kept_inputs: Collection[str
         )
     return replace(
         program,
-        instructions=tuple(made),
+        records=records_of(made),
         inputs=tuple(names),
         outputs=tuple([place[i] for i in roots]),
         value_of=MappingProxyType(

@@ -9,7 +9,6 @@ from __future__ import annotations
 from math import inf
 
 from rtamt.compiler.lower import Lowering
-from rtamt.compiler.program import Instruction
 from rtamt.language.operators import Tense
 from rtamt.lazy.typing import TYPE_CHECKING
 
@@ -36,7 +35,7 @@ class SampledLowering(Lowering):
         if distance == 0 or self.is_const(x):
             self.known_early = self.known_early or distance > 0
             return x
-        return self.emit(Instruction("since", x, x, lag=self.lag(x) + distance), node)
+        return self.add("since", node, x, x, lag=self.lags[x] + distance)
 
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """φ on [t, t') is "φ on [j - a, j) for every j from t + a to t'".
@@ -45,10 +44,10 @@ class SampledLowering(Lowering):
         """
         begin, end = bounds
         if begin:
-            lag = max(self.lag(hold), self.lag(goal))
+            lag = max(self.lags[hold], self.lags[goal])
             before = self.late(self.slid("min", hold, begin, lag, node), lag)
             hold = self.moved(before, 1, inf, lag, node)
-            goal = self.emit(Instruction("min", hold, goal, lag=lag), node)
+            goal = self.add("min", node, hold, goal, lag=lag)
         return self.chain(node, hold, goal, end - begin + 1, known)
 
 
@@ -65,7 +64,7 @@ class ContinuousLowering(Lowering):
     def ahead_of(self, node: Apply, x: int) -> int:
         """Continue the trace with its last values."""
         distance, _ = self.bounds(node)
-        return self.moved(x, 0, -inf, self.lag(x) + distance, node) if distance else x
+        return self.moved(x, 0, -inf, self.lags[x] + distance, node) if distance else x
 
     def until_within(self, node: Apply, hold: int, goal: int, bounds: tuple[int, int], known: int) -> int:
         """φ until[a, b] ψ is φ on [t, t + a], and φ until[0, b - a] ψ from t + a on."""
@@ -73,14 +72,14 @@ class ContinuousLowering(Lowering):
         width = end - begin
         if begin == 0:
             return self.chain(node, hold, goal, width, known)
-        lag = max(self.lag(hold), self.lag(goal))
+        lag = max(self.lags[hold], self.lags[goal])
         after = self.chain(node, hold, goal, width, known)
         if node.op.tense is Tense.FUTURE:
-            first = self.emit(Instruction("slide_min", hold, n=begin, lag=self.lag(hold) + begin), node)
+            first = self.add("slide_min", node, hold, n=begin, lag=self.lags[hold] + begin)
             first = self.delayed(first, known)
         else:
             first = self.moved(self.slid("min", hold, begin, lag, node), width, inf, lag, node)
-        return self.emit(Instruction("min", after, first, lag=known), node)
+        return self.add("min", node, after, first, lag=known)
 
 
 def lowering_of(domain: type[TimeDomain]) -> type[Lowering]:

@@ -16,11 +16,15 @@ if TYPE_CHECKING:
 
 
 class Contents(NamedTuple):
-    """The contents of a formula in postorder: operators, variables and constants, nodes with intervals."""
+    """The contents of a formula in postorder: operators, variables and constants, nodes with intervals.
+
+    ``untimed``: the operators of nodes without an interval.
+    """
 
     operators: frozenset[Operator]
     leaves: tuple[Formula, ...]
     timed: tuple[Apply, ...]
+    untimed: frozenset[Operator]
 
 
 def contents(formula: Formula) -> Contents:
@@ -32,21 +36,17 @@ def contents(formula: Formula) -> Contents:
     (<formula x>,)
     """
     if not isinstance(formula, Apply):
-        return Contents(frozenset(), (formula,), ())
+        return Contents(frozenset(), (formula,), (), frozenset())
     try:
         return formula._contents
     except AttributeError:
         nodes = postorder(formula)
-        operators: set[Operator] = set()
-        leaves, timed = [], []
-        for node in nodes:
-            if isinstance(node, Apply):
-                operators.add(node.op)
-                if node.interval is not None:
-                    timed.append(node)
-            else:
-                leaves.append(node)
-        found = Contents(frozenset(operators), tuple(leaves), tuple(timed))
+        leaves = [node for node in nodes if not isinstance(node, Apply)]
+        applied = [node for node in nodes if isinstance(node, Apply)]
+        timed = [node for node in applied if node.interval is not None]
+        untimed = frozenset([node.op for node in applied if node.interval is None])
+        operators = untimed.union([node.op for node in timed])
+        found = Contents(operators, tuple(leaves), tuple(timed), untimed)
         if len(nodes) <= KEPT:
             store_contents(formula, found)
         return found

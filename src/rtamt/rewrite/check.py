@@ -11,8 +11,12 @@ from rtamt.language.formula import Apply, Const, Formula, Interval, children, po
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy.dataclasses import dataclass
+from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.desugar import spelled_out
 from rtamt.rewrite.ground import closed
+
+if TYPE_CHECKING:
+    from rtamt.language.operators import Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,22 +218,28 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
 
 def unbounded_future(formula: Formula) -> Apply | None:
     """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
-    future = Tense.FUTURE
-    for node in postorder(spelled_out(formula)):
-        if isinstance(node, Apply) and node.op.tense is future and reads_unbounded_future(node):
+    formula = spelled_out(formula)
+    _, _, timed, untimed = contents(formula)
+    if not any(map(_is_unbounded_without_interval, untimed)) and not any(map(reads_unbounded_future, timed)):
+        return None
+    for node in postorder(formula):
+        if isinstance(node, Apply) and reads_unbounded_future(node):
             return node
     return None
 
 
 def reads_unbounded_future(node: Apply) -> bool:
     """Return whether this operator itself, whatever its operands, reads an unbounded future."""
-    if node.op.tense is not Tense.FUTURE:
+    op = node.op
+    if node.interval is None or op.bounds is Bounds.NONE:
+        return _is_unbounded_without_interval(op)
+    return node.interval.end is None and op.tense is Tense.FUTURE and op.bounds is not Bounds.DURATION
+
+
+def _is_unbounded_without_interval(op: Operator) -> bool:
+    if op.tense is not Tense.FUTURE:
         return False
-    if node.op.bounds is Bounds.NONE:
-        return node.op.reach is None
-    if node.op.bounds is Bounds.DURATION:
-        return False
-    return node.interval is None or node.interval.end is None
+    return op.reach is None if op.bounds is Bounds.NONE else op.bounds is not Bounds.DURATION
 
 
 def has_future(formula: Formula) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rtamt.compiler.early import compile_starts
 from rtamt.compiler.metadata import Metadata
 from rtamt.compiler.plan import compile_program
-from rtamt.compiler.program import Instruction, Program
+from rtamt.compiler.program import Instruction, Program, records_of
 from rtamt.engine import engine_of
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
@@ -155,7 +155,7 @@ def bounds_program(
         early=b"".join(parts),
     )
     last = (len(instructions) - 1,) * len(BOUNDS)
-    return Program(tuple(instructions), inputs, last, period, metadata=metadata)
+    return Program(records_of(instructions), inputs, last, period, metadata=metadata)
 
 
 def check_code(program: Program, code: bytes) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 import rtamt
 from rtamt.c_api import header, library
+from rtamt.compiler.program import records_of
 from tests.support import c_api
 
 RATIO = rtamt.parse("const float c = 1  always[0:3](x / y >= c)").compile()
@@ -36,7 +37,7 @@ def test_a_window_that_no_memory_holds_is_refused_with_a_sentence():
     program = rtamt.parse("always[0:3](x)").compile()
     wider = tuple(i._replace(n=2**45) if i.opcode == "slide_min" else i for i in program.instructions)
     with pytest.raises(c_api.RefusedError) as refused:
-        c_api.Monitor(replace(program, instructions=wider).to_bytes())
+        c_api.Monitor(replace(program, records=records_of(wider)).to_bytes())
     assert refused.value.args == (c_api.NO_MEMORY, "There is not enough memory.")
 
 

@@ -26,6 +26,7 @@ from rtamt.usage_guard import exclusive, in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
+    from fractions import Fraction
 
     from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
@@ -82,7 +83,6 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
         domain.check_inputs(self.input_names)
         if episodes:
             self._remember_episodes(continuous=True)
-        self._depth = depth_of(formula)
         self._tick = domain.resolution
         self._given_scale = scale
         self._unit = None if unit is None else check_unit(unit)
@@ -107,6 +107,10 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known."""
         return float(self._depth)
+
+    @property
+    def _depth(self) -> Fraction:
+        return depth_of(self._formulas[0])
 
     @property
     def samples(self) -> int:

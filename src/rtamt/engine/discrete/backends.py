@@ -11,6 +11,7 @@ from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
 from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
 from rtamt.engine.native import calls_of, core, core_monitor
+from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import desugar
@@ -181,6 +182,11 @@ class SampleProgram(CompiledSession):
         super().__init__(formulas, program)
         self._made_of = float(domain.period / unit), domain.tolerance, strict, ignored
 
+    @property
+    def lags(self) -> tuple[int, ...]:
+        """The samples after which each formula's value at a sample is known."""
+        return self.program.lags
+
     def open(self) -> Any:
         """See :class:`Session`."""
         return core_monitor(self.program, *self._made_of, self._types)
@@ -209,6 +215,12 @@ class SampleDefinition(Session):
     ) -> None:
         assert domain.period is not None
         self._made_of = formulas, inputs, domain.period, domain.tolerance, strict, unit
+
+    @property
+    def lags(self) -> tuple[int, ...]:
+        """The samples after which each formula's value at a sample is known."""
+        formulas, _, period, *_ = self._made_of
+        return tuple([int(depth_of(each, period) / period) for each in formulas])
 
     def open(self) -> PythonMonitor:
         """See :class:`Session`."""

@@ -32,7 +32,7 @@ class CheckedSamples(OnlineMonitor):
     #: Whether times are seconds and nothing is recorded here, so that the back end takes samples directly.
     _plain: bool
     #: How many samples later each formula is known.
-    _lags: list[int]
+    _lags: tuple[int, ...]
     _update: Callable[..., Any]
     _step: Callable[..., Any]
     _refused: Any

@@ -5,12 +5,13 @@ from __future__ import annotations
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.checked_samples import CheckedSamples
 from rtamt.engine.native import MonitorBase
-from rtamt.engine.online import OnlineMonitor, Watched, depth_of, grounded
+from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.slow_path import SlowPath, inner_of
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.rewrite.check import check_online
 from rtamt.signals import arrays
 from rtamt.signals.caller_times import CallerTimes
 from rtamt.signals.discrete import DISCRETE, Discrete
@@ -68,24 +69,24 @@ class Monitor(MonitorBase, CheckedSamples):
         period = domain.period
         assert period is not None
         formula, watch = grounded(domain, formula, text, watch)
-        of_all = (Watched("", formula, text), *watch)
-        self._depths = [depth_of(each.formula, period, each.text) for each in of_all]
+        for each in (Watched("", formula, text), *watch):
+            check_online(each.formula, each.text)
         OnlineMonitor.__init__(self, formula, watch, declared, factory)
         if episodes:
             self._remember_episodes(continuous=False)
         self._period = period
         self._assumed = domain.assumed
         self._tolerance = domain.tolerance
-        self._lags = [int(depth / period) for depth in self._depths]
-        self._oldest = max(self._lags)  # the largest number of samples without a value
         # The results of the last chunk, and the number of samples at that time: after any other update
         # the number is larger.
         self._news: tuple[int, list[Signal]] = (0, [])
-        self._times = CallerTimes(None if unit is None else check_unit(unit), period, self._oldest)
-        self._session = BACKENDS[backend].session(
-            self._formulas, self.input_names, domain, worst_case=worst_case
-        )
-        self._connect(self._session.open())
+        unit = None if unit is None else check_unit(unit)
+        session = BACKENDS[backend].session(self._formulas, self.input_names, domain, worst_case=worst_case)
+        self._session = session
+        self._lags = session.lags
+        self._oldest = max(self._lags)  # the largest number of samples without a value
+        self._times = CallerTimes(unit, period, self._oldest)
+        self._connect(session.open())
 
     def _connect(self, backend: Any) -> None:
         #: Whether times are seconds, so that the back end takes samples without us.
@@ -99,7 +100,7 @@ class Monitor(MonitorBase, CheckedSamples):
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known."""
-        return float(self._depths[0])
+        return float(self._lags[0] * self._period)
 
     @property
     def period(self) -> Fraction:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from rtamt.compiler.program import Instruction, Program
+from rtamt.compiler.program import Instruction, Program, records_of
 from rtamt.engine.native import core
 
 CORE = core()
@@ -13,7 +13,7 @@ CORE = core()
 
 def program(*instructions: Instruction, outputs: tuple[int, ...], inputs: tuple[str, ...]) -> bytes:
     return Program(
-        instructions=instructions,
+        records=records_of(instructions),
         inputs=inputs,
         outputs=outputs,
         period=Fraction(1),
