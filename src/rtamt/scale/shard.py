@@ -172,10 +172,15 @@ class Shard:
         batch = _Batch(samples, self.columns, masked=self._partial)
         first = 0
         if self._arrivals is not None:
+            # In a full shard, an expired key may take the place of a new one.
+            full = len(self._fleet) + len(samples) > self._fleet.capacity
             for place, (sample, time) in enumerate(zip(samples, arrivals, strict=True)):
-                if self._arrivals.note(sample.key, time):
+                expired = [sample.key] if self._arrivals.note(sample.key, time) else []
+                if full:
+                    expired += self._arrivals.pop_expired()
+                if expired:
                     self._take(batch, first, place, taken)
-                    self._forget([sample.key], taken)
+                    self._forget(expired, taken)
                     first = place
         self._take(batch, first, len(samples), taken)
         if self._arrivals is not None:

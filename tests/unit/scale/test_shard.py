@@ -245,6 +245,21 @@ def test_silent_keys_expire_in_whatever_batches_messages_come():
     ]
 
 
+@pytest.mark.parametrize("size", [1, 2, 6])
+def test_a_new_key_takes_the_place_of_an_expired_one_in_whatever_batches_messages_come(size):
+    samples = [Sample(key, 0.0, (4.0,)) for key in ("a", "b", "c", "d", "c", "e")]
+    arrivals = [0.0, 50.0, 55.0, 61.0, 120.0, 122.0]
+    spec = rtamt.parse("x >= 3")
+    shard, results, rejected, expired = Shard(spec, capacity=2, expire_after=60), [], [], []
+    for first in range(0, 6, size):
+        taken = shard.take(samples[first : first + size], arrivals[first : first + size])
+        results += [each.key for each in taken.results]
+        rejected += [first + each.position for each in taken.rejected]
+        expired += taken.expired
+    assert results == ["a", "b", "d", "c", "e"]
+    assert (rejected, expired, len(shard)) == ([2], ["a", "b", "d"], 2)
+
+
 def test_a_state_goes_on_with_and_without_expiry():
     plain = Shard(SPEC)
     plain.take([Sample("a", 0.0, (4.0,))])
