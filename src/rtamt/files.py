@@ -37,6 +37,15 @@ def is_device(path: str | os.PathLike[str]) -> bool:
     return stat.S_ISCHR(mode) or stat.S_ISBLK(mode)
 
 
+def is_pipe(path: str | os.PathLike[str]) -> bool:
+    """Return whether a path leads to a named pipe or a socket."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):  # texts that are no paths
+        return False
+    return stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)
+
+
 def open_text(
     path: str | os.PathLike[str], encoding: str = "utf-8-sig", newline: str | None = None
 ) -> TextIO:

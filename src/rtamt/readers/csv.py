@@ -13,6 +13,7 @@ from rtamt.errors import TraceError, shown
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import is_date
+from rtamt.signals.time_columns import unit_called
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -156,6 +157,9 @@ def number(text: str, name: str, header: Header, line: int, *, nan: bool = False
     text = text.strip()
     if not is_number(text):
         hint = " with a decimal point" if is_number(text.replace(",", ".")) else ""
+        unit = text.strip("[]() ")
+        if line == header.line + 1 and unit_called(unit) is not None:
+            hint = f"; if the line holds units, write them behind the names, such as '{name} [{unit}]', and delete it"
         raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)
     value = float(text)
     if isinf(value) and any(character.isdigit() for character in text):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.errors import TraceError, UsageError, did_you_mean
@@ -70,6 +71,31 @@ FORMATS = (
 #: How compressed files of a bag end.
 _PACKED = (".zstd", ".zst")
 
+#: What to do with other files of measurements, by how their names end.
+_ELSEWHERE = MappingProxyType(
+    {
+        (".gz", ".bz2", ".xz", ".zip", ".7z", ".tar", ".tgz", *_PACKED): "unpack it first",
+        (
+            ".mat",
+            ".h5",
+            ".hdf5",
+            ".nc",
+            ".pkl",
+            ".npz",
+            ".npy",
+        ): "load it in Python, and give its arrays to rtamt.read "
+        "as a dict, such as {'time': t, 'speed': v}, or export it as CSV",
+        (
+            ".json",
+            ".jsonl",
+            ".ndjson",
+        ): "'rtamt monitor SPEC < FILE' reads lines of JSON, and rtamt.read a frame of pandas or polars",
+        (".db", ".sqlite", ".sqlite3"): "'--sql sqlite:///FILE --query TEXT' reads a database, in Python "
+        "rtamt.read('sqlite:///FILE', query=...)",
+        (".xls", ".xlsb", ".ods"): "save it as .xlsx or .csv",
+    }
+)
+
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}
 
 
@@ -93,6 +119,18 @@ def format_of(path: str) -> Format:
             f"'{path}' is a compressed file of a bag: give the bag's folder, in which metadata.yaml is, or unpack it"
         )
     if suffix not in SUFFIXES:
-        known, hint = ", ".join(SUFFIXES), did_you_mean(suffix, SUFFIXES) if suffix else ""
-        raise TraceError(f"cannot tell how to read '{path}': its name ends in none of {known}{hint}")
+        known = ", ".join(SUFFIXES)
+        raise TraceError(
+            f"cannot tell how to read '{path}': its name ends in none of {known}{_hint(path, suffix)}"
+        )
     return SUFFIXES[suffix]
+
+
+def _hint(path: str, suffix: str) -> str:
+    """Return the end of the message about a file that is in none of the formats."""
+    if os.path.basename(path) == METADATA:
+        return f"; give the folder of the bag, '{os.path.dirname(path) or '.'}'"
+    if path in ("-", "/dev/stdin"):
+        return "; 'rtamt monitor' reads samples from stdin"
+    found = next((hint for suffixes, hint in _ELSEWHERE.items() if suffix in suffixes), "")
+    return f"; {found}" if found else did_you_mean(suffix, SUFFIXES) if suffix else ""

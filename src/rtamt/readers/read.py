@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError
-from rtamt.files import is_device
+from rtamt.files import is_device, is_pipe
 from rtamt.language.units.durations import check_unit, positive_period
 from rtamt.readers import frames
 from rtamt.readers.assemble import Choice, chunks_of, trace_of
@@ -171,6 +171,10 @@ def _open(source: Any, sheet: str | None, query: str | None, recover: bool) -> S
         known = format_of(path)
         if is_device(path):  # which has no end
             raise TraceError(f"'{path}' is a device, expected a file")
+        if is_pipe(path):  # which cannot be read twice, and may never begin
+            raise TraceError(
+                f"'{path}' is a pipe, expected a file; 'rtamt monitor SPEC < PIPE' reads it as a stream"
+            )
         return known.open(path, sheet, recover)
     found = frames.source_of(source)
     if found is None:

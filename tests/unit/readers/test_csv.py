@@ -235,6 +235,16 @@ def test_message_for_a_field_too_long_for_a_csv_file(write):
     assert str(error.value) == "log.csv, line 2: field larger than field limit (131072)"
 
 
+@pytest.mark.parametrize("unit", ["ms", "[ms]"])
+def test_the_message_for_a_row_of_units_says_where_to_write_them(write, unit):
+    with pytest.raises(TraceError) as error:
+        read(write(f"time,x\n{unit},V\n0,1\n100,2\n"), ["x"])
+    assert str(error.value) == (
+        f"log.csv, line 2: 'time' is '{unit}', expected a number; if the line holds units, write them behind the "
+        "names, such as 'time [ms]', and delete it"
+    )
+
+
 def test_message_names_the_variable(write):
     with pytest.raises(TraceError) as error:
         read(write("time,req\n0,abc\n"), ["req"])
