@@ -19,8 +19,10 @@ from rtamt.readers.formats import SUFFIXES, is_bag
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-#: Bytes at the beginning and at the end of a file that its digest covers.
+#: Bytes at the beginning and at the end of a large file that its digest covers.
 _END = 2**19
+#: Whether files have a time of their last change that no program can set.
+_HAS_CHANGE_TIME = os.name == "posix"
 
 
 class Recording(NamedTuple):
@@ -69,7 +71,8 @@ def _known(paths: Iterable[str]) -> list[str]:
 def version_of(path: str) -> str:
     """Return the version of a local recording, of a folder that of all its files: the time, the size and a digest.
 
-    A copy or a restored backup may have the time and the size of other content.
+    A copy or a restored backup may have the time and the size of other content. The digest covers the beginning and
+    the end of a large file; the system's time of the last change, which no program can set, covers the rest.
     """
     paths = [path]
     if os.path.isdir(path):
@@ -80,18 +83,23 @@ def version_of(path: str) -> str:
             known = os.stat(each)
         except OSError as error:
             raise UsageError(f"cannot read '{each}': {error.strerror}") from None
-        digest = _digest(each, known.st_size) if stat.S_ISREG(known.st_mode) else ""
+        digest = _digest(each, known) if stat.S_ISREG(known.st_mode) else ""
         parts.append(f"{known.st_mtime_ns}-{known.st_size}-{digest}")
     return "+".join(parts)
 
 
-def _digest(path: str, size: int) -> str:
-    """Return the digest of a file, of the beginning and the end of a large one; empty if it cannot be read."""
+def _digest(path: str, known: os.stat_result) -> str:
+    """Return the digest of a file, of a large one of its ends with the time of its last change; empty on an error."""
+    found = blake2b(digest_size=16)
     try:
         with open(path, "rb") as file:
-            found = blake2b(file.read(_END), digest_size=16)
-            file.seek(max(_END, size - _END))
-            found.update(file.read(_END))
+            if known.st_size > 2 * _END and _HAS_CHANGE_TIME:
+                found.update(file.read(_END))
+                file.seek(known.st_size - _END)
+                found.update(file.read(_END))
+                return f"{found.hexdigest()}-{known.st_ctime_ns}"
+            while part := file.read(_END):
+                found.update(part)
     except OSError:  # the check reports it
         return ""
     return found.hexdigest()
@@ -112,6 +120,10 @@ def _remote(pattern: str) -> list[Recording]:
 
 
 def _version_at(system: Any, path: str) -> Recording:
+    from fsspec.implementations.local import LocalFileSystem
+
+    if isinstance(system, LocalFileSystem):
+        return Recording(system.unstrip_protocol(path), version_of(path))
     info = system.info(path)
     keys = ("ETag", "etag", "md5Hash", "content_md5")
     etag = next((str(info[key]) for key in keys if info.get(key)), "")
