@@ -5,7 +5,7 @@ Formulas that differ in these values alone have the same instructions, apart fro
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from rtamt.compiler.order import is_lowerable
 from rtamt.compiler.plan import Plan, compile_plan, compile_program
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _KEPT = 64
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Shape:
     """Formulas apart from the values of their parameters.
 
@@ -65,7 +65,11 @@ class Shape:
 
     def expanded(self) -> tuple[Formula, ...]:
         """Return the core formulas of these formulas."""
-        return _kept(self.formulas) if self.values else merged(self.formulas)
+        return _kept(self.formulas) if self.values else self._merged
+
+    @cached_property
+    def _merged(self) -> tuple[Formula, ...]:
+        return merged(self.formulas)
 
     def program(
         self,

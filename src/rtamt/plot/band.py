@@ -84,14 +84,15 @@ def band(result: Result) -> Band:
         upper.append(known.upper)
         if decided is None and monitor.satisfied is not None:
             decided = len(steps) - 1
-    positions = XAxis.of(trace).positions(np.array([trace.time(step) for step in steps]))
+    places = np.array(steps, np.int64)
+    positions = XAxis.of(trace).positions(trace.times_at(places))
     return Band(
         positions,
         np.array(lower),
         np.array(upper),
         None if decided is None else float(positions[decided]),
         result.robustness,
-        np.array(steps, np.int64),
+        places,
     )
 
 

@@ -175,7 +175,14 @@ class _Painter:
         self._spec = result.specification
         self._explanation = result.explain(at)
         self._x_axis = XAxis.of(result.trace)
+        self._end = self._x_axis.end
         self._dense = result.trace.domain.continuous
+        self._implicant = tuple(self._explanation.implicant)
+        self._because: dict[Formula | None, list[Stretch]] = {}
+        for stretch in self._implicant:
+            self._because.setdefault(stretch.formula, []).append(stretch)
+        #: The positions of times: intervals of the implicant share theirs with what they read.
+        self._positions: dict[Any, float] = {}
 
     def scene(self, known: Band | None) -> Scene:
         formulas = _sub_formulas(self._spec.formula)
@@ -220,10 +227,10 @@ class _Painter:
             text if is_predicate(formula) else _label(formula),
             name,
             line,
-            ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._x_axis.end),
+            ranges(truth, ~(truth.values > 0), dense=self._dense, end=self._end),
             numbers,
             len(numbers) < len(operands),
-            self._cause_intervals([s for s in self._explanation.implicant if s.formula == formula]),
+            self._cause_intervals(self._because.get(formula, ())),
         )
 
     def _panels(self, formulas: Sequence[Formula]) -> tuple[Panel, ...]:
@@ -233,7 +240,7 @@ class _Painter:
         for group in groups(lines, filter(is_predicate, formulas), trace.units):
             members = set(group.names)
             stretches: list[Stretch | Reading] = []
-            for stretch in self._explanation.implicant:
+            for stretch in self._implicant:
                 if len(stretch.reads) <= _READINGS:
                     stretches += [each for each in stretch.reads if each.signal in members]
                 elif members & set(variables(stretch.formula)):
@@ -252,15 +259,18 @@ class _Painter:
     def _cause_intervals(self, stretches: Sequence[Stretch | Reading]) -> tuple[Range, ...]:
         """Return intervals of the implicant, or of what it reads, as they are drawn, within the recording."""
         half = float(self._result.trace.domain.period or 0) / 2  # around a sample
-        x_axis = self._x_axis
+        position, last = self._position, self._end
         found = dict.fromkeys(
-            (
-                x_axis.position(s.start) - half,
-                x_axis.end if s.end is None else min(x_axis.position(s.end), x_axis.end) + half,
-            )
+            (position(s.start) - half, last if s.end is None else min(position(s.end), last) + half)
             for s in stretches
         )
-        return tuple((start, end) for start, end in found if start <= x_axis.end)
+        return tuple((start, end) for start, end in found if start <= last)
+
+    def _position(self, time: Any) -> float:
+        found = self._positions.get(time)
+        if found is None:
+            found = self._positions[time] = self._x_axis.position(time)
+        return found
 
 
 def _sub_formulas(formula: Formula) -> tuple[Formula, ...]:

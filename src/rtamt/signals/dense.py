@@ -231,6 +231,10 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return self.scale.time(self.start + position)
 
+    def times_at(self, positions: NDArray[np.int64]) -> NDArray[Any]:
+        """See :class:`DomainTrace`."""
+        return self.scale.times(self.start + positions)
+
     def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
         """See :class:`DomainTrace`."""
         from rtamt.signals.counting import rescaled

@@ -271,6 +271,10 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`: a number of Python, or a date or duration of numpy."""
         return plain(self.timestamps[position])
 
+    def times_at(self, positions: NDArray[np.int64]) -> NDArray[Any]:
+        """See :class:`DomainTrace`."""
+        return self.timestamps[positions]
+
     def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
         """See :class:`DomainTrace`."""
         from rtamt.signals.ticks import TimeScale

@@ -215,11 +215,10 @@ class StepFunction:
 def two_valued(cells: Cells, inside: float, outside: float, end: int) -> StepFunction:
     """Return the function on [0, end) that is ``inside`` on the cells and ``outside`` elsewhere."""
     cells = cells.within(0, end)
-    changes = np.empty(2 * len(cells), np.int64)
-    changes[0::2], changes[1::2] = cells.starts, cells.ends
-    values = np.empty(2 * len(cells))
-    values[0::2], values[1::2] = inside, outside
-    if not len(changes) or changes[0] > 0:
-        changes, values = np.insert(changes, 0, 0), np.insert(values, 0, outside)
+    first = int(not len(cells) or cells.starts[0] > 0)  # whether it begins outside
+    changes = np.zeros(2 * len(cells) + first, np.int64)
+    changes[first::2], changes[first + 1 :: 2] = cells.starts, cells.ends
+    values = np.full(len(changes), outside)
+    values[first::2] = inside
     kept = changes < end
     return StepFunction(changes[kept], values[kept], end)

@@ -241,6 +241,10 @@ class DomainTrace(ABC):
         """Return the time of a position in the caller's format."""
 
     @abstractmethod
+    def times_at(self, positions: NDArray[np.int64]) -> NDArray[Any]:
+        """Return the times of positions in the caller's format."""
+
+    @abstractmethod
     def nanoseconds(self, positions: Any) -> NDArray[np.int64]:
         """Return the times of positions in nanoseconds, without a double in between; dates count from 1970.
 
