@@ -120,9 +120,8 @@ def _remote(pattern: str) -> list[Recording]:
 
 
 def _version_at(system: Any, path: str) -> Recording:
-    from fsspec.implementations.local import LocalFileSystem
-
-    if isinstance(system, LocalFileSystem):
+    fsspec = library("fsspec", f"reading '{path}'", "remote")
+    if isinstance(system, fsspec.get_filesystem_class("file")):
         return Recording(system.unstrip_protocol(path), version_of(path))
     info = system.info(path)
     keys = ("ETag", "etag", "md5Hash", "content_md5")
