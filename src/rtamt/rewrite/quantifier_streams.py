@@ -122,13 +122,11 @@ class _StreamScope(Scope):
         """Return the formula that reads the column of the members' values."""
         assert self.splitting is not None
         period = self.splitting.period
+        inside = tuple(inner.found)
+        # Names of columns repeat: equal formulas may read different quantifiers inside.
+        same = (binder, node.op.name, given, inside)
         known = next(
-            (
-                each
-                for each in self.found
-                if (each.binder, each.kind, each.formula) == (binder, node.op.name, given)
-            ),
-            None,
+            (each for each in self.found if (each.binder, each.kind, each.formula, each.inside) == same), None
         )
         if known is None:
             check_online(given, self.splitting.text, group=binder.group.name)
@@ -136,7 +134,7 @@ class _StreamScope(Scope):
             assert lag is not None
             name = f"{node.op.name} {binder.variable} #{len(self.found) + 1}"
             keep = _keep(_past(desugar(given), period), inner.found)
-            known = Quantified(binder, node.op.name, given, name, lag, keep, tuple(inner.found))
+            known = Quantified(binder, node.op.name, given, name, lag, keep, inside)
             self.found.append(known)
         column = Var(known.column, node.span)
         if not known.lag or not self.splitting.late:

@@ -107,6 +107,32 @@ def test_a_member_that_returns_after_a_long_absence_still_has_what_matters(body,
         assert held == [whole[max(at for at in whole if at <= t)] for t in times]
 
 
+@pytest.mark.parametrize("time_domain", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        (
+            "(exists v in cars: exists w in cars: w.x <= 3) or (exists v in cars: exists w in cars: w.x > 9)",
+            2,
+        ),
+        (
+            "(forall v in cars: exists w in cars: w.x > 2) and (forall v in cars: exists w in cars: w.x < 9)",
+            -1,
+        ),
+        (
+            "(count v in cars: exists w in cars: w.x > 9) + "
+            "(count v in cars: exists w in cars where v != w: w.x < 9) > 1",
+            1,
+        ),
+    ],
+)
+def test_quantifiers_that_differ_only_in_the_ones_inside_them_are_two(body, expected, time_domain):
+    formula = rtamt.parse(f"{CARS}({body}) and y > -50", time=time_domain)
+    monitor = formula.monitor()
+    given = monitor.update(0, y=0.0, **{"car_1.x": 1.0, "car_2.x": 1.0})
+    assert (given if time_domain == "discrete" else given.points()[0][1]) == expected
+
+
 def test_a_new_member_compiles_nothing_in_dense_time_either(monkeypatch):
     compiled = []
     original = lower.Lowering.program
