@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.arguments import results_of_one
 from rtamt.cli.command import CommandError, json_text
+from rtamt.cli.outcome import plain_time
 from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.reading_options import add_input_options, add_instant_option, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
-from rtamt.explain.explanation import SHORT
+from rtamt.explain.explanation import SHORT, as_data
 
 if TYPE_CHECKING:
     import argparse
@@ -34,7 +35,7 @@ is its robustness. Of a cause with many intervals, those closest to the critical
 key. "end" is null for an interval of the implicant that never ends; "closed" states whether an interval
 contains its end. "reads" lists the samples of signals that a predicate depends on. "notes" lists what was assumed,
 left out or lost of the recording, if anything.
-Infinities are the strings "inf" and "-inf", because JSON has none.
+Times are seconds, or dates if the trace has dates. Infinities are the strings "inf" and "-inf", because JSON has none.
 
 examples:
   rtamt explain examples/request_grant/spec.stl examples/request_grant/c_violated.csv
@@ -78,6 +79,4 @@ def run(args: argparse.Namespace) -> int:
 
 def _as_json(of: dict[str, str], evaluated: Evaluated, explanation: Explanation) -> str:
     notes = {"notes": evaluated.notes} if evaluated.notes else {}
-    return json_text(
-        {**of, "trace": evaluated.trace, **explanation.to_dict(), **notes}, default=str
-    )  # dates are texts
+    return json_text({**of, "trace": evaluated.trace, **as_data(explanation, plain_time), **notes})

@@ -198,53 +198,63 @@ class Explanation:
     def to_dict(self) -> dict[str, Any]:
         """Return the explanation as JSON data.
 
-        Formulas are text, infinities the strings "inf" and "-inf", dates ISO 8601.
+        Formulas are text, infinities the strings "inf" and "-inf", dates ISO 8601, times since a start seconds.
         """
-        point = self.critical
-        return {
-            "formula": self.formula,
-            "time": _plain(self.time),
-            "satisfied": self.satisfied,
-            "robustness": _plain(self.robustness),
-            "first_violation": _plain(self.first_violation),
-            "critical": {
-                "predicate": point.predicate,
-                "time": _plain(point.time),
-                "start": _plain(point.start),
-                "end": _plain(point.end),
-                "value": _plain(point.value),
-                "polarity": point.polarity,
-                "lowest": _plain(point.lowest),
-                "highest": _plain(point.highest),
-                "decided_by": point.decided_by,
-                "reads": _as_data(point.reads),
-            },
-            "implicant": [
-                {
-                    "predicate": stretch.predicate,
-                    "holds": stretch.holds,
-                    "start": _plain(stretch.start),
-                    "end": _plain(stretch.end),
-                    "closed": stretch.closed,
-                    "lowest": _plain(stretch.lowest),
-                    "highest": _plain(stretch.highest),
-                    "reads": _as_data(stretch.reads),
-                }
-                for stretch in self.implicant
-            ],
-        }
+        return as_data(self, _seconds)
 
 
-def _as_data(reads: Sequence[Reading]) -> list[dict[str, Any]]:
+def as_data(explanation: Explanation, moment: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return an explanation as JSON data; ``moment``: the data for a time, which may be None."""
+    point = explanation.critical
+    return {
+        "formula": explanation.formula,
+        "time": moment(explanation.time),
+        "satisfied": explanation.satisfied,
+        "robustness": _plain(explanation.robustness),
+        "first_violation": moment(explanation.first_violation),
+        "critical": {
+            "predicate": point.predicate,
+            "time": moment(point.time),
+            "start": moment(point.start),
+            "end": moment(point.end),
+            "value": _plain(point.value),
+            "polarity": point.polarity,
+            "lowest": _plain(point.lowest),
+            "highest": _plain(point.highest),
+            "decided_by": point.decided_by,
+            "reads": _as_data(point.reads, moment),
+        },
+        "implicant": [
+            {
+                "predicate": stretch.predicate,
+                "holds": stretch.holds,
+                "start": moment(stretch.start),
+                "end": moment(stretch.end),
+                "closed": stretch.closed,
+                "lowest": _plain(stretch.lowest),
+                "highest": _plain(stretch.highest),
+                "reads": _as_data(stretch.reads, moment),
+            }
+            for stretch in explanation.implicant
+        ],
+    }
+
+
+def _as_data(reads: Sequence[Reading], moment: Callable[[Any], Any]) -> list[dict[str, Any]]:
     return [
-        {"signal": each.signal, "start": _plain(each.start), "end": _plain(each.end), "closed": each.closed}
+        {"signal": each.signal, "start": moment(each.start), "end": moment(each.end), "closed": each.closed}
         for each in reads
     ]
 
 
+def _seconds(time: Any) -> Any:
+    if isinstance(time, np.datetime64):
+        return str(time)
+    if isinstance(time, np.timedelta64):
+        nanoseconds = nanoseconds_of(time)
+        return None if nanoseconds is None else nanoseconds / 10**9
+    return _plain(time)
+
+
 def _plain(value: Any) -> Any:
-    if isinstance(value, np.datetime64):
-        return str(value)
-    if isinstance(value, np.timedelta64):
-        return nanoseconds_of(value)
     return str(value) if isinstance(value, float) and not isfinite(value) else value

@@ -5,6 +5,8 @@ import json
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import pytest
+
 import rtamt
 
 TRACE = "time,req,gnt\n0,0,0\n1,6,0\n2,0,0\n3,0,1\n4,0,7\n"
@@ -126,3 +128,18 @@ def test_epoch_seconds_are_dates_in_every_report(run, write):
         text = Path(name).read_text(encoding="utf-8")
         assert "2023-11-14 22:13:20.5" in text
         assert "1700000000" not in text.partition("<script")[0] + text.partition("</footer>")[0]
+
+
+@pytest.mark.parametrize("options", [(), ("--time", "dense")])
+def test_json_has_seconds_with_all_digits_where_timestamps_count_nanoseconds(run, write, options):
+    write("log.csv", "t [ns],x\n1700000000000000001,5\n1700000001000000001,2\n")
+    check = run("check", "always(x >= 3)", "log.csv", "--json", *options)
+    answer = run("explain", "always(x >= 3)", "log.csv", "--json", *options)
+    told = json.loads(answer.out, parse_float=str)
+    violated = "1700000001.000000001"
+    assert json.loads(check.out, parse_float=str)["first_violation"] == told["first_violation"] == violated
+    assert (told["time"], told["critical"]["time"]) == ("1700000000.000000001", violated)
+    (stretch,) = told["implicant"]
+    assert stretch["start"] == stretch["reads"][0]["start"] == violated
+    data = rtamt.parse("always(x >= 3)").evaluate(rtamt.read("log.csv")).explain().to_dict()
+    assert (data["time"], data["first_violation"]) == (1700000000.000000001, 1700000001.000000001)
