@@ -73,8 +73,10 @@ class LookaheadParser(TypedParser):
 
     def _ends_operand(self, token: Token) -> bool:
         if token.kind == "name":
-            return self.language.infix(token.text) is None and self.language.opening(token.text) is None
-        return token.kind in ("number", "quoted") or token.text == ")"
+            op = self.language.opening(token.text)
+            name = op is None or op.fixity in (Fixity.ATOM, Fixity.FUNCTION)  # as no operand follows
+            return name and self.language.infix(token.text) is None
+        return token.kind in ("number", "quoted") or token.text in (")", "}")
 
     def _is_infix_word(self, at: int) -> bool:
         token = self.tokens[at]

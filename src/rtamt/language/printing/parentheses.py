@@ -80,8 +80,7 @@ def reads_on(child: Formula, op: Operator, language: Language, *, left: bool = F
 
     This happens where a symbol may follow that can also begin an operand: ``G - 3`` is always(-3).
     """
-    child = written_operand(child)
-    name = child.name if isinstance(child, Var) else member_name(child) if is_member(child) else None
+    name = _leaf_name(child)
     if name is None or name_text(name, language) != name:
         return False
     prefix, infix = language.opening(name), language.infix(name)
@@ -97,6 +96,29 @@ def reads_on(child: Formula, op: Operator, language: Language, *, left: bool = F
         for other in language
         if is_infix(other)
     )
+
+
+def hides_choice(condition: Formula, language: Language) -> bool:
+    """Return whether ``if`` before this condition could be a variable: ``if - x > G then`` may end in always(then)."""
+    first = last = written_operand(condition)
+    while isinstance(first, Apply) and is_infix(first.op):
+        first = written_operand(first.args[0])
+    while isinstance(last, Apply) and (is_infix(last.op) or last.op.fixity is Fixity.PREFIX):
+        last = written_operand(last.args[-1])
+    begin, end = _leaf_name(first), _leaf_name(last)
+    signed = _is_negative(first) if not isinstance(first, Apply) else first.op.spellings[0] == "-"
+    if end is None or not (signed or (begin is not None and language.infix(begin) is not None)):
+        return False
+    opening = language.opening(end)
+    return language.infix(end) is not None or (opening is not None and opening.fixity is Fixity.PREFIX)
+
+
+def _leaf_name(formula: Formula) -> str | None:
+    """Return the name of a variable, or of a member of an enumeration; None for all else."""
+    formula = written_operand(formula)
+    if isinstance(formula, Var):
+        return formula.name
+    return member_name(formula) if is_member(formula) else None
 
 
 def name_text(name: str, language: Language) -> str:

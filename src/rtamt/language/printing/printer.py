@@ -11,6 +11,7 @@ from rtamt.language.parsing.grammar import ELSE, INFINITY, THEN, is_infix, is_li
 from rtamt.language.parsing.lexer import is_word
 from rtamt.language.printing.parentheses import (
     falls_apart,
+    hides_choice,
     is_choice,
     is_member,
     member_name,
@@ -111,7 +112,7 @@ def _writer(language: Language, *, parameters: bool = False) -> Callable[[Formul
             condition, first, second = node.args
             return (
                 f"{word} ",
-                *group(condition, is_choice(condition)),
+                *group(condition, is_choice(condition) or hides_choice(condition, language)),
                 f" {THEN} ",
                 *group(first, is_choice(first)),
                 f" {ELSE} ",

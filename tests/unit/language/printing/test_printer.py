@@ -86,6 +86,21 @@ def test_a_topic_prints_bare_and_a_path_in_quotes():
     assert to_text(Var("a/b")) == '"a/b"'
 
 
+@pytest.mark.parametrize(
+    "printed",
+    [
+        "(if -x > 1 and true then x else y) > 0",
+        "(if -x > abs then x else y) > 0",
+        "(if (-x > G) then x else G) > 0",
+        "(if (-1 > x until y > S) then x else y) > 0",
+        "(if (S > U) then x else y) > 0",
+        "(if x > G then x else G) > 0",
+    ],
+)
+def test_a_condition_that_begins_with_a_minus_is_read_as_one(printed):
+    assert str(parse(printed)) == printed
+
+
 def test_long_chains_print_without_recursion():
     text = " and ".join(["x >= 1"] * 10_000)
     assert str(parse(text)) == text
