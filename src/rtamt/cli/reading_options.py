@@ -13,7 +13,7 @@ from rtamt.cli.command import (
     assumes_period,
     options,
 )
-from rtamt.errors import TraceError, UsageError
+from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
@@ -22,6 +22,8 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.signals.arrays import TIME, timestamps
+from rtamt.signals.datetimes import nanoseconds_of
+from rtamt.signals.epoch import is_epoch
 from rtamt.signals.sampling_period import check_regular, infer_period
 
 if TYPE_CHECKING:
@@ -139,6 +141,11 @@ def reading_of(
     for name in args.skip_nan:
         if name not in read:
             raise CommandError(f"--skip-nan {name}: no formula reads '{name}'")
+    if args.how != "hold":
+        from rtamt.signals.resampling import HOW
+
+        if args.how not in HOW:
+            raise CommandError(f"cannot resample by '{args.how}'{choices(args.how, HOW, 'methods')}")
     return Reading(
         args.time_column,
         args.time_unit,
@@ -318,6 +325,10 @@ def instant(at: str | None, result: Result, option: str = "--at") -> Any:
     times = result.signal.times.dtype.kind
     dated = times == "M"
     date = date_in(at)
+    if date is not None and not dated and len(result.signal) and _counts_from_1970(result.signal.times[0]):
+        # Such times are printed as dates.
+        since = date - np.datetime64(0, "ns")
+        return since if times == "m" else (nanoseconds_of(since) or 0) / 10**9
     if (date is not None) != dated:
         has = f"dates: give one such as {EXAMPLE}" if dated else "seconds: give a number of them"
         raise UsageError(f"{option} is '{at}', but the recording has times in {has}")
@@ -331,3 +342,8 @@ def instant(at: str | None, result: Result, option: str = "--at") -> Any:
             f"{option} is '{at}'; give seconds, a time with a unit such as 500ms, or a date such as {EXAMPLE}"
         ) from None
     return np.timedelta64(round(seconds * 10**9), "ns") if times == "m" else float(seconds)
+
+
+def _counts_from_1970(time: Any) -> bool:
+    nanoseconds = nanoseconds_of(time) if isinstance(time, np.timedelta64) else None
+    return is_epoch(float(time) if nanoseconds is None else nanoseconds / 10**9)

@@ -309,6 +309,8 @@ class DiscreteTrace(DomainTrace):
             if abs(float(self.times[nearest]) - float(seconds)) <= TOLERANCE * float(self.period):
                 return nearest
         original = at if isinstance(at, np.datetime64) else shown(at)
+        if isinstance(at, np.timedelta64):
+            original = f"{decimal(int(at.astype('m8[ns]').astype(np.int64)) * UNITS['ns'])} s"
         raise UsageError(
             f"there is no sample at {original}; the recording has {len(self)}, "
             f"from {self.show(0)} to {self.show(self.last)}"
@@ -378,10 +380,10 @@ def record_discrete(
     else:
         times = stamped.seconds
         original = None if stamped.original is times else stamped.original
-        check_increasing(times)
+        check_increasing(times, dates=original)
         inferred = period is None
         period = period or infer_period(times)
-        check_regular(times, period, tolerance)
+        check_regular(times, period, tolerance, dates=original)
     for name, column in columns.items():
         check_numbers(name, column, times, type_=types.get(name))
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))

@@ -167,10 +167,13 @@ def coarse_place(gap: float) -> float:
     return float(10.0**exponent) * 10
 
 
-def check_increasing(times: FloatArray, before: float | None = None, first: int = 0) -> None:
+def check_increasing(
+    times: FloatArray, before: float | None = None, first: int = 0, dates: NDArray[Any] | None = None
+) -> None:
     """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
 
-    ``first`` is the index of ``times[0]`` in the whole recording, for the message.
+    ``first`` is the index of ``times[0]`` in the whole recording, for the message; ``dates``: the times, if
+    they are dates.
     """
     finite = np.isfinite(times)
     if not finite.all():
@@ -187,7 +190,7 @@ def check_increasing(times: FloatArray, before: float | None = None, first: int 
         i = int((steps <= 0).argmax()) + 1
         if before is None and len(steps) > 1 and not steps.any():
             raise never_set(float(times[0]), len(times))
-        raise not_increasing(first + i, float(times[i]), float(times[i - 1]))
+        raise not_increasing(first + i, float(times[i]), float(times[i - 1]), _dates_of(dates, i))
 
 
 def never_set(time: float, count: int, name: str = TIME) -> TraceError:
@@ -199,10 +202,22 @@ def never_set(time: float, count: int, name: str = TIME) -> TraceError:
     )
 
 
-def not_increasing(index: int, time: float, before: float) -> TraceError:
-    """Return the error for a timestamp that is not later than its predecessor."""
+def _dates_of(dates: NDArray[Any] | None, index: int) -> tuple[str, str] | None:
+    """Return the date of a sample and that of its predecessor as text; None if the times are no dates."""
+    if dates is None or dates.dtype.kind != "M":
+        return None
+    from rtamt.signals.listing import show_time
+
+    return show_time(dates[index]), show_time(dates[index - 1])
+
+
+def not_increasing(
+    index: int, time: float, before: float, dates: tuple[str, str] | None = None
+) -> TraceError:
+    """Return the error for a timestamp that is not later than its predecessor; ``dates``: both as text."""
+    now, then = dates or (f"{time:.15g} s", f"{before:.15g} s")
     return TraceError(
-        f"time does not increase at sample {index}: {time:.15g} s comes after {before:.15g} s; "
+        f"time does not increase at sample {index}: {now} comes after {then}; "
         f"sort the samples and drop repeated timestamps",
         variable=TIME,
         index=index,
@@ -216,21 +231,28 @@ def check_regular(
     tolerance: float = TOLERANCE,
     before: float | None = None,
     first: int = 0,
+    dates: NDArray[Any] | None = None,
 ) -> None:
-    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance)."""
+    """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance).
+
+    ``dates``: the times if they are dates, for the message.
+    """
     whole = times if before is None else np.concatenate(([before], times))
     step = float(period)
     off = np.abs(np.diff(whole) - step) > tolerance * step
     if off.any():
         i = int(off.argmax()) + 1
         index = first + i - (0 if before is None else 1)
-        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance)
+        date = None if before is not None else _dates_of(dates, i)
+        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance, date and date[0])
 
 
-def irregular(index: int, time: float, before: float, period: Fraction, tolerance: float) -> TraceError:
-    """Return the error for a sample that is not one period after the one before."""
+def irregular(
+    index: int, time: float, before: float, period: Fraction, tolerance: float, date: str | None = None
+) -> TraceError:
+    """Return the error for a sample that is not one period after the one before; ``date``: its time as text."""
     return TraceError(
-        f"sample {index} at {time:.15g} s is {time - before:g} s after the one before, expected "
+        f"sample {index} at {date or f'{time:.15g} s'} is {time - before:g} s after the one before, expected "
         f"{format_duration(period)} (within {tolerance:.0%}): give the right period, resample the trace, or use "
         f"dense time (--time dense)",
         variable=TIME,

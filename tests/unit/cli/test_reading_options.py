@@ -178,3 +178,48 @@ def test_an_instant_that_is_none(run, write, content, at, message):
 )  # fmt: skip
 def test_messages(run, arguments, message):
     assert run(*arguments) == (2, "", f"rtamt: {message}\n")
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize("unit", ["s", "ns"])
+def test_an_instant_of_timestamps_since_1970_may_be_given_as_the_date_that_is_printed(run, write, time, unit):
+    zeros = "0" * 9 * (unit == "ns")
+    write("log.csv", f"t [{unit}],x\n1700000000{zeros},5\n1700000001{zeros},2\n1700000002{zeros},9\n")
+    for at in ("2023-11-14 22:13:21", "2023-11-14T23:13:21+01:00", "1700000001"):
+        answer = run("explain", "x >= 3", "log.csv", "--time", time, "--at", at)
+        assert answer.out.startswith("violated at 2023-11-14 22:13:21 (+1 s), robustness -1: x >= 3\n")
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (
+            "2026-03-29 01:59:58,1\n2026-03-29 01:59:59,1\n2026-03-29 02:00:00,1\n2026-03-29 02:00:03,1\n",
+            "sample 3 at 2026-03-29T02:00:03 is 3 s after the one before, expected 1 s (within 10%): give the right "
+            "period, resample the trace, or use dense time (--time dense)",
+        ),
+        (
+            "2026-10-25 02:59:58.5,1\n2026-10-25 02:59:59.5,1\n2026-10-25 02:00:00,5\n",
+            "time does not increase at sample 2: 2026-10-25T02:00:00 comes after 2026-10-25T02:59:59.5; sort the "
+            "samples and drop repeated timestamps",
+        ),
+    ],
+    ids=["gap", "end of summer time"],
+)
+def test_errors_in_dates_name_the_dates(run, write, rows, message):
+    write("log.csv", f"time,x\n{rows}")
+    assert run("check", "x >= 3", "log.csv").err == f"rtamt: log.csv: {message}\n"
+
+
+def test_an_unknown_method_of_resampling_is_an_error_also_without_resampling(run, write):
+    write("log.csv", "time,x\n0,5\n1,2\n")
+    for command in (["check"], ["explain"], ["plot", "-o", "x.svg"]):
+        answer = run(*command, "x >= 3", "log.csv", "--how", "cubic")
+        assert answer == (2, "", "rtamt: cannot resample by 'cubic'; methods: hold, linear\n")
+
+
+def test_the_error_for_an_instant_without_a_sample_of_nanoseconds_names_it_in_seconds(run, write):
+    write("log.csv", "t [ns],x\n1700000000000000000,5\n1700000001000000000,2\n")
+    assert run("explain", "x >= 3", "log.csv", "--at", "2500ms").err == (
+        "rtamt: log.csv: there is no sample at 2.5 s; the recording has 2, from 1700000000 s to 1700000001 s\n"
+    )

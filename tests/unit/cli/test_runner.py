@@ -236,7 +236,7 @@ def test_a_bar_where_somebody_watches(monkeypatch):
         (["--jobs", "0"], "--jobs is 0; give a number of processes, 1 or more"),
         (["--sql", "sqlite://", "--query", "x"], "--sql reads a database; leave out the trace 'good.csv', or --sql"),
         (["--how", "line", "--resample", "1"],
-         "good.csv: cannot resample by 'line'; did you mean 'linear'? (methods: linear, hold)"),
+         "cannot resample by 'line'; did you mean 'linear'? (methods: linear, hold)"),
         (["--junit", "no/such/folder.xml", "--quiet"], "cannot write 'no/such/folder.xml': No such file or directory"),
         (["--sheet", "a"], "'good.csv' is CSV, which has no sheets; leave the sheet out"),
     ],
