@@ -42,8 +42,8 @@ HERE = Path(__file__).parent
 BUDGET = HERE / "budget.toml"
 #: What a path may need beyond its budget.
 ALLOWANCE = 0.05
-#: The repetitions after which nothing is left to be made once: constructors are compiled with the fourth instance.
-WARM = 16
+#: The repetitions after which nothing is left to be made once: constructors are compiled with the 17th instance.
+WARM = 20
 #: Programs that counting needs.
 TOOLS = ("valgrind", "cc")
 #: Libraries whose instructions are not counted, by a part of their paths.

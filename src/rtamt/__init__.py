@@ -1,7 +1,6 @@
 """Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
-from importlib import import_module
-
+from rtamt.lazy import import_module
 from rtamt.lazy.typing import Any
 
 __version__ = "1.0.0.dev0"

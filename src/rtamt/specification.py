@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from functools import cached_property, wraps
 
-from rtamt.engine import Evaluators, Query, engine_of
+from rtamt.engine import engine_of
 from rtamt.errors import EvaluationError, TraceError, UsageError
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from rtamt.batch_results import BatchResult
+    from rtamt.engine import Evaluators, Query
     from rtamt.language.formula import Formula
     from rtamt.language.parsing.imports import Library
     from rtamt.language.units.durations import Duration
@@ -345,6 +346,8 @@ class Specification(OnlineSpecification):
         return self._query_of(self.domain, None, None)
 
     def _query_of(self, domain: TimeDomain, semantics: Semantics | None, time_unit: str | None) -> Query:
+        from rtamt.engine import Query  # monitors do not wait for it
+
         unit = None if time_unit is None else check_unit(time_unit)
         chosen = self._semantics(semantics)
         formula = self._apply_semantics(self.formula, chosen)
@@ -382,6 +385,8 @@ class Specification(OnlineSpecification):
 
     @cached_property
     def _evaluators(self) -> Evaluators:
+        from rtamt.engine import Evaluators
+
         return Evaluators(self.backend)
 
     def __reduce__(self) -> tuple[Any, ...]:

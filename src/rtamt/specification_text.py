@@ -344,11 +344,11 @@ class SpecificationText:
 
     def _named(self, name: str) -> Formula:
         """Return a named sub-specification or requirement, or the formula of any other text, read in its place."""
-        from rtamt.language.parameters import with_values
-
         known = self._known(name)
         if known is not None:
             return known
+        from rtamt.language.parameters import with_values
+
         formula = parse_formula(
             name,
             language=self.language,
@@ -371,9 +371,12 @@ class SpecificationText:
         return with_values([formula], self.parameters)[0]
 
     def _watched(self, given: str | Formula, semantics: Semantics | None) -> Watched:
-        from rtamt.language.parameters import with_values
+        if isinstance(given, str):
+            formula = self._named(given)
+        else:
+            from rtamt.language.parameters import with_values
 
-        formula = self._named(given) if isinstance(given, str) else with_values([given], self.parameters)[0]
+            formula = with_values([given], self.parameters)[0]
         if not is_number(formula):
             formula = self._apply_semantics(formula, self._semantics(semantics))
         if not isinstance(given, str):  # its positions may be those of another text

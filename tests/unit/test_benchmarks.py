@@ -106,15 +106,16 @@ def test_the_reader_of_a_tool_is_timed_without_the_adapter(monkeypatch):
 def test_every_program_that_is_started_prints_the_verdict_and_is_counted_but_for_its_first_process():
     starts = start_up.measure({"this": sys.executable}, 2)
     assert list(starts) == [start_up.ALONE, "this"]
-    assert all(len(start.verdict) == len(start.processor) == 2 for start in starts.values())
-    assert all(seconds > 0 for start in starts.values() for seconds in (*start.verdict, *start.processor))
+    for start in starts.values():
+        assert len(start.processor) == len(start.whole) == len(start.elapsed) == 2
+        assert all(seconds > 0 for seconds in (*start.processor, *start.whole, *start.elapsed))
 
 
 def test_start_up_is_compared_process_by_process():
     starts = {
-        start_up.ALONE: start_up.Start([0.01, 0.01, 0.01], [0.01, 0.01, 0.01]),
-        "this": start_up.Start([0.05, 0.05, 0.05], [0.02, 0.04, 0.05]),
-        "Reelay": start_up.Start([0.05, 0.05, 0.06], [0.04, 0.04, 0.01]),
+        start_up.ALONE: start_up.Start([0.01, 0.01, 0.01], [0.01, 0.01, 0.01], [0.02, 0.02, 0.02]),
+        "this": start_up.Start([0.02, 0.04, 0.05], [0.05, 0.05, 0.05], [0.06, 0.06, 0.06]),
+        "Reelay": start_up.Start([0.04, 0.04, 0.01], [0.05, 0.05, 0.06], [0.06, 0.07, 0.07]),
     }
     assert start_up.ratios(starts) == {"Reelay": 1.0}
-    assert "| Reelay | 50.0 ms | 40.0 ms | 30.0 ms |" in start_up.section(starts)
+    assert "| Reelay | 40.0 ms | 30.0 ms | 50.0 ms | 70.0 ms |" in start_up.section(starts)

@@ -18,7 +18,6 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.check import reads_unbounded_future
 from rtamt.rewrite.horizon import horizon
-from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
@@ -111,6 +110,8 @@ def compile_program(
     def cores() -> Lowering:
         if not lowering.expanded:
             return lowering
+        from rtamt.rewrite.merge import merged  # only messages and other values need it
+
         return _lowered(merged(outputs), period, inputs, clip, domain)[0]
 
     return passed(lowering.program(tuple(indices), cache(cores)), without)

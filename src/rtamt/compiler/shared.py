@@ -12,8 +12,8 @@ from rtamt.compiler.plan import Plan, compile_plan, compile_program
 from rtamt.language.contents import leaves_of, operators_of
 from rtamt.language.formula import Formula, Parameter
 from rtamt.lazy.dataclasses import dataclass, replace
+from rtamt.lazy.functions import Functions
 from rtamt.lazy.typing import TYPE_CHECKING
-from rtamt.rewrite.merge import merged
 from rtamt.signals.discrete import Discrete
 
 if TYPE_CHECKING:
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
     from rtamt.compiler.graph import Graph
     from rtamt.compiler.program import Program
+    from rtamt.rewrite.merge import merged
     from rtamt.signals.time_domain_interface import TimeDomain
+else:
+    merged = Functions("rtamt.rewrite.merge").merged
 
 #: How many programs and plans are kept for other values.
 _KEPT = 64

@@ -28,10 +28,14 @@ _core           the compiled core (``core/``); the stub describes its interface
 """
 
 from rtamt.engine.engine import BACKENDS, Engine, engine_of
-from rtamt.engine.offline import Evaluators, Query
 from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.slow_path import SlowPath, inner_of
-from rtamt.engine.time_axis import TimeAxis
+from rtamt.lazy import import_module
+from rtamt.lazy.typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rtamt.engine.offline import Evaluators, Query
+    from rtamt.engine.time_axis import TimeAxis
 
 __all__ = [
     "BACKENDS",
@@ -46,3 +50,17 @@ __all__ = [
     "grounded",
     "inner_of",
 ]
+
+#: Imported when they are first used: monitors do not need them.
+_RECORDINGS = {
+    "Evaluators": "rtamt.engine.offline",
+    "Query": "rtamt.engine.offline",
+    "TimeAxis": "rtamt.engine.time_axis",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _RECORDINGS:
+        raise AttributeError(f"module 'rtamt.engine' has no attribute '{name}'")
+    found = globals()[name] = getattr(import_module(_RECORDINGS[name]), name)
+    return found

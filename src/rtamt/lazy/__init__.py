@@ -11,3 +11,15 @@ dataclasses  data classes, whose methods are made when they are first called
 tuples       named tuples, whose constructor is compiled once a class has instances
 ===========  ======================================================================
 """
+
+import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import ModuleType
+
+
+def import_module(name: str) -> "ModuleType":
+    """Return a module by its full name, as :func:`importlib.import_module` does, which imports :mod:`warnings`, too."""
+    __import__(name)
+    return sys.modules[name]

@@ -48,8 +48,8 @@ else:
 __all__ = ["dataclass", "field", "fields", "replace"]
 
 _MISSING: Any = object()
-#: Calls before __init__ is compiled, which takes as long as to interpret many, but a fourth is rarely the last.
-INTERPRETED = 3
+#: Calls before __init__ is compiled, which takes as long as to interpret about so many.
+INTERPRETED = 16
 
 
 class Field:
@@ -171,16 +171,17 @@ def _own_fields(cls: Any) -> dict[str, Field]:
 
 def _first_init(*, frozen: bool) -> Callable[..., None]:
     """Return a method that interprets its first calls, and then replaces itself by one that it compiles."""
-    store = object.__setattr__ if frozen else setattr
     owner: Any = None
+    stored: Any = None
     calls = 0
 
     def first(self: Any, *args: Any, **given: Any) -> None:
-        nonlocal owner, calls
+        nonlocal owner, stored, calls
         if owner is None:
             owner = next(cls for cls in type(self).__mro__ if vars(cls).get("__init__") is first)
+            stored = _interpreter(owner, frozen=frozen)
         calls += 1
-        if calls <= INTERPRETED and _stored(self, owner, store, args, given):
+        if calls <= INTERPRETED and stored(self, args, given):
             if hasattr(owner, "__post_init__"):
                 self.__post_init__()
         else:
@@ -190,23 +191,47 @@ def _first_init(*, frozen: bool) -> Callable[..., None]:
     return first
 
 
-def _stored(self: Any, owner: Any, store: Any, args: tuple[Any, ...], given: dict[str, Any]) -> bool:
-    """Store the values of the fields; return whether the arguments were valid. The compiled method reports an error."""
-    names = owner.__match_args__
-    values = dict(zip(names, args, strict=False))
-    if len(args) > len(names) or not values.keys().isdisjoint(given):
-        return False
-    values.update(given)
-    for name, each in owner._record_fields.items():
-        if each.init and name in values:
-            store(self, name, values.pop(name))
-        elif each.default_factory is not _MISSING:
-            store(self, name, each.default_factory())
-        elif each.default is not _MISSING:
-            store(self, name, each.default)
-        elif each.init:
+def _interpreter(cls: Any, *, frozen: bool) -> Callable[[Any, tuple[Any, ...], dict[str, Any]], bool]:
+    """Return a function that stores the values of the fields, and returns whether the arguments were valid.
+
+    The compiled method reports an error.
+    """
+    names, accepted = cls.__match_args__, {*cls.__match_args__}
+    fields = {name: each for name, each in cls._record_fields.items() if each.init or not _is_required(each)}
+    defaults = {name: each.default for name, each in fields.items()}
+    required = {name for name, each in fields.items() if _is_required(each)}
+    factories = [
+        (name, each.default_factory) for name, each in fields.items() if each.default_factory is not _MISSING
+    ]
+    setters: list[Any] = (
+        [getattr(getattr(cls, name, None), "__set__", None) for name in fields] if frozen else [None]
+    )
+    store = object.__setattr__ if frozen else setattr
+
+    def stored(self: Any, args: tuple[Any, ...], given: dict[str, Any]) -> bool:
+        own = dict(zip(names, args, strict=False))
+        if len(args) > len(names) or not own.keys().isdisjoint(given):
             return False
-    return not values
+        own.update(given)
+        if not required <= own.keys() <= accepted:
+            return False
+        values = {**defaults, **own}
+        for name, make in factories:
+            if name not in own:
+                values[name] = make()
+        if None in setters:
+            for name, value in values.items():
+                store(self, name, value)
+        else:
+            for setter, value in zip(setters, values.values(), strict=True):
+                setter(self, value)
+        return True
+
+    return stored
+
+
+def _is_required(field: Field) -> bool:
+    return field.default is _MISSING and field.default_factory is _MISSING
 
 
 def _compile_init(cls: Any, *, frozen: bool) -> Any:

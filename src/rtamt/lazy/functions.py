@@ -11,8 +11,7 @@ Fraction(1, 2)
 
 from __future__ import annotations
 
-from importlib import import_module
-
+from rtamt.lazy import import_module
 from rtamt.lazy.typing import Any
 
 __all__ = ["Function", "Functions"]

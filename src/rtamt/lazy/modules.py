@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
     import numpy as np
 else:
-    from importlib import import_module
     from types import ModuleType
+
+    from rtamt.lazy import import_module
 
     class Unloaded(ModuleType):
         """A module that becomes a copy of the one it names, as fast to read, with the first name that is read of it."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from importlib import import_module
 
 from rtamt.language.units.durations import NANOSECOND
+from rtamt.lazy import import_module
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.rewrite.ground import grounds
 from rtamt.signals.coding import NO_TYPES

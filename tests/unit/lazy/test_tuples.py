@@ -7,6 +7,7 @@ import typing
 import pytest
 
 from rtamt.lazy import tuples as lazy_tuples
+from rtamt.lazy.dataclasses import INTERPRETED
 
 
 def made(base):
@@ -93,7 +94,7 @@ def test_wrong_arguments_have_the_same_message_in_the_first_call_and_in_later_on
 def test_the_constructor_is_compiled_once_for_a_class_and_those_derived_from_it():
     row, derived = made(lazy_tuples.NamedTuple)
     first = row.__new__
-    rows = [kind(1, b="x") for _ in range(10) for kind in (derived, row)]
+    rows = [kind(1, b="x") for _ in range(INTERPRETED) for kind in (derived, row)]
     assert {type(each) for each in rows} == {row, derived}
     assert {*rows} == {(1, "x", 0.5)}
     assert first is not row.__new__ is derived.__new__
