@@ -37,6 +37,9 @@ T = TypeVar("T")
 #: Nodes are counted up to this.
 COUNTLESS = 10**18
 
+#: Nodes are walked as if none were shared up to this number, before that is checked.
+_UNCHECKED = 1000
+
 #: The largest formula that caches the list of its nodes: a file may name each of its sub-formulas.
 KEPT = 5000
 
@@ -321,19 +324,26 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
 
 def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
-    seen: set[int] = set()
     found: list[Formula] = []
     stack = list(formulas)
+    limit = _UNCHECKED
     while stack:  # the last operands first, each before its own operands
         node = stack.pop()
-        if id(node) in seen:
-            return _distinct_of_graph(formulas)
-        seen.add(id(node))
         found.append(node)
         if isinstance(node, Apply):
             stack += node.args
+        elif len(found) > limit:  # a formula that shares nodes may have too many to walk
+            if _repeats(found):
+                return _distinct_of_graph(formulas)
+            limit *= 2
+    if _repeats(found):
+        return _distinct_of_graph(formulas)
     found.reverse()
     return tuple(found)
+
+
+def _repeats(nodes: Sequence[Formula]) -> bool:
+    return len(set(map(id, nodes))) < len(nodes)
 
 
 def _distinct_of_several(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rtamt.language.units.rules import UnitRule
 
     Expansion = Callable[..., Formula]
+    Lookup = Callable[[str], "Operator | None"]
     #: From operands that are not known everywhere, the interval, and where they are known.
     Pastification = Callable[[tuple[Formula, ...], Interval | None, "Known"], Formula]
 
@@ -332,6 +333,8 @@ class Language:
     #: By their spellings: operators at the begin of an operand, and after one.
     openings: Mapping[str, Operator]
     infixes: Mapping[str, Operator]
+    #: The ``get`` of both, of dictionaries, which look up faster than read-only views of them.
+    lookups: tuple[Lookup, Lookup]
 
     @classmethod
     def of(cls, operators: Iterable[Operator]) -> Language:
@@ -353,7 +356,8 @@ class Language:
                     raise UsageError(f"'{spelling}' spells both '{spelled[spelling].name}' and '{op.name}'")
                 spelled[spelling] = op
         words = " ".join((*opening, *infix))
-        return cls(table, words, *map(MappingProxyType, (names, opening, infix)))
+        of_names, of_openings, of_infixes = map(MappingProxyType, (names, opening, infix))
+        return cls(table, words, of_names, of_openings, of_infixes, (opening.get, infix.get))
 
     def extend(self, *operators: Operator) -> Language:
         """Return a new language with these operators added.

@@ -43,8 +43,7 @@ class NameParser:
         #: The names of the definitions that have been used so far.
         self.used: set[str] = set()
         self._depth = 0
-        # Of dictionaries, which look up faster than read-only views of them.
-        self._opening, self._infix = dict(language.openings).get, dict(language.infixes).get
+        self._opening, self._infix = language.lookups
         #: What each token is, by its text, where an operand begins: most tokens occur several times.
         self._kinds: dict[str, int] = {}
         #: Whether operands of an operator are checked, whatever the scope.

@@ -7,7 +7,7 @@ from rtamt.language.contents import variables
 from rtamt.language.document import SEVERITIES, Requirement
 from rtamt.language.formula import Span
 from rtamt.language.parsing.grammar import is_number
-from rtamt.language.parsing.lexer import unquoted
+from rtamt.language.parsing.lexer import quoted, unquoted
 from rtamt.language.parsing.parser import FormulaParser
 from rtamt.language.parsing.statements import begins_template
 from rtamt.language.parsing.type_rules import type_of
@@ -115,16 +115,26 @@ class RequirementParser(FormulaParser):
         if self._explicit:
             return tuple(self._explicit)
         assertions = tuple(self._found)
-        read = set(variables(*(assertion.formula for assertion in assertions)))
         unused = [a for a in assertions if not is_number(a.formula) and a.name not in self.used]
-        taken = read | {assertion.name for assertion in assertions if assertion.name is not None}
         found = []
+        taken: set[str | None] | None = None
         for number, assertion in enumerate(unused or assertions[-1:], 1):
             name = assertion.name or f"requirement_{number}"
-            while assertion.name is None and name in taken:
-                name += "_"
+            if assertion.name is None and self._may_occur(name):
+                if taken is None:
+                    taken = {
+                        *variables(*(each.formula for each in assertions)),
+                        *(each.name for each in assertions),
+                    }
+                while name in taken:
+                    name += "_"
             found.append(Requirement(name, assertion.formula, span=assertion.span))
         return tuple(found)
+
+    def _may_occur(self, name: str) -> bool:
+        """Return whether formulas may have or read this name; to ask them takes a sixth of the time to parse them."""
+        others = self._definitions or self._imports or self.scope.templates  # they may come from other texts
+        return bool(others) or not self.words.isdisjoint((name, quoted(name)))
 
     # ---- lookahead -------------------------------------------------------------------------------
 

@@ -39,10 +39,20 @@ def required(text):
         ("require S: x > 1; require U-2: y > 1", [("S", "x > 1"), ("U-2", "y > 1")]),
         ('require and "text" severity note: x > 1', [("and", "x > 1")]),
         ("requirement_1 > 3", [("requirement_1_", "requirement_1 > 3")]),
+        ('"requirement_1" > 3', [("requirement_1_", "requirement_1 > 3")]),
+        ("def T(a) = a > requirement_1; T(x)", [("requirement_1_", "x > requirement_1")]),
     ],
 )
 def test_requirements_of_a_text(text, expected):
     assert required(text) == expected
+
+
+def test_a_name_that_an_imported_formula_reads_is_taken(tmp_path):
+    (tmp_path / "levels.stl").write_text("high = requirement_1 > 2")
+    spec = rtamt.parse('import "levels.stl"\nalways(high)', folder=tmp_path)
+    assert list(spec.requirements) == ["requirement_1_"]
+    given = parse_document("always(high)", definitions={"high": parse_formula("requirement_1 > 2")})
+    assert [requirement.name for requirement in given.requirements] == ["requirement_1_"]
 
 
 @pytest.mark.parametrize(
