@@ -210,6 +210,17 @@ def test_wrong_settings() -> None:
     )
 
 
+@pytest.mark.parametrize("verdict", ["delayed", "eager", "interval", "causation"])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_a_monitor_of_a_formula_without_variables(backend: str, verdict: str) -> None:
+    spec = rtamt.parse("float x\n3 >= 2", backend=backend)
+    with pytest.raises(rtamt.UsageError) as info:
+        spec.monitor(time="dense", verdict=verdict)
+    assert str(info.value) == (
+        "the formula reads no variable, so in dense time nothing says when to evaluate it"
+    )
+
+
 def test_a_value_that_does_not_exist_leaves_the_monitor_as_it_was() -> None:
     monitor = rtamt.parse("once(x / y >= 1)").monitor(time="dense")
     monitor.update(0.0, x=4.0, y=1.0)

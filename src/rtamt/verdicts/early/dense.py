@@ -38,7 +38,10 @@ class DenseEarlyMonitor(EarlyMonitor):
         self._unit = None if unit is None else check_unit(unit)
         self._requirements = tuple(map(tracked, domain.ground(*(requirements or (formula,)))))
         super().__init__(formula, domain, **settings)
-        domain.check_inputs(self._inputs)
+
+    def _prepare(self) -> None:
+        self._domain.check_inputs(self._inputs)
+        super()._prepare()
 
     @property
     def _settled(self) -> bool:
