@@ -154,6 +154,7 @@ def section(starts: Mapping[str, Start]) -> str:
         "verdict. Every tool is installed from its wheel or source package into an environment of its own, ours too;",
         "the bytecode of all is cached. The first columns are processor time from the start of the process to the",
         "verdict, and what of it is beyond that of Python alone.",
+        f"The load average was {os.getloadavg()[0]:.0f}.",
         "",
         "| tool | to the verdict | beyond Python | whole process | elapsed |",
         "|---|---:|---:|---:|---:|",

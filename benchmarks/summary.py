@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 WHY = """\
 Reasons: in dense time every update returns a signal, which is an object, and both mstlo (Rust) and rtamt cost little
 more than the call from Python. The time for a recording of 100 samples, 2 to 3 µs, is mostly that of the call, the
-checks of the data and the objects of the result. Parsing in Rust is faster than in Python. At the start Python loads
-modules of rtamt one by one, and of mstlo, Reelay and STLRom little more than a shared library."""
+checks of the data and the objects of the result. Parsing in Rust is faster than in Python. Up to the first verdict
+Python loads about a hundred modules of rtamt and the regular expressions and fractions of the standard library, and of
+mstlo, Reelay and STLRom little more than a shared library."""
 
 
 @dataclass(frozen=True)
