@@ -295,6 +295,7 @@ FORMULAS = [
         ParseError,
         "'day' is not a unit of time; units: h, min, s, ms, us, ns",
     ),
+    ("always[0:inf s] x", "             ^", ParseError, "an infinite bound has no unit; leave out 's'"),
     (
         "always[0:T] x",
         "         ^",

@@ -128,14 +128,45 @@ def test_a_chain_that_rtamt_read_differently_is_warned_of_where_parse_is_called(
         spec = declared("x >= 1 -> y >= 1 -> x >= 2")
     assert [str(w.message) for w in caught] == [
         "a chain without parentheses is read as 'x >= 1 -> y >= 1 -> x >= 2'; RTAMT read it as "
-        "'(x >= 1 -> y >= 1) -> x >= 2': add parentheses to say which one is meant"
+        "'(x >= 1 -> y >= 1) -> x >= 2': write the one that is meant"
     ]
     assert caught[0].filename == messages.__file__
     assert spec.evaluate({"time": [0], "x": [0], "y": [0]}) == [[0.0, 1.0]]
 
 
 @pytest.mark.parametrize(
-    "text", ["(x -> y) -> x", "x -> (y -> x)", "x and y and x", "x until y until x", "(x -> y) and (y -> x)"]
+    ("text", "ours", "theirs"),
+    [
+        ("always(0 <= x <= 1)", "always(0 <= x and x <= 1)", "always((0 <= x) <= 1)"),
+        ("0 < x < y < 2", "0 < x and x < y and y < 2", "((0 < x) < y) < 2"),
+        (
+            "x > 1 -> y > 1 -> 1 < x < 2",
+            "x > 1 -> y > 1 -> 1 < x and x < 2",
+            "(x > 1 -> y > 1) -> (1 < x) < 2",
+        ),
+    ],
+)
+def test_a_chain_of_comparisons_is_warned_of(text, ours, theirs):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        declared(text)
+    assert [str(w.message) for w in caught] == [
+        f"a chain without parentheses is read as '{ours}'; RTAMT read it as '{theirs}': write the one that is meant"
+    ]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(x -> y) -> x",
+        "x -> (y -> x)",
+        "x and y and x",
+        "x until y until x",
+        "(x -> y) and (y -> x)",
+        "0 < x and x < 1",
+        "(0 < x) < 1",
+        "z = x + y; 0 < z and z < 1",
+    ],
 )
 def test_no_warning_where_nothing_is_ambiguous(text):
     with warnings.catch_warnings():

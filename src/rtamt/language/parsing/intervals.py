@@ -233,7 +233,10 @@ def _bound(parser: FormulaParser) -> Bound:
         raise parser.error(
             f"'{name}' has a unit already, {unit}; leave out the unit here", follows.span, BoundError
         )
-    if follows.text in UNITS and value is not None:
+    if follows.text in UNITS:
+        if value is None:
+            message = f"an infinite bound has no unit; leave out '{follows.text}'"
+            raise parser.error(message, follows.span)
         unit = parser.next().text
     elif follows.kind == "name" and after.text in _AFTER:
         raise parser.error(
