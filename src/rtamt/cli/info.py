@@ -52,7 +52,8 @@ are in ticks of the resolution.
 values that do not exist are null: dense time has no period, and its memory depends on the data. Durations are in
 seconds, memory in bytes. The program depends on the semantics, the pastified form does not. For several
 requirements, all values refer to their conjunction; each requirement has its own {"name", "description",
-"severity", "formula", "horizon"}.
+"severity", "formula", "horizon"}. Of a recording, it prints {"trace", "signals", "notes"}, each signal as {"name",
+"column", "unit", "samples", "start", "end"} with times in seconds, or as dates if the recording has dates.
 
 examples:
   rtamt info examples/request_grant/spec.stl
@@ -89,9 +90,12 @@ def run(args: argparse.Namespace) -> int:
     if args.sql is not None or is_trace(args.spec):
         if args.set:
             raise CommandError("--set is for requirements, and this is a recording")
+        if args.latex or args.program:
+            raise UsageError("--latex and --program are for requirements, and this is a recording")
         if args.sql is not None and args.spec is not None:
             args.signals.insert(0, args.spec)
-        say(str(_select_signals(recording(args, args.sql or args.spec), args.signals)))
+        trace = _select_signals(recording(args, args.sql or args.spec), args.signals)
+        say(_recording_as_json(trace) if args.json else str(trace))
         return OK
     if args.spec is None:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
@@ -298,6 +302,27 @@ def _lines(facts: RequirementInfo) -> Iterator[str]:
     yield "program"
     for line in facts.program.disassemble().splitlines():
         yield f"  {line}"
+
+
+def _recording_as_json(trace: Trace) -> str:
+    from rtamt.cli.outcome import plain_time
+    from rtamt.signals.listing import notes
+
+    signals = []
+    for name in trace.names:
+        channel = trace.channel(name)
+        times: Any = () if channel.times is None else channel.times
+        signals.append(
+            {
+                "name": name,
+                "column": channel.column,
+                "unit": channel.unit or None,
+                "samples": len(channel.values),
+                "start": plain_time(times[0]) if len(times) else None,
+                "end": plain_time(times[-1]) if len(times) else None,
+            }
+        )
+    return json_text({"trace": trace.source, "signals": signals, "notes": notes(trace)})
 
 
 def _as_json(facts: RequirementInfo) -> str:

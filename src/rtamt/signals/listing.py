@@ -47,8 +47,11 @@ def heading(trace: Trace) -> str:
 
 
 def notes(trace: Trace) -> list[str]:
-    """Return the notes on what was inferred or left out, and the date of time 0 if it is known."""
-    return [*([] if trace.origin is None else [f"time 0 is {trace.origin} UTC"]), *trace.notes]
+    """Return the notes on what was inferred or left out, and on the clock: its date at time 0, or its absence."""
+    found = [] if trace.origin is None else [f"time 0 is {trace.origin} UTC"]
+    if trace.names and all(trace.channel(name).times is None for name in trace.names):
+        found.append("no column holds timestamps: samples are one period apart")
+    return [*found, *trace.notes]
 
 
 def topics(trace: Trace) -> Iterator[tuple[str, dict[str, Channel]]]:

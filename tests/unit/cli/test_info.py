@@ -248,3 +248,26 @@ def test_info_lists_the_passes_and_the_program(run):
     assert lines[0] == f"passes     {', '.join(PASSES)}"
     assert lines[1] == "program"
     assert lines[2].startswith("  %0   lag 0    input x")
+
+
+def test_the_json_of_a_recording_lists_its_signals(run, write):
+    write("log.csv", "t [ms],speed [m/s],note\n0,5,go\n1500,6,stop\n")
+    assert json.loads(run("info", "log.csv", "speed", "--json").out) == {
+        "trace": "log.csv",
+        "signals": [
+            {"name": "speed", "column": "speed [m/s]", "unit": "m/s", "samples": 2, "start": 0, "end": 1.5}
+        ],
+        "notes": ["time is 't [ms]', by its name", "left out, not numbers: note"],
+    }
+    for option in ("--latex", "--program"):
+        assert run("info", "log.csv", option).err == (
+            "rtamt: --latex and --program are for requirements, and this is a recording\n"
+        )
+
+
+def test_a_recording_without_timestamps_is_listed_as_such(run, write):
+    write("log.csv", "Zeit,x\n0,5\n1,6\n")
+    note = "no column holds timestamps: samples are one period apart"
+    assert run("info", "log.csv").out.startswith(f"Trace of log.csv: 2 signals\n  {note}\n")
+    told = json.loads(run("info", "log.csv", "--json").out)
+    assert (told["notes"], told["signals"][0]["start"]) == ([note], None)
