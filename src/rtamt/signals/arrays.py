@@ -120,6 +120,15 @@ def columns_of(
     return times, columns, _common_length(columns, times, data, keys)
 
 
+def has_period(data: Any, samples: int, *, given: bool) -> bool:
+    """Return whether a chunk after some samples needs no timestamps: its period was given, or theirs was assumed.
+
+    A frame is looked at until it has shown a step of its first column: in a short later chunk, any variable may happen
+    to increase.
+    """
+    return given or (samples > 1 and not isinstance(data, WithTimeBases))
+
+
 def require_times(data: Any, names: Collection[str]) -> None:
     """Raise :class:`TraceError` if the first column of data may hold the timestamps, and nothing reads it.
 

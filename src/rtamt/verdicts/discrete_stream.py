@@ -39,6 +39,7 @@ class DiscreteStream(Stream):
 
     def take(self, chunk: Any) -> None:
         """See :class:`Stream`."""
+        regular = arrays.has_period(chunk, self.samples, given=not self._inferred)
         # The monitor takes the samples now, and nothing else reads them later.
         timestamps, columns, n = arrays.columns_of(
             chunk,
@@ -46,11 +47,11 @@ class DiscreteStream(Stream):
             self.unit,
             self.spec.types,
             copy=False,
-            regular=not self._inferred,
+            regular=regular,
         )
         if not n:
             return
-        if self._inferred and len(self._read) > 1:
+        if not regular and len(self._read) > 1:
             arrays.require_times_of_each(chunk, self._read)
         if self._monitor is None:
             self._monitor = self._begin(timestamps)

@@ -295,6 +295,17 @@ def test_a_frame_is_looked_at_in_the_first_chunk_of_a_monitor_that_shows_more_th
     assert monitor.samples == 4
 
 
+def test_a_check_of_frames_in_chunks_looks_at_the_first_column_as_a_monitor_does() -> None:
+    chunks = [FRAME.assign(Zeit=[3, 1, 2, 3]), FRAME]
+    assert (
+        rtamt.check_stream(SPEC, chunks).robustness
+        == SPEC.evaluate(pd.concat(chunks, ignore_index=True)).robustness
+    )
+    for wrong in ([FRAME], [FRAME[:1], FRAME[1:]]):
+        with pytest.raises(TraceError, match="'Zeit'"):
+            rtamt.check_stream(SPEC, wrong)
+
+
 @pytest.mark.parametrize("spec", [GROUP, BOUND], ids=["group", "recorded name"])
 def test_the_first_column_of_a_frame_is_rejected_beside_members_and_recorded_names(spec: Any) -> None:
     frame = FRAME.rename(columns={"x": "car_1.x"}) if spec is GROUP else FRAME

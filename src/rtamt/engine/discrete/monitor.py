@@ -166,12 +166,8 @@ class Monitor(MonitorBase, CheckedSamples):
         )
 
     def has_period(self, data: Any) -> bool:
-        """Return whether a chunk without timestamps needs none: the period was given, or earlier samples had it.
-
-        A frame is looked at as long as its first column is all that there is to see: in a short later chunk, any
-        variable may happen to increase.
-        """
-        return not self._assumed or (self.samples > 1 and not isinstance(data, arrays.WithTimeBases))
+        """See :func:`rtamt.signals.arrays.has_period`."""
+        return arrays.has_period(data, self.samples, given=not self._assumed)
 
     def _take_columns(self, data: Any) -> Signal | None:
         """Take a chunk that needs no conversion; None for any other, which is not taken."""
