@@ -5,7 +5,7 @@ from __future__ import annotations
 from rtamt.language.formula import KEPT, Apply, Var, postorder, store_contents
 from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,13 +18,16 @@ if TYPE_CHECKING:
 class Contents(NamedTuple):
     """The contents of a formula in postorder: operators, variables and constants, nodes with intervals.
 
-    ``untimed``: the operators of nodes without an interval.
+    ``untimed``: the operators of nodes without an interval. ``names``: of the variables, each once, other than fields
+    of members. ``typed``: the variables that are no plain numbers.
     """
 
     operators: frozenset[Operator]
     leaves: tuple[Formula, ...]
     timed: tuple[Apply, ...]
     untimed: frozenset[Operator]
+    names: tuple[str, ...]
+    typed: tuple[Var, ...]
 
 
 def contents(formula: Formula) -> Contents:
@@ -36,7 +39,7 @@ def contents(formula: Formula) -> Contents:
     (<formula x>,)
     """
     if not isinstance(formula, Apply):
-        return Contents(frozenset(), (formula,), (), frozenset())
+        return Contents(frozenset(), (formula,), (), frozenset(), *_variables_in((formula,)))
     try:
         return formula._contents
     except AttributeError:
@@ -46,10 +49,17 @@ def contents(formula: Formula) -> Contents:
         timed = [node for node in applied if node.interval is not None]
         untimed = frozenset([node.op for node in applied if node.interval is None])
         operators = untimed.union([node.op for node in timed])
-        found = Contents(operators, tuple(leaves), tuple(timed), untimed)
+        found = Contents(operators, tuple(leaves), tuple(timed), untimed, *_variables_in(leaves))
         if len(nodes) <= KEPT:
             store_contents(formula, found)
         return found
+
+
+def _variables_in(leaves: Sequence[Formula]) -> tuple[tuple[str, ...], tuple[Var, ...]]:
+    """Return the names of the variables, and those that are no plain numbers."""
+    free = [node for node in leaves if isinstance(node, Var) and not node.bound]
+    typed = [node for node in free if node.type is not None and isinstance(node.type, Boolean | Enumeration)]
+    return tuple(dict.fromkeys([node.name for node in free])), tuple(typed)
 
 
 def leaves_of(*formulas: Formula) -> tuple[Formula, ...]:
@@ -68,17 +78,14 @@ def operators_of(*formulas: Formula) -> frozenset[Operator]:
 
 def types_of(*formulas: Formula) -> dict[str, ValueType]:
     """Return the types of the variables of formulas that are no plain numbers."""
-    found: dict[str, ValueType] = {}
-    for node in leaves_of(*formulas):
-        if isinstance(node, Var) and isinstance(node.type, Boolean | Enumeration) and not node.bound:
-            found[node.name] = node.type
+    typed = contents(formulas[0]).typed if len(formulas) == 1 else _variables_in(leaves_of(*formulas))[1]
+    found: dict[str, Any] = {node.name: node.type for node in typed}
     return found
 
 
 def variables(*formulas: Formula) -> tuple[str, ...]:
     """Return the names of the variables of formulas, each once, in order of first appearance; no fields of members."""
-    leaves = leaves_of(*formulas)
-    return tuple(dict.fromkeys([node.name for node in leaves if isinstance(node, Var) and not node.bound]))
+    return contents(formulas[0]).names if len(formulas) == 1 else _variables_in(leaves_of(*formulas))[0]
 
 
 def own_variables(formula: Formula, every: Sequence[str]) -> tuple[str, ...]:

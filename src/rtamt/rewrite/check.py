@@ -219,8 +219,9 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
 def unbounded_future(formula: Formula) -> Apply | None:
     """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
     formula = spelled_out(formula)
-    _, _, timed, untimed = contents(formula)
-    if not any(map(_is_unbounded_without_interval, untimed)) and not any(map(reads_unbounded_future, timed)):
+    found = contents(formula)
+    untimed = any(map(_is_unbounded_without_interval, found.untimed))
+    if not untimed and not any(map(reads_unbounded_future, found.timed)):
         return None
     for node in postorder(formula):
         if isinstance(node, Apply) and reads_unbounded_future(node):
