@@ -3,10 +3,27 @@
 #include "state_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <utility>
 
 namespace rtamt::early {
+
+namespace {
+
+// Whether a step may have no value: a sum with a finite constant always has one.
+[[nodiscard]] bool is_partial(const Node& node, const Step& step) noexcept {
+    const auto finite = [&](std::uint32_t place) {
+        return node.kind == Kind::atom && node.steps[place].opcode == Opcode::constant &&
+               std::isfinite(node.steps[place].x);
+    };
+    if (step.opcode == Opcode::add || step.opcode == Opcode::sub) {
+        return !finite(step.a) && !finite(step.b);
+    }
+    return info(step.opcode).partial;
+}
+
+} // namespace
 
 BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arrival)
     : graph_(std::move(graph)), ranges_(std::move(ranges)), nodes_(graph_.nodes.size()),
@@ -22,7 +39,7 @@ BoundsEngine::BoundsEngine(Graph graph, std::vector<Bounds> ranges, Arrival arri
         if (node(i).kind == Kind::atom) atoms_.push_back(i);
         fallible_ = fallible_ || may_fail(node(i));
         for (const Step& step : node(i).steps) {
-            partial_ = partial_ || info(step.opcode).partial;
+            partial_ = partial_ || is_partial(node(i), step);
             if (node(i).kind != Kind::atom || step.opcode != Opcode::input) continue;
             auto& readers = readers_[step.a];
             if (readers.empty() || readers.back() != i) readers.push_back(i);
@@ -111,7 +128,7 @@ void BoundsEngine::revert() {
 // is an error must not depend on what is already decided. Atoms of rows are computed when these
 // come, followed or not.
 bool BoundsEngine::may_fail(const Node& node) const noexcept {
-    const auto partial = [](const Step& step) { return info(step.opcode).partial; };
+    const auto partial = [&](const Step& step) { return is_partial(node, step); };
     return (node.kind == Kind::map || node.kind == Kind::sum ||
             (node.kind == Kind::atom && !inputs_.empty())) &&
            std::ranges::any_of(node.steps, partial);

@@ -60,6 +60,9 @@ class BoundsEngine {
     [[nodiscard]] std::optional<Failure> late_row(Tick t, std::span<const Bounds> values,
                                                   std::span<const std::uint32_t> changed);
 
+    // Whether all atoms have a value for such a row, which late_row() then takes whenever it comes.
+    [[nodiscard]] bool is_defined(std::span<const Bounds> values) noexcept;
+
     // `last`: by node, the last tick that others than nodes will ever ask for, -1 for none. What
     // nothing reads is not followed.
     void limit(std::span<const Tick> last);

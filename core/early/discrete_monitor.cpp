@@ -59,6 +59,9 @@ void DiscreteMonitor::follow(const Graph& graph, DiscreteSettings settings) {
         last[output / 2] = forever;
     if (at_start_) at_start_->limit(last);
     engine_->limit(last);
+    postpones_ = late() && !decides_;
+    for (std::uint32_t input = 0; input < graph.inputs; ++input)
+        every_input_.push_back(input);
 }
 
 // ---- samples ------------------------------------------------------------------------------------
@@ -90,25 +93,6 @@ template std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index
 template std::optional<DiscreteMonitor::Failure> DiscreteMonitor::row(Tick index, double time,
                                                                       std::span<const Bounds> row);
 
-std::optional<DiscreteMonitor::Failure>
-DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> observations) {
-    const auto known = late_rows_.value().at(index);
-    row_.assign(known.begin(), known.end());
-    given_.clear();
-    for (const Observation& each : observations) {
-        row_[each.input] = each.bounds;
-        given_.push_back(each.input);
-    }
-    engine_->settle_inputs(closed_after(index));
-    if (auto failure = engine_->late_row(index, row_, given_)) return failure;
-    if (index < times_.newest() && !late_rows_->contains(index)) {
-        times_.insert(index, time, [&](Tick t) { return late_rows_->after(t); });
-    }
-    late_rows_->set(index, row_);
-    advance(index, time);
-    return std::nullopt;
-}
-
 Tick DiscreteMonitor::closed_after(Tick index) const noexcept {
     const Tick newest = std::max(times_.newest(), index);
     return std::max(closed_, late() ? newest - *lateness_ - 1 : newest);
@@ -118,6 +102,7 @@ std::optional<DiscreteMonitor::Failure> DiscreteMonitor::watermark(double time) 
     if (times_.newest() < 0) return std::nullopt;
     const Tick floor = times_.floor(time);
     if (floor <= closed_) return std::nullopt;
+    catch_up();
     if (late()) {
         if (auto failure = engine_->close_inputs(floor)) return failure;
     }
@@ -127,17 +112,18 @@ std::optional<DiscreteMonitor::Failure> DiscreteMonitor::watermark(double time) 
 }
 
 // The engine has taken a sample.
-void DiscreteMonitor::advance(Tick index, double time) {
+void DiscreteMonitor::advance(Tick index, double time, bool later) {
     const Tick before = times_.newest();
     if (index > before) times_.add(index, time);
     ++samples_;
     closed_ = closed_after(index);
-    note(before);
-    if (samples_ % pause == 0) settle();
+    before_ = before;
+    later ? take_closed() : note();
+    if (samples_ % pause == 0) tidy();
 }
 
 // Reads what the last change of the engine has changed up to the newest sample.
-void DiscreteMonitor::note(Tick before) {
+void DiscreteMonitor::note() {
     if (zone_) return; // it provides the changes
     const Tick newest = times_.newest();
     for (std::size_t i = 0; decides_ && i < outputs_.size(); ++i) {
@@ -150,13 +136,13 @@ void DiscreteMonitor::note(Tick before) {
         if (news_[i].size() > 1) std::ranges::sort(news_[i], {}, &Decision::l);
     }
     unread_ = !decides_;
-    before_ = before;
     if (at_start_) at_start_->read(*engine_, final_up_to());
     if (causes_) causes_->read(*engine_, *at_start_, newest);
 }
 
 // What the engine keeps until its next change, which few ask for.
 void DiscreteMonitor::read_changes() const {
+    catch_up();
     if (!unread_) return;
     unread_ = false;
     for (std::size_t i = 0; i < outputs_.size(); ++i)
@@ -173,9 +159,20 @@ Tick DiscreteMonitor::final_up_to() const noexcept {
 }
 
 void DiscreteMonitor::settle() {
-    read_changes();
+    catch_up();
+    tidy();
+}
+
+// Postponed samples stay so.
+void DiscreteMonitor::tidy() {
+    const bool behind = !postponed_.empty();
+    if (behind) { // what others changed is out of date
+        std::ranges::fill(changes_, BoundChanges{});
+    } else {
+        read_changes();
+    }
     std::ranges::fill(wanted_, forever);
-    const Tick closed = final_up_to();
+    const Tick closed = behind ? std::min(closed_, engine_->seen()) : final_up_to();
     Tick oldest = closed;
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
         Tick& wanted = wanted_[outputs_[i] / 2];
@@ -186,7 +183,8 @@ void DiscreteMonitor::settle() {
             from = std::max(plus(closed + 1, -lag(i)), open_[i]);
             oldest = std::min({oldest, waiting_[i].oldest(), oldest_of(news_[i])});
         } else {
-            from = std::min(held(i), zone_ ? zone_->first_change(i) : changes_[i].first());
+            from = std::min(held(i, closed), zone_ ? zone_->first_change(i) : changes_[i].first());
+            if (behind) from = std::max<Tick>(0, std::min(from, before_ + 1));
             from = kept_[i] = std::max(kept_[i], from);
             if (zone_) zone_->drop_before(i, from);
         }
@@ -204,6 +202,7 @@ void DiscreteMonitor::settle() {
 
 std::variant<DiscreteMonitor::End, DiscreteMonitor::Failure> DiscreteMonitor::finish() {
     const Tick end = times_.newest() + 1;
+    catch_up();
     std::optional<Failure> failure;
     const auto zone = zone_ ? std::optional(zone_->ended()) : std::nullopt;
     std::vector<BoundsEngine::Rest> rests;
@@ -257,13 +256,15 @@ void DiscreteMonitor::decide_rest(std::span<const BoundsEngine::Rest> rests, Tic
 
 // ---- results ------------------------------------------------------------------------------------
 
-std::optional<Bounds> DiscreteMonitor::at_start() const noexcept {
+std::optional<Bounds> DiscreteMonitor::at_start() const {
     if (!reports_start_) return std::nullopt;
+    catch_up();
     return unsigned_zeros(zone_ ? zone_->at_start() : at_start_->value());
 }
 
-std::optional<Bounds> DiscreteMonitor::bounds(std::size_t output, Tick sample) const noexcept {
+std::optional<Bounds> DiscreteMonitor::bounds(std::size_t output, Tick sample) const {
     if (sample < held(output)) return std::nullopt;
+    catch_up();
     return unsigned_zeros(zone_ ? zone_->at(output, sample) : followed(output, sample));
 }
 
@@ -273,7 +274,11 @@ Bounds DiscreteMonitor::followed(std::size_t output, Tick sample) const noexcept
 }
 
 Tick DiscreteMonitor::held(std::size_t output) const noexcept {
-    return std::max<Tick>(0, plus(final_up_to() + 1, -lag(output)) - 1);
+    return held(output, final_up_to());
+}
+
+Tick DiscreteMonitor::held(std::size_t output, Tick closed) const noexcept {
+    return std::max<Tick>(0, plus(closed + 1, -lag(output)) - 1);
 }
 
 std::vector<BoundChange> DiscreteMonitor::changes(std::size_t output) const {
@@ -310,6 +315,7 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
         return unsigned_zeros(output ? zone.at(*output, sample) : zone.at_start());
     }
     if (eager_) throw std::invalid_argument("A monitor of verdicts supposes nothing.");
+    catch_up();
     if (const auto failure = engine_->suppose(suppositions)) return *failure;
     Bounds value{};
     if (output) {
@@ -324,7 +330,7 @@ DiscreteMonitor::supposed(std::optional<std::size_t> output, Tick sample,
 }
 
 std::size_t DiscreteMonitor::bytes() const noexcept {
-    std::size_t sum = times_.bytes();
+    std::size_t sum = times_.bytes() + postponed_.bytes();
     if (zone_) sum += zone_->bytes();
     if (eager_) sum += eager_->bytes();
     if (engine_) sum += engine_->bytes();
@@ -339,6 +345,7 @@ std::size_t DiscreteMonitor::bytes() const noexcept {
 void DiscreteMonitor::transfer(Snapshot& snapshot) {
     if (snapshot.loading()) {
         unread_ = false;
+        postponed_.clear();
     } else {
         read_changes();
     }

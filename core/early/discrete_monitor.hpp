@@ -5,6 +5,9 @@
 // open ticks are recomputed after each sample (zone_engine.hpp); else changes are propagated, for
 // verdicts those of truth values (eager_engine.hpp).
 //
+// A sample that may be late changes bounds when it cannot be preceded any more, or when somebody
+// reads them: what nobody reads is computed in order (postponed.cpp).
+//
 // Cost: that of the engine. Memory: its runs, and times as SampleTimes keeps them.
 #pragma once
 
@@ -15,6 +18,7 @@
 #include "eager_engine.hpp"
 #include "eager_verdicts.hpp"
 #include "late_rows.hpp"
+#include "postponed.hpp"
 #include "sample_times.hpp"
 #include "zone_engine.hpp"
 
@@ -91,9 +95,9 @@ class DiscreteMonitor {
     [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
     // Whether such a run will not change any more.
     [[nodiscard]] bool is_final(std::size_t output, const BoundChange& run) const noexcept;
-    [[nodiscard]] std::optional<Bounds> at_start() const noexcept;
+    [[nodiscard]] std::optional<Bounds> at_start() const;
     // Nothing where the tick is not held any more.
-    [[nodiscard]] std::optional<Bounds> bounds(std::size_t output, Tick sample) const noexcept;
+    [[nodiscard]] std::optional<Bounds> bounds(std::size_t output, Tick sample) const;
     // What the newest sample causes: at the start, of an output at a tick, and at all ticks.
     [[nodiscard]] bool causes() const noexcept { return causes_.has_value(); }
     [[nodiscard]] Bounds caused_at_start() const noexcept;
@@ -133,14 +137,15 @@ class DiscreteMonitor {
     void transfer(Snapshot& snapshot);
 
   private:
-    std::optional<BoundsEngine> engine_; // of bounds, and of what no other one follows
-    std::optional<ZoneEngine> zone_;     // in its place where windows are short
-    std::optional<EagerEngine> eager_;   // in its place for verdicts of truth values
+    // Of bounds, and of what no other one follows; it does not know what is postponed yet.
+    mutable std::optional<BoundsEngine> engine_;
+    std::optional<ZoneEngine> zone_;   // in its place where windows are short
+    std::optional<EagerEngine> eager_; // in its place for verdicts of truth values
     std::vector<std::uint32_t> outputs_;
     std::vector<Tick> lags_;             // by output, until its values are final
     std::vector<EagerVerdicts> waiting_; // by output
     bool reports_start_;
-    std::optional<BoundsAtStart> at_start_; // of the first engine
+    mutable std::optional<BoundsAtStart> at_start_; // of the first engine
     std::optional<Causes> causes_;
     SampleTimes times_;
     std::vector<Bounds> ranges_;
@@ -153,7 +158,10 @@ class DiscreteMonitor {
     mutable std::vector<BoundChanges> changes_; // by output
     mutable bool unread_ = false;               // those of the last sample, before which the newest
     Tick before_ = -1;                          // was this one
-    std::vector<Tick> open_;                    // by output, the first tick without a verdict
+    bool postpones_ = false;                    // samples that nothing reads
+    mutable Postponed postponed_;
+    std::vector<std::uint32_t> every_input_;
+    std::vector<Tick> open_; // by output, the first tick without a verdict
     std::vector<Tick> kept_; // by output, the first tick whose bounds the end still gives
     std::vector<Tick> wanted_;
     Tick closed_ = -1;
@@ -163,11 +171,18 @@ class DiscreteMonitor {
     [[nodiscard]] Tick closed_after(Tick index) const noexcept;
     [[nodiscard]] Tick final_up_to() const noexcept;
     [[nodiscard]] Tick lag(std::size_t output) const noexcept;
+    [[nodiscard]] Tick held(std::size_t output, Tick closed) const noexcept;
     [[nodiscard]] Bounds followed(std::size_t output, Tick sample) const noexcept;
     void follow(const Graph& graph, DiscreteSettings settings);
-    void advance(Tick index, double time);
-    void note(Tick before);
+    void advance(Tick index, double time, bool later = false);
+    void note();
     void read_changes() const;
+    void tidy();
+
+    // postponed.cpp
+    void take(Tick index, std::span<const Bounds> row, Tick closed) const;
+    void take_closed();
+    void catch_up() const;
     void decide_rest(std::span<const BoundsEngine::Rest> rests, Tick end);
 };
 

@@ -72,6 +72,13 @@ BoundsEngine::late_row(Tick t, std::span<const Bounds> values,
     return attempt(propagate_row());
 }
 
+bool BoundsEngine::is_defined(std::span<const Bounds> values) noexcept {
+    if (!partial_) return true;
+    return !awaited_ && !fallible_ && std::ranges::all_of(atoms_, [&](std::uint32_t i) {
+        return run<Bounds>(node(i).steps, values, bounds_) == none;
+    });
+}
+
 std::optional<BoundsEngine::Failure> BoundsEngine::row(Tick t, std::span<const double> values) {
     return take(t, values);
 }

@@ -1,4 +1,8 @@
-"""The law of the two engines of bounds in discrete time: on samples in order they are the same in every respect."""
+"""The laws of the ways to compute bounds in discrete time: they are the same in every respect.
+
+Bounds of samples in order follow changes, or are computed anew. Samples that may be late change bounds once
+somebody reads them.
+"""
 
 from __future__ import annotations
 
@@ -57,6 +61,46 @@ def agree(rng: Random, case: Case) -> None:
     _same_results(both, DiscreteIntervalMonitor.finish)
     for instant in (None, *range(max(0, t - 3), t)):
         _same_results(both, lambda each, at=instant: each.interval(at))
+
+
+def read_seldom(rng: Random, case: Case) -> None:
+    """A monitor with a lateness reports the same whether it is read after every sample or now and then."""
+    ranges = {name: limits for name, limits in case.ranges.items() if name in case.names}
+    lateness = rng.choice((1, 3, 10, 100))
+    both = [
+        DiscreteIntervalMonitor(
+            case.formula,
+            DISCRETE.online,
+            at="every",
+            ranges=ranges,
+            lateness=lateness,
+        )
+        for _ in range(2)
+    ]
+    rows = [(t, case.samples[t % case.n]) for t in range(rng.choice((8, 30, 200)))]
+    rows = [(t, row) for t, row in rows if t == 0 or rng.random() < 0.95]
+    rows.sort(key=lambda row: row[0] + rng.uniform(0, lateness + 0.5 * rng.randint(0, 1)))
+    for t, row in rows:
+        some = [name for name in row if len(row) == 1 or rng.random() < 0.9]
+        values = {name: given(row[name]) for name in some}
+        _same_results(both, lambda each, t=t, values=values: each.update(t, **values))
+        both[0].changes()
+        if rng.random() < 0.02:
+            mark = t - rng.randint(-1, lateness)
+            _same_results(both, lambda each, mark=mark: each.watermark(mark))
+        if rng.random() < 0.3:
+            asked = (None, *(t + rng.randint(-9, 3) for _ in range(3)))
+            prediction = {name: _supposed(rng, case, name) for name in case.names if rng.random() < 0.5}
+            for at in rng.sample(asked, rng.randint(0, 4)):
+                _same_results(both, lambda each, at=at: each.interval(at))
+                if rng.random() < 0.1:
+                    _same_results(both, lambda each, at=at, of=prediction: each.interval(at, prediction=of))
+            if rng.random() < 0.7:
+                _same_results(both, DiscreteIntervalMonitor.changes)
+        if rng.random() < 0.02:
+            both = [copy.copy(each) for each in both]
+    _same_results(both, DiscreteIntervalMonitor.finish)
+    _same_results(both, DiscreteIntervalMonitor.interval)
 
 
 def _supposed(rng: Random, case: Case, name: str) -> Any:

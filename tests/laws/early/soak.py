@@ -100,6 +100,10 @@ def engines_agree(rng: Random, _made: Implementation) -> None:
     engines.agree(rng, case(rng, odd=rng.random() < 0.2))
 
 
+def read_seldom(rng: Random, _made: Implementation) -> None:
+    engines.read_seldom(rng, case(rng, partial=rng.random() < 0.3, odd=rng.random() < 0.2))
+
+
 def dense_sound(rng: Random, made: Implementation) -> None:
     dense_laws.sound(dense_case(rng, unbounded=False), made)
 
@@ -202,6 +206,7 @@ LAWS: list[Law] = [
     causes,
     causation_as_defined,
     engines_agree,
+    read_seldom,
     dense_sound,
     dense_narrowing,
     dense_finished,
@@ -225,9 +230,11 @@ LAWS: list[Law] = [
 #: Laws that compare an implementation with the definition, with an evaluation, or parts of the engine.
 COMPARISONS: list[Law] = [
     as_defined,
+    late,
     fails_alike,
     causation_as_defined,
     engines_agree,
+    read_seldom,
     dense_as_defined,
     dense_start,
     dense_corrected,
@@ -252,6 +259,7 @@ def laws_of(made: Implementation) -> list[Law]:
             specification_as_defined,
             reports_as_defined,
             engines_agree,
+            read_seldom,
         ]
         if made is PYTHON
         else []
