@@ -178,10 +178,16 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
     made: list[_Topic] = []
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
-        rows = _Rows(made[0], wanted)
+        rows, found = _Rows(made[0], wanted), 0
         for known, recorded, data in messages(reader, connections):
+            found += 1
             rows.take(recorded, _message(reader, known, data))
-        return rows.columns()
+        columns = rows.columns()
+        counted = sum(known.msgcount for known in connections)
+        if found < counted:  # a damaged index, or a part of the bag that was changed
+            lost = f"{counted - found:,} of the {counted:,} messages on {printable(topic)}"
+            table.losses.append(f"{lost} that the bag counts are not in it")
+        return columns
 
     fields = [Field(column, column, "", "number") for column in steps]
     table = Table((time_field, *fields), load, time_field=time_field)

@@ -1,8 +1,9 @@
-"""MCAP files that were cut off or lost their index: what ``--recover`` reads of them."""
+"""Damaged bags: what ``--recover`` reads of an MCAP file that was cut off or lost its index, and what is noted."""
 
 from __future__ import annotations
 
 import json
+import sqlite3
 import struct
 from contextlib import suppress
 
@@ -106,3 +107,17 @@ def test_check_reads_a_damaged_mcap_file_with_recover_and_notes_what_is_lost(tmp
     assert json.loads(capsys.readouterr().out)["notes"][0].startswith(note)
     assert main(["info", str(path), "--recover"]) == 0
     assert note in capsys.readouterr().out
+
+
+def test_messages_that_the_metadata_counts_and_the_bag_lacks_are_noted(tmp_path):
+    with Bag(tmp_path, "sqlite3") as bag:
+        for i in range(4):
+            bag.plain("/speed", i, 5.0 - i)
+    folder = bag.path.parent
+    assert rtamt.read(folder).losses == ()
+    with sqlite3.connect(bag.path) as database:
+        database.execute("delete from messages where timestamp >= 2000000000")
+    database.close()
+    trace = rtamt.read(folder)
+    assert trace["/speed.data"].values.tolist() == [5, 4]
+    assert trace.losses == ("2 of the 4 messages on /speed that the bag counts are not in it",)
