@@ -10,12 +10,24 @@ RUN := $(VENV)/bin/python
 # For CMake, which is to find its own program, Python and nanobind in .venv.
 WITH_VENV := PATH="$(CURDIR)/$(VENV)/bin:$$PATH" VIRTUAL_ENV="$(CURDIR)/$(VENV)"
 
+# The core is compiled in Release mode for the editable install, the wheel and the library that programs in C link:
+# where ccache is installed, each source once. CMake reads the launcher and the compiler, by the same name for all
+# three, from the environment.
+CCACHE := $(shell command -v ccache)
+ifneq ($(CCACHE),)
+$(VENV)/.core test-python test-install: export CMAKE_CXX_COMPILER_LAUNCHER ?= $(CCACHE)
+$(VENV)/.core test-python test-install: export CXX := $(CXX)
+$(VENV)/.core test-python test-install: export CCACHE_DIR ?= $(CURDIR)/build/ccache
+$(VENV)/.core test-python test-install: export CCACHE_BASEDIR ?= $(CURDIR)
+$(VENV)/.core test-python test-install: export CCACHE_NOHASHDIR ?= true
+endif
+
 EXAMPLE := examples/request_grant
 CXX_FILES := find core tests/cpp tests/fuzz benchmarks -name
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help run test test-python test-cpp test-install lint format docs images paper bench bench-ros field costs budget peers conformance soak vsix vscode viewers fuzz clean
+.PHONY: help run setup test test-python test-cpp test-install lint lint-python lint-cpp format docs images paper bench bench-ros field costs budget peers conformance soak vsix vscode viewers fuzz clean
 
 help: ## list the tasks
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -24,10 +36,13 @@ help: ## list the tasks
 run: $(VENV)/.core ## check the four recordings of the paper's Fig. 4: specification in, robustness and verdict out
 	$(VENV)/bin/rtamt check $(EXAMPLE)/spec.stl $(EXAMPLE)/*.csv || [ $$? -eq 1 ]
 
+setup: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint $(VENV)/.group-wheel $(VENV)/.apt ## install what tests and linters need
+
 test: test-python test-cpp test-install ## everything that can be tested
 
+# In the order of the folders: by default files with few tests come last, and some of these take long on one core alone.
 test-python: $(VENV)/.core $(VENV)/.group-test $(VENV)/.apt ## Python: laws, units, messages, doctests
-	$(RUN) -m pytest -n "$$(nproc)" --dist loadfile
+	$(RUN) -m pytest -n "$$(nproc)" --dist loadfile --no-loadscope-reorder
 
 test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefined-behaviour and thread sanitizers
 	$(WITH_VENV) cmake --preset asan
@@ -37,21 +52,29 @@ test-cpp: $(VENV)/.group-build ## C++: the core alone, under the address, undefi
 	$(WITH_VENV) cmake --build --preset tsan
 	$(WITH_VENV) ctest --preset tsan --no-tests=error
 
-# The steps of .github/workflows/wheels.yml that this machine can run: the wheel is built from the source distribution.
+# The steps of .github/workflows/wheels.yml that this machine can run. The wheel is built from the unpacked source
+# distribution, in a folder as deep as the clone's: ccache compares paths relative to it.
 test-install: $(VENV)/.group-wheel ## a source distribution and a wheel, installed in an empty environment, then the newcomer's path to an explained violation
-	rm -rf build/install build/dist
-	$(RUN) -m build --outdir build/dist . >build/dist.log || { cat build/dist.log; exit 1; }
+	rm -rf build/install build/dist build/sdist
+	mkdir -p build/sdist
+	$(RUN) -m build --sdist --outdir build/dist . >build/dist.log || { cat build/dist.log; exit 1; }
+	tar -xzf build/dist/*.tar.gz -C build/sdist --strip-components 1
+	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m build --wheel --config-setting=build-dir=build/wheel --outdir build/dist build/sdist >build/dist.log || { cat build/dist.log; exit 1; }
 	[ "$$(uname)" != Linux ] || PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m auditwheel repair --wheel-dir build/dist/repaired build/dist/*.whl
 	$(RUN) -m venv build/install
 	build/install/bin/python -m pip install --quiet "$$(ls build/dist/repaired/*.whl build/dist/*.whl 2>/dev/null | head -n 1)"
 	tools/newcomer "$(CURDIR)/build/install/bin/rtamt" build/install/newcomer
 
-lint: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts, clang-format, clang-tidy
+lint: lint-python lint-cpp ## every linter
+
+lint-python: $(VENV)/.core $(VENV)/.group-test $(VENV)/.group-lint ## ruff, mypy, import contracts
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m mypy
 	$(RUN) -m mypy tests/unit/typed_program.py
 	$(VENV)/bin/lint-imports
+
+lint-cpp: $(VENV)/.group-build $(VENV)/.group-lint ## clang-format, clang-tidy
 	$(CXX_FILES) '*.[ch]pp' | xargs $(VENV)/bin/clang-format --dry-run --Werror
 	$(WITH_VENV) cmake --preset tidy --log-level=WARNING
 	$(CXX_FILES) '*.cpp' | xargs -P "$$(nproc)" -n 1 $(VENV)/bin/clang-tidy -p build/tidy --quiet

@@ -35,7 +35,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         elif block.language == "console":
             run("/bin/sh", "-ec", f"cd '{folder}'\n{block.text}")
     build = ROOT / "build/c"  # kept: the next run compiles what has changed
-    settings = ["-DCMAKE_BUILD_TYPE=Debug", "-DRTAMT_BUILD_TESTS=OFF", "-G", "Ninja"]
+    settings = ["-DCMAKE_BUILD_TYPE=Release", "-DRTAMT_BUILD_TESTS=OFF", "-G", "Ninja"]
     run("cmake", "-S", ROOT, "-B", build, *settings)
     run("cmake", "--build", build)
     run("cmake", "--install", build, "--prefix", folder / "prefix")
