@@ -79,9 +79,11 @@ def read_seldom(rng: Random, case: Case) -> None:
     ]
     rows = [(t, case.samples[t % case.n]) for t in range(rng.choice((8, 30, 200)))]
     rows = [(t, row) for t, row in rows if t == 0 or rng.random() < 0.95]
+    # Variables of one sample may come one by one.
+    rows += [(t, row) for t, row in rows if rng.random() < 0.3]
     rows.sort(key=lambda row: row[0] + rng.uniform(0, lateness + 0.5 * rng.randint(0, 1)))
     for t, row in rows:
-        some = [name for name in row if len(row) == 1 or rng.random() < 0.9]
+        some = [name for name in row if len(row) == 1 or rng.random() < 0.7]
         values = {name: given(row[name]) for name in some}
         _same_results(both, lambda each, t=t, values=values: each.update(t, **values))
         both[0].changes()
