@@ -59,7 +59,7 @@ test-install: $(VENV)/.group-wheel ## a source distribution and a wheel, install
 	mkdir -p build/sdist
 	$(RUN) -m build --sdist --outdir build/dist . >build/dist.log || { cat build/dist.log; exit 1; }
 	tar -xzf build/dist/*.tar.gz -C build/sdist --strip-components 1
-	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m build --wheel --config-setting=build-dir=build/wheel --outdir build/dist build/sdist >build/dist.log || { cat build/dist.log; exit 1; }
+	MAKEFLAGS= PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m build --wheel --config-setting=build-dir=build/wheel --outdir build/dist build/sdist >build/dist.log || { cat build/dist.log; exit 1; }
 	[ "$$(uname)" != Linux ] || PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m auditwheel repair --wheel-dir build/dist/repaired build/dist/*.whl
 	$(RUN) -m venv build/install
 	build/install/bin/python -m pip install --quiet "$$(ls build/dist/repaired/*.whl build/dist/*.whl 2>/dev/null | head -n 1)"
