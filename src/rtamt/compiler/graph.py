@@ -76,6 +76,9 @@ class Item(NamedTuple):
     tick: int = 0
 
 
+#: The longest window of a sum in samples: its bounds in the future may be a different number at each of them.
+LONGEST_SUM = 10**7
+
 #: What a graph is for; the rest is what it contains.
 _FIXED = ("period", "inputs", "domain")
 
@@ -270,6 +273,12 @@ def _sum(graph: Graph, formula: Apply, operand: int) -> int:
     if (begin or end) and graph.time.pulses:
         value = over(graph, "pulses", operand, -end, -begin)
     elif begin or end:
+        if end < FOREVER and end - begin >= LONGEST_SUM:
+            raise UsageError(
+                f"a window has {end - begin + 1:,} samples; before its value is known, a sum, count, mean, integral or "
+                f"duration reads at most {LONGEST_SUM:,}: shorten the window, lengthen the period or "
+                f"monitor with verdict='delayed'"
+            )
         steps = (Step(OPCODES.index("slide_sum" if end < FOREVER else "run_sum")),)
         value = _add(
             graph,

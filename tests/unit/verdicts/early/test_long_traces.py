@@ -62,3 +62,16 @@ def test_decisions_have_the_times_of_their_samples_as_they_were_given(copies):
         monitor = copy.copy(monitor) if copies else monitor
     assert [each.time for each in found] == given
     assert [each.decided_at for each in found[2:]] == given[:-2]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("mode", ["eager", "interval", "causation"])
+@pytest.mark.parametrize("operator", ["count", "duration"])
+def test_bounds_of_a_huge_sum_are_refused_before_they_fill_the_memory(operator, mode, backend):
+    spec = rtamt.parse(f"{operator}[0:10000000](x >= 1) >= 3", backend=backend)
+    with pytest.raises(rtamt.UsageError) as error:
+        spec.monitor(verdict=mode)
+    assert str(error.value) == (
+        "a window has 10,000,001 samples; before its value is known, a sum, count, mean, integral or duration reads "
+        "at most 10,000,000: shorten the window, lengthen the period or monitor with verdict='delayed'"
+    )
