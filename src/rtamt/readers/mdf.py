@@ -129,12 +129,13 @@ def _check_group(path: str, number: int, group: Any, most: int) -> None:
     in memory, and evaluates any formula. ``most``: bytes that a file of this size can hold.
     """
     size = group.channel_group.samples_byte_nr
-    flags = 8 * getattr(group.channel_group, "invalidation_bytes_nr", 0)
+    marks = getattr(group.channel_group, "invalidation_bytes_nr", 0)
+    flags = 8 * marks
     records = group.channel_group.cycles_nr
-    if records * max(size, 1) > most:
+    if records * max(size + marks, 1) > most:
         raise TraceError(
-            f"'{path}' cannot be read as MDF: group {number} claims {records:,} records of {size} bytes, more than "
-            f"a file of its size can hold; the file is damaged: copy or export it again"
+            f"'{path}' cannot be read as MDF: group {number} claims {records:,} records of {size + marks} bytes, "
+            f"more than a file of its size can hold; the file is damaged: copy or export it again"
         )
     for channel in group.channels:
         if hasattr(channel, "byte_offset"):  # MDF 4; before, a channel begins at a bit
