@@ -231,3 +231,15 @@ def test_what_was_known_of_an_operation_that_will_have_no_value_limits_causation
     either = rtamt.parse("eventually[1:2](sqrt(delay[1](x, 1)) < 1) or x > 0", time=domain, backend=backend)
     # The root at 1 s will have no value, but it is known not to be negative: 1 - sqrt(...) is 1 at most.
     assert either.monitor(verdict="causation").update(0, x=-1) == Causation(1, -1)
+
+
+@BACKENDS
+def test_causation_of_until_ends_where_its_operands_are_not_kept(backend):
+    text = "eventually[2:2] ((eventually[1:4] 1 > x) until[0:1] x >= y)"
+    whole = rtamt.parse(text, backend=backend).monitor(verdict="causation")
+    copied = copy.copy(whole)
+    for t, (x, y) in enumerate([(4, 1), (2, -0.5), (3, 0), (4, -2.5), (-3, -2), (0.5, 1.5), (3, 3.5)]):
+        copied = copy.copy(copied)  # which forgets what nobody reads any more
+        assert copied.update(t, x=x, y=y) == whole.update(t, x=x, y=y)
+        assert copied.runs() == whole.runs()
+    assert copied.causation(0) == rtamt.Causation(4.0, -2.0)
