@@ -69,6 +69,7 @@ void DiscreteMonitor::follow(const Graph& graph, DiscreteSettings settings) {
 bool DiscreteMonitor::begin_at(Tick index) noexcept {
     if (!late() || times_.newest() >= 0 || engine_->reads_start()) return false;
     times_.begin_at(index);
+    first_ = index;
     return true;
 }
 

@@ -158,6 +158,7 @@ class DiscreteMonitor {
     mutable std::vector<BoundChanges> changes_; // by output
     mutable bool unread_ = false;               // those of the last sample, before which the newest
     Tick before_ = -1;                          // was this one
+    Tick first_ = 0;                            // of the trace; see begin_at()
     bool postpones_ = false;                    // samples that nothing reads
     mutable Postponed postponed_;
     std::vector<std::uint32_t> every_input_;

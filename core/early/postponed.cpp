@@ -25,8 +25,12 @@ DiscreteMonitor::learn(Tick index, double time, std::span<const Observation> obs
     } else {
         catch_up();
         engine_->settle_inputs(closed_after(index));
-        if (auto failure = engine_->late_row(index, row_, given_)) return failure;
+        if (auto failure = engine_->late_row(index, row_, given_)) {
+            failure->tick = std::max(failure->tick, std::min(first_, index));
+            return failure; // what is wrong before the trace is wrong at its start as well
+        }
     }
+    first_ = std::min(first_, index);
     if (index < times_.newest() && !late_rows_->contains(index)) {
         times_.insert(index, time, [&](Tick t) { return late_rows_->after(t); });
     }

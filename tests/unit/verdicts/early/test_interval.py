@@ -430,3 +430,12 @@ def test_bounds_at_the_start_never_narrow_beside_watched_requirements(watch, bac
         monitor.update(t, x=x, y=y)
         found.append(monitor.interval())
     assert found == [rtamt.Interval(-inf, 1.5)] * 3 + [rtamt.Interval(1.5, 1.5)]
+
+
+@pytest.mark.parametrize("lateness", [None, "1s", "3s"])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_a_constant_without_a_value_has_none_at_the_first_sample(lateness, backend):
+    spec = rtamt.parse("always[0:1](x <= sqrt(-1))", backend=backend)
+    monitor = spec.monitor(verdict="interval", lateness=lateness)
+    with pytest.raises(rtamt.EvaluationError, match=r"'sqrt\(-1\)' has no value at sample 0, time 5 s"):
+        monitor.update(5.0, x=None)
