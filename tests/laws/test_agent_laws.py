@@ -108,8 +108,21 @@ class Writer:
             ["historically", "once"] if self.past_only else ["historically", "once", "always", "eventually"]
         )
         around = (self.rng.choice(outer), a, 3 if b == agents.inf else b, body)
+        beside = (self.rng.choice(["and", "or"]), body, self.twin(body))
         # The ordinary signal y is read, so the start and the end of the trace are those of y.
-        return ("and", self.rng.choice([body, body, around]), ("<", ("signal", "y"), ("value", 100.0)))
+        return ("and", self.rng.choice([body, beside, around]), ("<", ("signal", "y"), ("value", 100.0)))
+
+    def twin(self, node: Any) -> Any:
+        """Return the formula with another operator in one of its comparisons: nearly the same, and easily mistaken."""
+        if not isinstance(node, tuple):
+            return node
+        if node[0] in agents.COMPARISONS:
+            return (self.rng.choice(sorted(agents.COMPARISONS)), *node[1:])
+        inner = [i for i, each in enumerate(node) if isinstance(each, tuple)]
+        if not inner:
+            return node
+        place = self.rng.choice(inner)
+        return (*node[:place], self.twin(node[place]), *node[place + 1 :])
 
 
 def presence(rng: random.Random, size: int) -> list[bool]:

@@ -50,14 +50,20 @@ class _Grid:
         self._formula = formula
         self._parts: dict[int, dict[Formula, StepBounds]] = {}  # by the identity of what is known
         last = max(max(int(times[-1]), now.until(name)) for name, (times, _, _) in now.samples.items())
-        # Two ticks after the last known one: a count is at most one more at the first of them, and unbounded after it.
-        self._size = last - start + 3 + 2 * sum(map(self._reach, postorder(core)))
+        # Bounds of a count still change some ticks after the last known one.
+        last = max(
+            last, *(found.times[-1] for each in (before, now) for found in self._of_parts(each).values())
+        )
+        self._size = last - start + 2 + 2 * sum(map(self._reach, postorder(core)))
         self._found: dict[Formula, list[Causation]] = {}
 
-    def _bounds(self, node: Formula, known: DenseKnowledge) -> list[tuple[float, float]]:
+    def _of_parts(self, known: DenseKnowledge) -> dict[Formula, StepBounds]:
         if id(known) not in self._parts:
             self._parts[id(known)] = dense_bounds.bounds_of_parts(self._formula, known, self._tick)
-        found = self._parts[id(known)][node]
+        return self._parts[id(known)]
+
+    def _bounds(self, node: Formula, known: DenseKnowledge) -> list[tuple[float, float]]:
+        found = self._of_parts(known)[node]
         first = self._start if known.start is not None else 0
         return [found.at(first + k) for k in range(self._size)]
 
