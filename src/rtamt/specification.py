@@ -14,7 +14,6 @@ from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import check_unit
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
-from rtamt.signals.arrays import require_times_of_each
 from rtamt.specification_online import OnlineSpecification
 
 if TYPE_CHECKING:
@@ -239,6 +238,8 @@ class Specification(OnlineSpecification):
     def _require_period(self, query: Query, data: Any) -> None:
         """Raise :class:`TraceError` if one of several requirements needs a period that nothing gives."""
         if len(self.requirements) > 1 and query.domain.sampled and query.domain.period is None:
+            from rtamt.signals.assumed_period import require_times_of_each  # monitors do not wait for it
+
             require_times_of_each(data, [one.input_names for one in self.requirements.values()])
 
     def _sample(self, query: Query, data: Any) -> Any:

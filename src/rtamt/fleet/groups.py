@@ -11,14 +11,14 @@ from rtamt.language.formula import Apply, Const
 from rtamt.language.operators import STL
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import require_times_of_each
+from rtamt.signals.assumed_period import require_times_of_each
 from rtamt.signals.binding import Binding, union
 from rtamt.signals.sampling import sampled
 from rtamt.verdicts.preparation import is_storable, prepare
 from rtamt.verdicts.prepared import Asked, Found, Prepared
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from rtamt.engine import OnlineMonitor
@@ -66,7 +66,7 @@ class Way:
         """The variables."""
         return self.binding.names
 
-    def recording(self, data: Any, read: Collection[Sequence[str]] = ()) -> DomainTrace:
+    def recording(self, data: Any, read: Sequence[Sequence[str]] = ()) -> DomainTrace:
         """Normalise a recording; raise :class:`TraceError` for wrong data.
 
         ``read``: the variables of each requirement.
@@ -76,7 +76,7 @@ class Way:
             period = self.domain.period or self.rule.period
             data = sampled(data, self.inputs, self.rule, period, self.unit)
         trace = self._query.record(data, self.inputs, self.types)
-        if len(read) > 1 and self.domain.sampled and self.domain.period is None:
+        if self.domain.sampled and self.domain.period is None:
             require_times_of_each(data, read)
         return trace.ended_by(self.ending) if self.ending else trace
 

@@ -23,6 +23,7 @@ resampling             signals at other instants: a regular grid, or those of ot
 slicing                a signal between two times
 listing                a trace as text: its signals topic by topic
 arrays                 data (lists, arrays, frames, objects) to float64 arrays
+assumed_period         whether samples without timestamps have a known period
 rows                   many traces in one array for each variable, a trace in each row
 data_errors            errors for missing variables and samples, and for NaN
 coding                 names of members to their codes; Booleans are 1 or 0

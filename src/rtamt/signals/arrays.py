@@ -16,10 +16,10 @@ from rtamt.lazy.modules import dt, np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.coding import NO_TYPES, encoded, require_truths
-from rtamt.signals.time_columns import check_first_column, check_frame, check_mapping, is_labelled
+from rtamt.signals.time_columns import check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
@@ -68,12 +68,6 @@ class Timestamps(NamedTuple):
     original: NDArray[Any]
 
 
-class FrameColumns(dict[str, Any]):
-    """The columns of a frame under the names of variables: the first one is the first of the frame."""
-
-    __slots__ = ()
-
-
 def is_moment(time: Any) -> bool:
     """Return whether a time is a date or a duration, and not a number."""
     return isinstance(time, (dt.datetime, dt.timedelta, np.datetime64, np.timedelta64))
@@ -106,7 +100,7 @@ def columns_of(
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, WithTimeBases):
         if not regular:
-            require_times(data, names)
+            data.require_period(names)
         data = data.on_one_time_base(names)
     keys = _keys(data)
     if not is_mapping(data):
@@ -114,39 +108,12 @@ def columns_of(
     elif TIME not in keys:
         check_mapping(data, TIME, names, regular=regular)
     if not regular:
+        from rtamt.signals.assumed_period import require_times  # monitors have a period
+
         require_times(data, names)
     columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
     times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
-
-
-def has_period(data: Any, samples: int, *, given: bool) -> bool:
-    """Return whether a chunk after some samples needs no timestamps: its period was given, or theirs was assumed.
-
-    A frame is looked at until it has shown a step of its first column: in a short later chunk, any variable may happen
-    to increase.
-    """
-    return given or (samples > 1 and not isinstance(data, WithTimeBases))
-
-
-def require_times(data: Any, names: Collection[str]) -> None:
-    """Raise :class:`TraceError` if the first column of data may hold the timestamps, and nothing reads it.
-
-    For samples whose period nothing gives. ``names``: the variables.
-    """
-    if isinstance(data, WithTimeBases):
-        data.require_period(names)
-    elif isinstance(data, FrameColumns) or (not is_mapping(data) and hasattr(data, "columns")):
-        check_first_column(data, list(data if isinstance(data, FrameColumns) else data.columns), TIME, names)
-
-
-def require_times_of_each(data: Any, requirements: Iterable[Collection[str]]) -> None:
-    """Raise the error of :func:`require_times` for any of several requirements, each given by its variables.
-
-    One that reads what may be the timestamps does not decide for the others.
-    """
-    for names in requirements:
-        require_times(data, names)
 
 
 def require_no_unit(data: Any, unit: str | None) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from rtamt.errors import TraceError, choices
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals.arrays import TIME, FrameColumns, is_frame, is_mapping
+from rtamt.signals.arrays import TIME, is_frame, is_mapping
 from rtamt.signals.time_columns import check_frame, split_unit
 
 if TYPE_CHECKING:
@@ -113,7 +113,9 @@ class Binding:
         used = {column for name, column in columns.items() if name in found} - set(self.names)
         return {**{key: value for key, value in data.items() if key not in used}, **found}
 
-    def _frame(self, data: Any) -> FrameColumns:
+    def _frame(self, data: Any) -> dict[str, Any]:
+        from rtamt.signals.assumed_period import FrameColumns  # few bindings meet a frame
+
         names = list(data.columns)
         columns = self.found_in(set(map(str, names)))
         check_frame(data, TIME, (*self.names, *columns.values()))

@@ -26,8 +26,8 @@ from rtamt.signals.arrays import (
     is_frame,
     is_mapping,
     not_a_mapping,
-    require_times,
 )
+from rtamt.signals.assumed_period import require_times
 from rtamt.signals.inexact import gaps_of, items_of
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
@@ -160,7 +160,7 @@ def columns_of_members(members: Mapping[str, tuple[str, ...]], groups: Fields) -
 
 
 def require_times_of_members(data: Any, members: Sequence[Member], names: Collection[str]) -> None:
-    """Raise :class:`TraceError` if the first column of data may hold the timestamps, see ``arrays.require_times``."""
+    """Raise :class:`TraceError` if the first column of data may hold the timestamps, see :func:`require_times`."""
     known = {*names_of(data), *aliases_of(data)}
     read = [*names, *(each.column(field) for each in members for field in each.fields)]
     require_times(data, [name for name in read if name in known])

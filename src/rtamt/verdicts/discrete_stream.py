@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.engine.native import has_period
-from rtamt.signals import arrays
+from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import check_increasing, infer_period
 from rtamt.signals.signal import Signal
@@ -39,7 +39,7 @@ class DiscreteStream(Stream):
 
     def take(self, chunk: Any) -> None:
         """See :class:`Stream`."""
-        regular = arrays.has_period(chunk, self.samples, given=not self._inferred)
+        regular = assumed_period.is_known(chunk, self.samples, given=not self._inferred)
         # The monitor takes the samples now, and nothing else reads them later.
         timestamps, columns, n = arrays.columns_of(
             chunk,
@@ -51,8 +51,8 @@ class DiscreteStream(Stream):
         )
         if not n:
             return
-        if not regular and len(self._read) > 1:
-            arrays.require_times_of_each(chunk, self._read)
+        if not regular:
+            assumed_period.require_times_of_each(chunk, self._read)
         if self._monitor is None:
             self._monitor = self._begin(timestamps)
         known = push_samples(self._monitor, timestamps, columns, n)

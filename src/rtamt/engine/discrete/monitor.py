@@ -160,14 +160,16 @@ class Monitor(MonitorBase, CheckedSamples):
         taken = self._take_columns(data)
         if taken is not None:
             return taken
-        regular = self.has_period(data)
+        regular = self.is_period_known(data)
         return self._push(
             *arrays.columns_of(data, self.input_names, self._times.unit, self._types, regular=regular)
         )
 
-    def has_period(self, data: Any) -> bool:
-        """See :func:`rtamt.signals.arrays.has_period`."""
-        return arrays.has_period(data, self.samples, given=not self._assumed)
+    def is_period_known(self, data: Any) -> bool:
+        """See :func:`rtamt.signals.assumed_period.is_known`."""
+        from rtamt.signals.assumed_period import is_known  # samples alone do not need it
+
+        return is_known(data, self.samples, given=not self._assumed)
 
     def _take_columns(self, data: Any) -> Signal | None:
         """Take a chunk that needs no conversion; None for any other, which is not taken."""

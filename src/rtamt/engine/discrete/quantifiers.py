@@ -190,7 +190,7 @@ class MemberMonitor(SampledMembers):
         Returns the new values as a Signal. Raises the errors of :meth:`update`.
         """
         data = self._binding.applied(data)
-        regular = self._outer.has_period(data)
+        regular = self._outer.is_period_known(data)
         made = chunk(data, self._fields, self.input_names, regular=regular)
         names = [*self.input_names, *made.columns]
         timestamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})

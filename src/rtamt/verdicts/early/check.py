@@ -15,7 +15,7 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
 from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
-from rtamt.signals import arrays
+from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.sampling_period import TOLERANCE, check_increasing, check_regular, infer_period, merged
@@ -156,8 +156,8 @@ class DiscreteEarlyCheck(EarlyCheck):
         timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types, regular=self._given)
         if not n:
             return False
-        if not self._given and len(self._read) > 1:
-            arrays.require_times_of_each(chunk, self._read)
+        if not self._given:
+            assumed_period.require_times_of_each(chunk, self._read)
         if self._period is None:
             self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
         if not self._samples:
