@@ -59,10 +59,16 @@ Tick View::first(Tick l, Tick r, double value) const noexcept {
     return found ? found->begin : none_there;
 }
 
-// Below, a piece that ends at a tick begins there or before, also where operands are not kept any
-// more: nobody reads such ticks, but loops over them end.
-
 namespace {
+
+// Adds the piece that ends at a tick, and returns the tick before it. It begins there at the
+// latest, also where operands are not kept any more: nobody reads such ticks, but loops over them
+// end.
+Tick add(Pieces& pieces, Tick begin, Tick end, double value) {
+    begin = std::min(begin, end);
+    if (value > -infinity) pieces.push_back({begin, end, value});
+    return begin - 1;
+}
 
 // The values of a register at [l, r] + shift, not more than a value.
 void take(Pieces& pieces, const View& view, Tick l, Tick r, Tick shift, double most) {
@@ -86,9 +92,7 @@ void slide(Pieces& pieces, const View& view, const Run& run, Tick length) {
             const Tick lowest = view.first<AtMost>(t, t + length, least);
             begin = std::max(begin, plus(view.at(lowest).begin, -length));
         }
-        begin = std::min(begin, t);
-        if (now > -infinity) pieces.push_back({begin, t, now});
-        t = begin - 1;
+        t = add(pieces, begin, t, now);
     }
 }
 
@@ -125,9 +129,7 @@ Pieces CausedUntil::untimed(const Pieces& reached, Tick from) const {
         if (value != now || kind == Kind::dense_since) { // until hold is worse
             begin = std::max(begin, hold.last<Below>(begin, t - 1, value) + 1);
         }
-        begin = std::min(begin, t);
-        if (value > -infinity) result.push_back({begin, t, value});
-        t = begin - 1;
+        t = add(result, begin, t, value);
     }
     std::ranges::reverse(result);
     return result;
@@ -181,9 +183,7 @@ void CausedUntil::near(Pieces& pieces, const Run& run) const {
             const Tick highest = goal.first<AtLeast>(t + 1, plus(t, high), now);
             begin = std::max(begin, plus(goal.at(highest).begin, -high));
         }
-        begin = std::min(begin, t);
-        if (now > -infinity) pieces.push_back({begin, t, now});
-        t = begin - 1;
+        t = add(pieces, begin, t, now);
     }
 }
 
@@ -221,9 +221,7 @@ void CausedUntil::far(Pieces& pieces, const Pieces& held) const {
                 const Tick leaves = goal.first<AtLeast>(best.from, plus(t, high), now);
                 begin = std::max(begin, plus(leaves, -high));
             }
-            begin = std::min(begin, t);
-            pieces.push_back({begin, t, now});
-            t = begin - 1;
+            t = add(pieces, begin, t, now);
         }
     }
 }
