@@ -30,20 +30,22 @@ def nearest_file(path: str) -> str:
 
 def is_device(path: str | os.PathLike[str]) -> bool:
     """Return whether a path leads to a device, such as ``/dev/zero``."""
-    try:
-        mode = os.stat(path).st_mode
-    except (OSError, ValueError):  # texts that are no paths
-        return False
+    mode = _mode(path)
     return stat.S_ISCHR(mode) or stat.S_ISBLK(mode)
 
 
 def is_pipe(path: str | os.PathLike[str]) -> bool:
     """Return whether a path leads to a named pipe or a socket."""
-    try:
-        mode = os.stat(path).st_mode
-    except (OSError, ValueError):  # texts that are no paths
-        return False
+    mode = _mode(path)
     return stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)
+
+
+def _mode(path: str | os.PathLike[str]) -> int:
+    """Return the mode of what a path leads to, 0 for nothing."""
+    try:
+        return os.stat(path).st_mode
+    except (OSError, ValueError):  # texts that are no paths
+        return 0
 
 
 def open_text(

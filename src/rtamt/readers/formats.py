@@ -71,29 +71,21 @@ FORMATS = (
 #: How compressed files of a bag end.
 _PACKED = (".zstd", ".zst")
 
+_TO_PYTHON = (
+    "load it in Python, and give its arrays to rtamt.read as a dict, such as {'time': t, 'speed': v}, or export it as "
+    "CSV"
+)
+_JSON = "'rtamt monitor SPEC < FILE' reads lines of JSON, and rtamt.read a frame of pandas or polars"
+_DATABASE = (
+    "'--sql sqlite:///FILE --query TEXT' reads a database, in Python rtamt.read('sqlite:///FILE', query=...)"
+)
 #: What to do with other files of measurements, by how their names end.
 _ELSEWHERE = MappingProxyType(
-    {
-        (".gz", ".bz2", ".xz", ".zip", ".7z", ".tar", ".tgz", *_PACKED): "unpack it first",
-        (
-            ".mat",
-            ".h5",
-            ".hdf5",
-            ".nc",
-            ".pkl",
-            ".npz",
-            ".npy",
-        ): "load it in Python, and give its arrays to rtamt.read "
-        "as a dict, such as {'time': t, 'speed': v}, or export it as CSV",
-        (
-            ".json",
-            ".jsonl",
-            ".ndjson",
-        ): "'rtamt monitor SPEC < FILE' reads lines of JSON, and rtamt.read a frame of pandas or polars",
-        (".db", ".sqlite", ".sqlite3"): "'--sql sqlite:///FILE --query TEXT' reads a database, in Python "
-        "rtamt.read('sqlite:///FILE', query=...)",
-        (".xls", ".xlsb", ".ods"): "save it as .xlsx or .csv",
-    }
+    dict.fromkeys((".gz", ".bz2", ".xz", ".zip", ".7z", ".tar", ".tgz", *_PACKED), "unpack it first")
+    | dict.fromkeys((".mat", ".h5", ".hdf5", ".nc", ".pkl", ".npz", ".npy"), _TO_PYTHON)
+    | dict.fromkeys((".json", ".jsonl", ".ndjson"), _JSON)
+    | dict.fromkeys((".db", ".sqlite", ".sqlite3"), _DATABASE)
+    | dict.fromkeys((".xls", ".xlsb", ".ods"), "save it as .xlsx or .csv")
 )
 
 SUFFIXES = {suffix: known for known in FORMATS for suffix in known.suffixes}
@@ -132,5 +124,6 @@ def _hint(path: str, suffix: str) -> str:
         return f"; give the folder of the bag, '{os.path.dirname(path) or '.'}'"
     if path in ("-", "/dev/stdin"):
         return "; 'rtamt monitor' reads samples from stdin"
-    found = next((hint for suffixes, hint in _ELSEWHERE.items() if suffix in suffixes), "")
-    return f"; {found}" if found else did_you_mean(suffix, SUFFIXES) if suffix else ""
+    if suffix in _ELSEWHERE:
+        return f"; {_ELSEWHERE[suffix]}"
+    return did_you_mean(suffix, SUFFIXES) if suffix else ""
