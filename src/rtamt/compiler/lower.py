@@ -121,49 +121,39 @@ class Lowering(Emission, ABC):
         found, orders = self.found, self.orders
         leaf, pointwise = self._lower_leaf, self.pointwise
         stack: list[Any] = [formula]  # of operators
-        while (
-            stack
-        ):  # a node is visited again until its operands, in the order in which it reads them, are lowered
+        while stack:
+            # A node is visited again until its operands, in the order in which it reads them, are lowered.
             node = stack[-1]
             if id(node) in found:
                 stack.pop()
                 continue
-            args = node.args
             try:
                 alone, groups = orders[node.op]
             except KeyError:
                 alone, groups = orders[node.op] = order_of(node.op)
-            place: int | None
-            if alone is None:
-                place = self._lower_groups(node, groups, stack) if groups else self._lower_alone(node, stack)
-                if place is None:
-                    continue
-            else:
+            if alone is not None:  # most, so that no function is called for an operand that is found
                 code, first, second = alone
-                left = args[first]
-                if left.__class__ is not Apply:
-                    a = leaf(left)
-                elif id(left) in found:
-                    a = found[id(left)]
-                else:
-                    if second is not None and args[second].__class__ is Apply:
-                        stack.append(args[second])
+                left = node.args[first]
+                place = found.get(id(left)) if left.__class__ is Apply else leaf(left)
+                if place is None:
                     stack.append(left)
-                    continue
-                if second is None:
-                    place = pointwise(code, node, a)
+                elif second is None:
+                    place = pointwise(code, node, place)
                 else:
-                    right = args[second]
-                    if right.__class__ is not Apply:
-                        b = leaf(right)
-                    elif id(right) in found:
-                        b = found[id(right)]
-                    else:
+                    right = node.args[second]
+                    b = found.get(id(right)) if right.__class__ is Apply else leaf(right)
+                    if b is None:
                         stack.append(right)
-                        continue
-                    place = pointwise(code, node, a, b)
-            found[id(node)] = place
-            stack.pop()
+                        place = None
+                    else:
+                        place = pointwise(code, node, place, b)
+            elif groups:
+                place = self._lower_groups(node, groups, stack)
+            else:
+                place = self._lower_alone(node, stack)
+            if place is not None:
+                found[id(node)] = place
+                stack.pop()
         return found[id(formula)]
 
     def _operand(self, node: Formula, stack: list[Any]) -> int | None:
