@@ -115,9 +115,7 @@ def tools(alone: bool, quick: bool) -> tuple[list[Tool], list[tuple[str, str]]]:
         if not peer.installed:
             absent.append((peer.name, peer.why_not()))
             continue
-        tool = Tool(peer.name, peer.command())
-        tool.label = "RTAMT" if peer.name == "rtamt" else tool.version.rsplit(" ", 1)[0]
-        running.append(tool)
+        running.append(Tool(peer.label, peer.command()))
     return running, absent
 
 

@@ -3,10 +3,10 @@
     python benchmarks/start_up.py [PROCESSES] [--into RESULTS.md]
 
 Each tool runs the program below, which is what a user writes: import the tool, read the formula, give it samples
-until it tells a verdict, print that. The formula is always[0:5](a >= 3), of Reelay historically[0:5](a >= 3), since
+until it reports a verdict, print that. The formula is always[0:5](a >= 3), of Reelay historically[0:5](a >= 3), since
 it has no future operators. The programs need no adapter and no protocol. Every tool has an environment of its own with
-the same interpreter, ours with the wheel (``own_wheel.py``); all bytecode is written before. The processes of the tools
-are interleaved, and the first of each is not counted.
+the same interpreter, ours with the wheel (``own_wheel.py``); all bytecode is written before the first start. The
+processes of the tools are interleaved, and the first of each is not counted.
 """
 
 from __future__ import annotations
@@ -80,8 +80,8 @@ import mtl
 verdict = mtl.parse("G[0, 5](a)")({"a": [(float(t), 1.0) for t in range(6)]}, quantitative=True)
 """,
 }
-#: The last line of each program. Seconds of processor time count from the start of the process.
-TELL = "from time import process_time\nprint(verdict, process_time(), flush=True)\n"
+#: The end of each program. Processor time counts from the start of the process.
+REPORT = "from time import process_time\nprint(verdict, process_time(), flush=True)\n"
 #: What each program prints: all have evaluated the formula.
 VERDICT = 1.0
 
@@ -115,7 +115,7 @@ def measure(interpreters: Mapping[str, str], processes: int) -> dict[str, Start]
             for label, (python, program) in programs.items():
                 begin = time.perf_counter()
                 process = subprocess.Popen(
-                    [python, "-c", program + TELL], stdout=subprocess.PIPE, env=environment, cwd=empty
+                    [python, "-c", program + REPORT], stdout=subprocess.PIPE, env=environment, cwd=empty
                 )
                 assert process.stdout is not None
                 verdict, processor = map(float, process.stdout.readline().split())
@@ -186,15 +186,8 @@ def main() -> None:
     import own_wheel
     import peers
 
-    labels = {
-        "rtamt": "RTAMT",
-        "reelay": "Reelay",
-        "stlrom": "STLRom",
-        "mstlo-python": "mstlo",
-        "metric-temporal-logic": "py-metric-temporal-logic",
-    }
     interpreters = {"this": own_wheel.python()}
-    interpreters |= {labels[peer.name]: str(peer.python) for peer in peers.PEERS if peer.installed}
+    interpreters |= {peer.label: str(peer.python) for peer in peers.PEERS if peer.installed}
     for python in interpreters.values():
         compiled(python)
     starts = measure(interpreters, arguments.processes)

@@ -18,9 +18,10 @@ ENVIRONMENTS = HERE.parents[1] / "build" / "peers"
 
 @dataclass(frozen=True)
 class Peer:
-    """A tool: its name on PyPI, its adapter, and its build dependencies (Debian packages)."""
+    """A tool: its name on PyPI and in tables, its adapter, and its build dependencies (Debian packages)."""
 
     name: str
+    label: str
     adapter: str
     needs: str = ""
 
@@ -53,11 +54,13 @@ class Peer:
 
 
 PEERS = (
-    Peer("rtamt", "ask_rtamt.py"),  # the paper's tool; ours has its name, hence the environment of its own
-    Peer("reelay", "ask_reelay.py"),
-    Peer("stlrom", "ask_stlrom.py", needs="flex, bison and libfl-dev"),
-    Peer("mstlo-python", "ask_mstlo.py"),
-    Peer("metric-temporal-logic", "ask_mtl.py"),
+    Peer(
+        "rtamt", "RTAMT", "ask_rtamt.py"
+    ),  # the paper's tool; ours has its name, hence the environment of its own
+    Peer("reelay", "Reelay", "ask_reelay.py"),
+    Peer("stlrom", "STLRom", "ask_stlrom.py", needs="flex, bison and libfl-dev"),
+    Peer("mstlo-python", "mstlo", "ask_mstlo.py"),
+    Peer("metric-temporal-logic", "py-metric-temporal-logic", "ask_mtl.py"),
 )
 
 

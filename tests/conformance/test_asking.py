@@ -6,16 +6,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import asking
 import pytest
+import shrinking
 from conformance import cases
 
 import rtamt
 
 PEERS = Path(__file__).parents[2] / "conformance" / "peers"
-sys.path.insert(0, str(PEERS))
-
-import asking  # noqa: E402 - found by the line above
-import shrinking  # noqa: E402 - found in the path set above
 
 LIAR = """
 import sys

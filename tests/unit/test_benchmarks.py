@@ -8,17 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import start_up
+import summary
+import timescales
+from cases import Case
 
 import rtamt
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 PEERS = FOLDER.parent / "conformance" / "peers"
-sys.path[:0] = [str(FOLDER), str(PEERS)]
-
-import start_up  # noqa: E402 - found by the line above
-import summary  # noqa: E402 - found in the path set above
-import timescales  # noqa: E402 - found in the path set above
-from cases import Case  # noqa: E402 - found in the path set above
 
 
 @pytest.mark.parametrize("unit", [1, 7])

@@ -2,14 +2,9 @@
 
 import os
 import shutil
-import sys
-from pathlib import Path
 
+import instructions
 import pytest
-
-sys.path[:0] = [str(Path(__file__).parents[2] / "benchmarks")]
-
-import instructions  # noqa: E402 - found by the line above
 
 
 @pytest.mark.timeout(600)  # 18 seconds, but on a busy machine many times that
