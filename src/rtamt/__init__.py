@@ -1,7 +1,6 @@
 """Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
-from rtamt.lazy import import_module
-from rtamt.lazy.typing import Any
+from rtamt.lazy import attributes
 
 __version__ = "1.0.0.dev0"
 
@@ -21,11 +20,7 @@ _MODULES = _modules()
 __all__ = sorted(_MODULES)  # noqa: PLE0605 - type checkers read the stub
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
-        raise AttributeError(f"module 'rtamt' has no attribute '{name}'")
-    found = globals()[name] = getattr(import_module(_MODULES[name]), name)
-    return found
+__getattr__ = attributes(__name__, _MODULES)
 
 
 def __dir__() -> list[str]:

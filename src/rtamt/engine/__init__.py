@@ -30,8 +30,8 @@ _core           the compiled core (``core/``); the stub describes its interface
 from rtamt.engine.engine import BACKENDS, Engine, engine_of
 from rtamt.engine.online import OnlineMonitor, Watched, grounded
 from rtamt.engine.slow_path import SlowPath, inner_of
-from rtamt.lazy import import_module
-from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.lazy import attributes
+from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.engine.offline import Evaluators, Query
@@ -58,9 +58,4 @@ _RECORDINGS = {
     "TimeAxis": "rtamt.engine.time_axis",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _RECORDINGS:
-        raise AttributeError(f"module 'rtamt.engine' has no attribute '{name}'")
-    found = globals()[name] = getattr(import_module(_RECORDINGS[name]), name)
-    return found
+__getattr__ = attributes(__name__, _RECORDINGS)

@@ -13,8 +13,9 @@ signals             the variables of a requirement, from observations, actions a
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rtamt.lazy import attributes
 
 if TYPE_CHECKING:
     from rtamt.learning.gymnasium_wrapper import RobustnessReward
@@ -29,9 +30,5 @@ _MODULES = {
     "VectorRobustnessReward": "rtamt.learning.vector_wrapper",
 }
 
-
-def __getattr__(name: str) -> Any:
-    """Import a wrapper, and Gymnasium or PettingZoo, on first use."""
-    if name not in _MODULES:
-        raise AttributeError(f"module 'rtamt.learning' has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
+#: A wrapper imports Gymnasium or PettingZoo.
+__getattr__ = attributes(__name__, _MODULES)

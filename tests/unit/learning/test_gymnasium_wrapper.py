@@ -275,6 +275,7 @@ def test_errors():
 def test_without_gymnasium_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     monkeypatch.delitem(sys.modules, "rtamt.learning.gymnasium_wrapper")
+    monkeypatch.delitem(vars(rtamt.learning), "RobustnessReward", raising=False)
     with pytest.raises(UsageError) as caught:
         _ = rtamt.learning.RobustnessReward
     assert str(caught.value) == (
