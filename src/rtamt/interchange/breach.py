@@ -44,6 +44,8 @@ BREACH = Dialect(
         Word("implies", "->"),
     ),
     characters={"=>": "->"},
+    tokens=r"\s+|[A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|[<>=!]=|=>|/(?![/*])|-(?!>)|[][(),<>+*]",
+    bounds=(r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[A-Za-z_]\w*", "numbers or parameters"),
 )  # fmt: skip
 
 #: What nothing can be called: its operators and functions, and the time.
@@ -66,6 +68,7 @@ _SHIFTED = lazy_pattern(r"[A-Za-z_]\w*\[\s*t\s*[-+][^]]*\]")
 _STATEMENT = lazy_pattern(
     r"^[ \t]*(?:(?P<kind>signal|param)\b|(?P<name>[A-Za-z_]\w*)[ \t]*:=|(?P<test>test)\b)", re.MULTILINE
 )
+_NAME = lazy_pattern(r"[A-Za-z_]\w*")
 _VALUE = lazy_pattern(
     r"\s*(?P<name>[A-Za-z_]\w*)\s*=\s*(?P<value>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 )
@@ -104,9 +107,13 @@ def read_breach(text: str, period: Fraction | None = None) -> Conversion:
     sources: dict[str, str] = {}
     for kind, name, body in _statements(text):
         if kind == "signal":
-            signals += [each.strip() for each in body.split(",") if each.strip()]
+            signals += _signals(body)
         elif kind == "param":
-            values |= _parameters(body)
+            for parameter, value in _parameters(body).items():
+                if values.setdefault(parameter, value) != value:
+                    raise UsageError(f"the parameter '{parameter}' has two values: remove one of them")
+        elif name in sources:
+            raise UsageError(f"'{name}' is the name of two formulas: rename one of them")
         else:
             sources[name] = body
     definitions: dict[str, Formula] = {}
@@ -148,6 +155,14 @@ def _statements(text: str) -> Iterator[tuple[str, str, str]]:
         if match["test"]:
             raise UsageError("tests of Breach are not covered: remove them from the file")
         yield match["kind"] or "formula", match["name"] or "", " ".join(plain[match.end() : after].split())
+
+
+def _signals(body: str) -> list[str]:
+    names = [each.strip() for each in body.split(",") if each.strip()]
+    for name in names:
+        if not _NAME.fullmatch(name):
+            raise UsageError(f"'{name}' is no name of a signal: use letters, digits and underscores")
+    return names
 
 
 def _parameters(body: str) -> dict[str, float]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
-from rtamt.interchange.written import Names, ReadRequirement, specification_text
+from rtamt.interchange.written import Names, ReadRequirement, require_new, specification_text
 from rtamt.language.formula import Apply, Formula, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity, Tense
 from rtamt.language.rows import function, infix
@@ -38,6 +38,8 @@ _RESERVED = frozenset(
     ("STRUCT ENUM INPUT DEFINE FTSPEC PTSPEC TAU foreach forsome forexactly foratleast foratmost pow sqrt abs rate "
      "prev xor G F H O U R S T M true false bool int float").split()
 )  # fmt: skip
+_ENUMERATION = lazy_pattern(r"(?P<name>[A-Za-z_]\w*)\s*:\s*\{(?P<members>[^{}]*)\}")
+_MEMBER = lazy_pattern(r"\s*(?P<label>[A-Za-z_]\w*)\s*(?::\s*(?P<code>\d+)\s*)?")
 _EXPONENT = lazy_pattern(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
 #: Limits beyond any file that is written by hand.
 _LONGEST = 2_000_000
@@ -65,6 +67,11 @@ def _since(a: Formula, b: Formula, interval: Interval | None) -> Formula:
 def _previous(initial: Formula, a: Formula, _interval: Interval | None) -> Formula:
     return STL["delay"](a, initial, interval=Interval(Fraction(1), Fraction(1)))
 
+
+#: A formula's tokens. Numbers have digits and at most one point.
+_TOKENS = (
+    r"\s+|[A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?![\w.])|<->|->|==|!=|>=|<=|&&|\|\||/(?![/*])|[][(),<>!+*%.-]"
+)
 
 #: Operators bind as in its parser: unary and temporal prefix operators tighter than arithmetic.
 C2PO = Dialect(
@@ -97,6 +104,8 @@ C2PO = Dialect(
     ),
     meanings={"until": _until, "since": _since},
     characters={"%": "\ue000"},
+    tokens=_TOKENS,
+    bounds=(r"\d+", "whole numbers of samples"),
 )  # fmt: skip
 
 _STREAM_NOTE = (
@@ -185,18 +194,31 @@ def _structure(file: _File, statement: str, _step: Fraction) -> None:
 
 
 def _enumeration(file: _File, statement: str, _step: Fraction) -> None:
-    name, _, body = statement.partition(":")
-    members: list[tuple[str, int]] = []
-    for code, member in enumerate(body.strip().strip("{}").split(","), 1):
-        label, _, value = member.partition(":")
-        members.append((label.strip(), int(value) if value.strip().isdigit() else code))
-    file.enumerations[name.strip()] = Enumeration(name.strip(), tuple(members))
+    found = _ENUMERATION.fullmatch(statement)
+    if found is None:
+        raise UsageError(f"'{statement}' is no enumeration, such as Mode: {{Idle, Busy: 4}}")
+    name = found["name"]
+    members: dict[str, int] = {}
+    for code, member in enumerate(found["members"].split(","), 1):
+        each = _MEMBER.fullmatch(member)
+        if each is None:
+            raise UsageError(
+                f"'{member.strip()}' is no member of the enumeration {name}, such as Idle or Busy: 4"
+            )
+        if each["label"] in members:
+            raise UsageError(f"the enumeration {name} has the member '{each['label']}' twice")
+        members[each["label"]] = int(each["code"] or code)
+    file.enumerations[name] = Enumeration(name, tuple(members.items()))
 
 
 def _inputs(file: _File, statement: str, _step: Fraction) -> None:
     names, _, kind = statement.rpartition(":")
     kind = kind.strip()
     for name in (each.strip() for each in names.split(",")):
+        if not _NAME.fullmatch(name):
+            raise UsageError(f"'{statement}' declares no inputs, such as a, b: bool")
+        if name in (*file.types, *file.numbers, *file.unknown):
+            raise UsageError(f"the input '{name}' is declared twice")
         if kind == "bool":
             file.types[name] = BOOLEAN
         elif kind in ("int", "float"):
@@ -208,11 +230,15 @@ def _inputs(file: _File, statement: str, _step: Fraction) -> None:
 
 
 def _define(file: _File, statement: str, _step: Fraction) -> None:
-    name, _, body = statement.partition(":=")
+    name, _, body = (each.strip() for each in statement.partition(":="))
+    if not _NAME.fullmatch(name) or not body:
+        raise UsageError(f"'{statement}' is no definition, such as near := x < 1")
+    if name in (*file.types, *file.numbers, *file.unknown, *file.definitions):
+        raise UsageError(f"'{name}' is defined twice")
     try:
-        file.definitions[name.strip()] = _formula(file, body.strip())
+        file.definitions[name] = _formula(file, body, condition=False)
     except (SpecificationError, InexpressibleError) as error:
-        file.unknown[name.strip()] = f"a definition that cannot be read ({_first_line(error)})"
+        file.unknown[name] = f"a definition that cannot be read ({_first_line(error)})"
 
 
 def _specification(file: _File, statement: str, step: Fraction) -> None:
@@ -222,7 +248,8 @@ def _specification(file: _File, statement: str, step: Fraction) -> None:
         label, body = f"spec_{number}", statement
     name = label.strip()
     try:
-        formula = _formula(file, body.strip().replace("=>", "->"))
+        formula = _formula(file, body.strip().replace("=>", "->"), condition=True)
+        require_new(name, file.requirements)
     except (SpecificationError, InexpressibleError) as error:
         file.rejected.append(Rejection(name, str(error)))
         return
@@ -244,7 +271,7 @@ def _first_line(error: Exception) -> str:
     return str(error).partition("\n")[0]
 
 
-def _formula(file: _File, text: str) -> Formula:
+def _formula(file: _File, text: str, *, condition: bool) -> Formula:
     """Return the formula of an expression, with bounds in samples, as definitions have them."""
     for match in _NAME.finditer(text):
         if match[0] in file.unknown:
@@ -253,6 +280,7 @@ def _formula(file: _File, text: str) -> Formula:
             )
     return C2PO.read(
         text,
+        condition=condition,
         variables=[*file.types, *file.numbers],
         types=file.types,
         enumerations=file.enumerations,

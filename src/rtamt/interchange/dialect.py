@@ -5,12 +5,14 @@ Its formulas are parsed and printed by the parser and the printer of the languag
 
 from __future__ import annotations
 
+import re
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import SpecificationError, StlError
-from rtamt.language.formula import Apply, Formula, Interval, Var, fold
-from rtamt.language.operators import STL, Fixity, Language, builtin
+from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder
+from rtamt.language.operators import STL, Fixity, Language, Sort, builtin
+from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
 from rtamt.language.unwritten import TRUTH
@@ -26,6 +28,10 @@ if TYPE_CHECKING:
     from rtamt.language.records import Operator
 
 _BOUNDS = lazy_pattern(r"\[([^][:]*):([^][:]*)\]")
+#: Where an interval can be in a text: what follows an opening bracket.
+_INTERVAL = lazy_pattern(r"\[([^][)]*)")
+_BOUND = lazy_pattern(r"[^,]+")
+_OUTSIDE = lazy_pattern(r"[\w.]+|.", re.DOTALL)
 
 
 class InexpressibleError(StlError):
@@ -64,10 +70,14 @@ class Dialect:
         meanings: by the name of an operator here, the formula that the operator of the dialect stands for, where it
             differs for some operands or intervals.
         characters: characters of the same number to replace before parsing, as the lexer here reads others.
+        tokens: an expression of its tokens and white space; the lexer here reads more, such as comments.
+        bounds: an expression of a bound, and a description of bounds.
     """
 
     title: str
     words: Sequence[Word]
+    tokens: str
+    bounds: tuple[str, str]
     own: Sequence[tuple[Operator, Callable[..., Formula]]] = ()
     meanings: Mapping[str, Callable[..., Formula]] = field(default_factory=dict)
     characters: Mapping[str, str] = field(default_factory=dict)
@@ -83,8 +93,13 @@ class Dialect:
         """The operators that formulas here are written with, by their names here."""
         return {word.name: self.language[word.name] for word in self.words}
 
-    def read(self, text: str, **scope: Any) -> Formula:
-        """Parse a formula; ``scope`` is that of :func:`parse_formula`.
+    def read(self, text: str, *, condition: bool = True, **scope: Any) -> Formula:
+        """Parse a formula.
+
+        Args:
+            text: the formula.
+            condition: whether the whole must be true or false, not a number.
+            scope: the other arguments of :func:`parse_formula`.
 
         Raises:
             SpecificationError: with the position in the text.
@@ -93,11 +108,55 @@ class Dialect:
         replaced = text
         for found, other in self.characters.items():
             replaced = replaced.replace(found, other)
+        self._require_tokens(text)
+        self._require_bounds(replaced, text)
         try:
             formula = parse_formula(replaced, language=self.language, **scope)
         except SpecificationError as error:
             raise SpecificationError(error.message, text, error.span) from None
+        if condition and _is_plain_number(formula):
+            raise SpecificationError(f"'{formula}' is a number, and a formula is needed", text, None)
+        self._require_formulas(formula, text)
         return fold(formula, self._here)
+
+    def _require_tokens(self, text: str) -> None:
+        """Raise for what the lexer here reads and the dialect does not."""
+        token, at = re.compile(self.tokens), 0
+        while at < len(text):
+            found = token.match(text, at)
+            if found is None:
+                outside = _OUTSIDE.match(text, at)
+                assert outside is not None
+                raise SpecificationError(f"{self.title} has no '{outside[0]}'", text, Span(*outside.span()))
+            at = found.end()
+
+    def _require_bounds(self, replaced: str, text: str) -> None:
+        """Raise for bounds that the dialect does not have."""
+        pattern, description = self.bounds
+        bound = re.compile(rf"\s*(?:{pattern})\s*")
+        for interval in _INTERVAL.finditer(replaced):
+            for each in _BOUND.finditer(replaced, *interval.span(1)):
+                if not bound.fullmatch(each[0]):
+                    raise SpecificationError(
+                        f"'{each[0].strip()}' is no bound of {self.title}, whose bounds are {description}",
+                        text,
+                        Span(*each.span()),
+                    )
+
+    def _require_formulas(self, formula: Formula, text: str) -> None:
+        """Raise for a number where the dialect has a formula, and for an interval without its ends."""
+        for node in postorder(formula):
+            if not isinstance(node, Apply) or node.op is TRUTH:
+                continue
+            if node.interval is not None and node.interval.is_open:
+                raise SpecificationError(
+                    f"{self.title} has closed intervals only, unlike '{node}'", text, None
+                )
+            for sort, operand in zip(node.op.operands, node.args, strict=False):
+                if sort is not Sort.NUMBER and _is_plain_number(operand):
+                    raise SpecificationError(
+                        f"'{operand}' is a number, and a formula is needed in '{node}'", text, None
+                    )
 
     def _here(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
         if not isinstance(node, Apply) or node.op is TRUTH:
@@ -161,6 +220,11 @@ class Dialect:
             if begin.denominator != 1 or (end is not None and end.denominator != 1):
                 raise InexpressibleError(f"a bound of '{node}' is not a whole number of sampling periods")
         return Interval(begin, end)
+
+
+def _is_plain_number(formula: Formula) -> bool:
+    """Return whether a formula is a number, and no Boolean."""
+    return is_number(formula) and not (isinstance(formula, Const | Var) and formula.type is BOOLEAN)
 
 
 def _row(word: Word) -> Operator:

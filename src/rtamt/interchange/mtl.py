@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
-from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
+from rtamt.interchange.written import Names, ReadRequirement, require_new, require_period, specification_text
 from rtamt.language.formula import Apply, Interval, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity
 from rtamt.language.units.durations import decimal
@@ -45,12 +45,14 @@ MTL = Dialect(
         Word("next", "X \ue001", 130),
         Word("until", "U", 60),
         Word("unless", "W", 60),
-        Word("and", "& and"),
-        Word("or", "| or"),
+        Word("and", "& and ∧"),
+        Word("or", "| or ∨"),
         Word("implies", "-> →", fixity=Fixity.LEFT),
-        Word("iff", "<-> iff"),
-        Word("xor", "^ xor"),
+        Word("iff", "<-> iff ⇔"),
+        Word("xor", "^ xor ⊕"),
     ),
+    tokens=r"\s+|[A-Za-z_][A-Za-z_\d]*|(?:\d*\.\d+|\d+)(?![\w.])|<->|->|< >|[][(),~¬@&∧|∨→⇔^⊕+-]",
+    bounds=(r"[-+]?(?:\d*\.\d+|\d+)|inf|[a-z\d]+", "numbers of seconds or inf"),
     meanings={"until": _until},
     characters={"@": "\ue001", "< >": "F  ", "[ ]": "G  "},
 )
@@ -92,6 +94,7 @@ def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
         try:
             formula = MTL.read(source, variables=atoms, types=dict.fromkeys(atoms, BOOLEAN))
             require_period(formula, period)
+            require_new(name, written)
         except (SpecificationError, InexpressibleError) as error:
             rejected.append(Rejection(name, str(error)))
             continue

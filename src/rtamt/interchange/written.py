@@ -80,6 +80,12 @@ def specification_text(
     return "\n".join(lines) + "\n"
 
 
+def require_new(name: str, written: Iterable[ReadRequirement]) -> None:
+    """Raise :class:`InexpressibleError` where a requirement has this name already."""
+    if any(each.name == name for each in written):
+        raise InexpressibleError("there are two requirements of this name")
+
+
 def require_period(formula: Formula, step: Fraction | None) -> None:
     """Raise :class:`InexpressibleError` for a bound that is not a multiple of a sampling period, None for no period."""
     if step is None:

@@ -274,3 +274,82 @@ def test_weak_until_of_py_metric_temporal_logic_has_a_note_and_no_interval() -> 
     assert rejected.reason == (
         "py-metric-temporal-logic has no 'W' with an interval, as in 'a unless[0:2] b'"
     )
+
+
+_FTSPEC = "INPUT a, b: bool; x: float; FTSPEC R: %s;"
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "reason"),
+    [
+        (read_mtl, "3", "'3' is a number, and a formula is needed"),
+        (read_mtl, "G(3)", "'3' is a number, and a formula is needed in 'G 3'"),
+        (read_mtl, "(a & 3)", "'3' is a number, and a formula is needed in 'a & 3'"),
+        (read_mtl, "G[0,2s] a", "py-metric-temporal-logic has no '2s'"),
+        (read_mtl, "G[0,2 s] a",
+         "'2 s' is no bound of py-metric-temporal-logic, whose bounds are numbers of seconds or inf"),
+        (read_mtl, "G[0:2] a", "py-metric-temporal-logic has no ':'"),
+        (read_mtl, "G(0,2) a", "py-metric-temporal-logic has closed intervals only, unlike 'G(0:2) a'"),
+        (read_mtl, "(a & b) // c", "py-metric-temporal-logic has no '/'"),
+        (read_mtl, '"a"', "py-metric-temporal-logic has no '\"'"),
+        (read_c2po, _FTSPEC % "3", "'3' is a number, and a formula is needed"),
+        (read_c2po, _FTSPEC % "x", "'x' is a number, and a formula is needed"),
+        (read_c2po, _FTSPEC % "a && x", "'x' is a number, and a formula is needed in 'a && x'"),
+        (read_c2po, _FTSPEC % "F[0,.5] a", "'.5' is no bound of C2PO, whose bounds are whole numbers of samples"),
+        (read_c2po, _FTSPEC % "F[0,5.0] a", "'5.0' is no bound of C2PO, whose bounds are whole numbers of samples"),
+        (read_c2po, _FTSPEC % "F[0,inf] a", "'inf' is no bound of C2PO, whose bounds are whole numbers of samples"),
+        (read_c2po, _FTSPEC % "F[0,5s] a", "C2PO has no '5s'"),
+        (read_c2po, _FTSPEC % "F[0,5) a", "C2PO has closed intervals only, unlike 'F[0:5) a'"),
+        (read_c2po, _FTSPEC % "x > 1_0", "C2PO has no '1_0'"),
+        (read_c2po, _FTSPEC % "a /* b */ && a", "C2PO has no '/'"),
+        (read_breach, "R := 3", "'3' is a number, and a formula is needed"),
+        (read_breach, "R := not x[t]", "'x' is a number, and a formula is needed in 'not x'"),
+        (read_breach, "R := alw_[0,2s] (x[t] > 3)", "Breach has no '2s'"),
+        (read_breach, "R := alw_[0:2] (x[t] > 3)", "Breach has no ':'"),
+        (read_breach, "R := alw_[0,2) (x[t] > 3)", "Breach has closed intervals only, unlike 'alw_[0:2)(x > 3)'"),
+        (read_breach, "R := x[t] > 1 -> x[t] > 2", "Breach has no '-'"),
+        (read_breach, "R := x[t] > 1 // 2", "Breach has no '/'"),
+    ],
+)  # fmt: skip
+def test_what_only_this_language_has_is_rejected(read, text: str, reason: str) -> None:
+    found = read(text)
+    assert found.converted == ()
+    assert found.rejected[0].reason.splitlines()[0] == reason
+
+
+@pytest.mark.parametrize(
+    ("read", "text"), [(read_mtl, "R: a\nR: b"), (read_c2po, "INPUT a, b: bool; FTSPEC R: a; R: b;")]
+)
+def test_a_second_formula_of_one_name_is_left_out(read, text: str) -> None:
+    found = read(text)
+    assert (found.converted, list(rtamt.parse(found.text).requirements)) == (("R",), ["R"])
+    assert found.rejected == (("R", "there are two requirements of this name"),)
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "message"),
+    [
+        (read_c2po, "INPUT a bool; FTSPEC a;", "'a bool' declares no inputs, such as a, b: bool"),
+        (read_c2po, "INPUT a: bool; a: float; FTSPEC a;", "the input 'a' is declared twice"),
+        (read_c2po, "INPUT a: bool; DEFINE a := 3; FTSPEC a;", "'a' is defined twice"),
+        (read_c2po, "DEFINE c 3; FTSPEC true;", "'c 3' is no definition, such as near := x < 1"),
+        (read_c2po, "ENUM e {A}; FTSPEC true;", "'e {A}' is no enumeration, such as Mode: {Idle, Busy: 4}"),
+        (read_c2po, "ENUM e: {A: x}; FTSPEC true;",
+         "'A: x' is no member of the enumeration e, such as Idle or Busy: 4"),
+        (read_c2po, "ENUM e: {A, A}; FTSPEC true;", "the enumeration e has the member 'A' twice"),
+        (read_breach, "signal x, 3\nR := x[t] > 3", "'3' is no name of a signal: use letters, digits and underscores"),
+        (read_breach, "R := x[t] > 3\nR := x[t] > 4", "'R' is the name of two formulas: rename one of them"),
+        (read_breach, "param a=1\nparam a=2\nR := x[t] > a", "the parameter 'a' has two values: remove one of them"),
+    ],
+)  # fmt: skip
+def test_a_malformed_statement_is_an_error(read, text: str, message: str) -> None:
+    with pytest.raises(UsageError) as error:
+        read(text)
+    assert str(error.value) == message
+
+
+@pytest.mark.parametrize(
+    ("formula", "here"), [("(a ∧ b)", "a and b"), ("(a ∨ b)", "a or b"), ("(a ⇔ b)", "a <-> b"), ("(a ⊕ b)", "a xor b")]
+)  # fmt: skip
+def test_symbols_of_py_metric_temporal_logic(formula: str, here: str) -> None:
+    assert rtamt.parse(read_mtl(formula).text).formula == rtamt.parse(f"bool a\nbool b\n{here}").formula
