@@ -25,6 +25,7 @@ chunks            a recording that is read in chunks
 bag               check a bag, and write a copy with the results
 stdin_reader      JSON or CSV lines to samples
 stream_members    the members of groups in JSON or CSV lines
+rounded           the note on integers in those lines that no double holds
 json_lines        a line of JSON to numbers and timestamps
 early_feeds       verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
 held_feed         streams whose variables arrive at any time, sampled by ``sample ... hold``

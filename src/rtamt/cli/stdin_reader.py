@@ -18,6 +18,7 @@ from rtamt.cli.json_lines import (
     stamp_in,
     value_in,
 )
+from rtamt.cli.rounded import Rounded, may_be_rounded
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy.dataclasses import replace
@@ -97,8 +98,9 @@ class Samples:
         self._read: Callable[[str, int], Sample] | None = None
         #: The units that the header of CSV gives.
         self.units: dict[str, str] = {}
-        #: What became of other units, a sentence each.
+        #: What became of other units, and of integers that no double holds, a sentence each.
         self.conversions: list[str] = []
+        self._rounded = Rounded(self.conversions)
 
     def read(self, line: bytes, number: int) -> Sample | None:
         """Return the sample in line ``number`` (from 1); None for an empty line, a comment, the CSV header.
@@ -117,7 +119,13 @@ class Samples:
             timestamps = _Timestamps(self._names, self._choice, self._dense)
             if text.lstrip().startswith("{"):
                 reader = JsonSamples(
-                    self._names, timestamps, self._dense, self._choice, self._types, self.members
+                    self._names,
+                    timestamps,
+                    self._dense,
+                    self._choice,
+                    self._rounded,
+                    self._types,
+                    self.members,
                 )
                 sample = reader.read(text, number)
                 self._read = reader.read
@@ -129,6 +137,7 @@ class Samples:
                 text,
                 number,
                 self._recorded,
+                self._rounded,
                 self._types,
                 skip_nan=self._skip_nan,
                 members=self.members,
@@ -277,10 +286,12 @@ class JsonSamples:
         timestamps: _Timestamps,
         dense: bool,
         choice: Choice,
+        rounded: Rounded,
         types: Types,
         members: StreamMembers | None = None,
     ) -> None:
         self._names = names
+        self._rounded = rounded
         self._types = types
         self._members = members
         self._timestamps = timestamps
@@ -307,6 +318,9 @@ class JsonSamples:
             if timestamps is not None:
                 found.pop(timestamps.field.column, None)
             values = found | values
+        for name, value in values.items():
+            if may_be_rounded(value):
+                self._rounded.add(name, value_in(data, columns.get(name, name), number), number)
         timestamp = None if timestamps is None else stamp_in(data, timestamps.field.column, number)
         return self._timestamps.sample(timestamp, values, number)
 
@@ -322,12 +336,14 @@ class CsvSamples:
         text: str,
         number: int,
         recorded: Collection[str],
+        rounded: Rounded,
         types: Types,
         *,
         skip_nan: bool,
         members: StreamMembers | None = None,
     ) -> None:
         self._dense = dense
+        self._rounded = rounded
         self._timestamps = timestamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
         fields = {} if members is None else members.in_header(self._header.names)
@@ -374,7 +390,11 @@ class CsvSamples:
         truths = [c for c in given if self._is_boolean(c.name, row[c.position].strip())]
         given = [c for c in given if c not in truths]
         values: dict[str, Any] = dict.fromkeys(c.name for c in absent)
-        values |= dict(zip((c.name for c in given), numbers(row, header, number, given), strict=True))
+        read = numbers(row, header, number, given)
+        for column, value in zip(given, read, strict=True):
+            if may_be_rounded(value):
+                self._rounded.add(column.name, row[column.position], number)
+        values |= dict(zip((c.name for c in given), read, strict=True))
         values |= {c.name: float(truth(row[c.position].strip(), c.name, header, number)) for c in truths}
         values |= codes
         timestamps = self._timestamps.column

@@ -11,7 +11,7 @@ from rtamt.lazy import dataclasses
 from rtamt.lazy.modules import np
 from rtamt.readers.first_column import FirstColumn, possible_field
 from rtamt.readers.gaps import Gaps
-from rtamt.readers.numbers import numbers_of
+from rtamt.readers.numbers import numbers_of, rounded
 from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
@@ -375,6 +375,9 @@ def _channels(
                 raise
             left_out.append(field.column)
             continue
+        inexact = rounded(raw)
+        if inexact is not None:
+            gaps[name].round(inexact, times, before)
         mine, first_gap, table = times, None, None
         if field.skip_nan and np.isnan(numbers).any():
             nan = np.isnan(numbers)

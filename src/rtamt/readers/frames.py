@@ -166,8 +166,12 @@ def _pandas_column(series: Any) -> Raw:
     if kind in "Mm":
         times: Raw = series.to_numpy()
         return times
-    if kind in "fiub":
-        values = series.to_numpy(dtype=np.float64, na_value=np.nan) if missing.any() else series.to_numpy()
+    if kind in "fiub" and not missing.any():
+        values = series.to_numpy()
+    elif kind in "iu":
+        values = series.fillna(0).to_numpy(series.dtype.numpy_dtype)
+    elif kind in "fb":
+        values = series.to_numpy(dtype=np.float64, na_value=np.nan)
     else:
         values = series.astype(object).to_numpy()
     return np.ma.masked_array(values, missing) if missing.any() else values
@@ -194,7 +198,10 @@ def _polars_column(series: Any) -> Raw:
         return np.array([*series.to_list(), None], dtype=object)[:-1]
     if missing is None and kind != "Decimal":
         return as_array(series)
-    values = np.array([0.0 if value is None else float(value) for value in series.to_list()])
+    if kind != "Decimal" and series.dtype.is_integer():
+        values = as_array(series.fill_null(0))
+    else:
+        values = np.array([0.0 if value is None else float(value) for value in series.to_list()])
     return values if missing is None else np.ma.masked_array(values, missing)
 
 

@@ -1,4 +1,4 @@
-"""Samples that a signal has not: left out, or held for a while from the sample before."""
+"""Samples that a signal has not, left out or held for a while from the sample before, and those that are rounded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Gaps:
-    """The samples left out of one signal, chunk by chunk.
+    """The samples of one signal that are left out, held or rounded, chunk by chunk.
 
     ``hold_for``: seconds for which the value of the last sample takes the place of those that are left out; None:
     it takes none.
@@ -34,11 +34,16 @@ class Gaps:
         self._last: tuple[Any, float] | None = None
         self._nan: list[Any] = [0, None]
         self._held: list[Any] = [0, None]
+        self._rounded: list[Any] = [0, None]
         self._longest = 0
 
     def skip(self, nan: Mask, times: Any, before: int) -> None:
         """Take note of samples that are left out because they are NaN. ``before``: samples in earlier chunks."""
         self._note(self._nan, nan, times, before)
+
+    def round(self, inexact: Mask, times: Any, before: int) -> None:
+        """Take note of integers that no double holds."""
+        self._note(self._rounded, inexact, times, before)
 
     def hold(self, numbers: FloatArray, missing: Mask, times: Any, before: int) -> tuple[FloatArray, Mask]:
         """Return the values with those of earlier samples in the gaps, and which are missing all the same.
@@ -79,7 +84,7 @@ class Gaps:
         return values, missing
 
     def losses(self) -> list[str]:
-        """Return the samples left out and held so far, one sentence each."""
+        """Return the samples left out, held and rounded so far, one sentence each."""
         found = []
         for what, (count, first) in (("left out, NaN", self._nan), ("held", self._held)):
             if count:
@@ -87,6 +92,12 @@ class Gaps:
                 found.append(f"{what}: {count:,} sample{plural} of {self._name}, the first at {first}")
         if self._held[0]:
             found[-1] += f", the oldest value for {self._longest / 1e9:.6g} s"
+        count, first = self._rounded
+        if count:
+            found.append(
+                f"rounded to doubles: {count:,} integer{'s' * (count != 1)} of {self._name} beyond 2^53, "
+                f"the first at {first}"
+            )
         return found
 
     def _check(self, ages: NDArray[np.int64], since: Any, until: Any, rows: NDArray[np.int64]) -> None:

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Field, Raw
 
 
+#: Doubles hold all integers up to this one.
+_EXACT = 2**53
+
+
 def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bool = True) -> tuple[Any, Any]:
     """Return float64 values and a mask of the missing ones (None: none); raise :class:`TraceError` at no number.
 
@@ -45,6 +49,29 @@ def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bo
             raise _no_number(value, field, source, before + int(i))
         values[i] = value
     return values, missing
+
+
+def rounded(raw: Raw) -> Any:
+    """Return which values are integers that no double holds, a mask; None: none.
+
+    >>> rounded(np.array([2**53, 2**53 + 1, -(2**63)]))
+    array([False,  True, False])
+    """
+    plain = np.ma.getdata(raw) if is_masked(raw) else np.asarray(raw)
+    if not len(plain):
+        return None
+    if plain.dtype.kind == "O":
+        large = [type(value) is int and abs(value) > _EXACT and int(float(value)) != value for value in plain]
+        return np.array(large, dtype=bool) if any(large) else None
+    if plain.dtype.kind not in "iu" or plain.dtype.itemsize < 8:
+        return None
+    if int(plain.min()) >= -_EXACT and int(plain.max()) <= _EXACT:
+        return None
+    numbers = plain.astype(np.float64)
+    # The greatest integers are rounded to one that this type does not hold.
+    too_large = numbers >= (2.0**63 if plain.dtype.kind == "i" else 2.0**64)
+    changed = np.where(too_large, 0.0, numbers).astype(plain.dtype) != plain
+    return changed if changed.any() else None
 
 
 def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from decimal import Decimal
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
@@ -72,10 +73,8 @@ def _column(values: list[Any]) -> Raw:
     if all(type(value) is float for value in values):
         return np.array(values, dtype=np.float64)
     if all(type(value) is int for value in values):
-        try:
+        with suppress(OverflowError):
             return np.array(values, dtype=np.int64)
-        except OverflowError:
-            return np.array(values, dtype=np.float64)
     result = np.empty(len(values), dtype=object)
     result[:] = values
     return result
