@@ -28,6 +28,7 @@ from rtamt.readers.csv import (
     Header,
     check_width,
     is_boolean,
+    is_comment,
     is_number,
     numbers,
     read_header,
@@ -96,6 +97,7 @@ class Samples:
         }
         self._dense = dense
         self._read: Callable[[str, int], Sample] | None = None
+        self._rows: CsvSamples | None = None
         #: The units that the header of CSV gives.
         self.units: dict[str, str] = {}
         #: What became of other units, and of integers that no double holds, a sentence each.
@@ -111,7 +113,9 @@ class Samples:
             text = line.decode("utf-8-sig" if self._read is None else "utf-8").strip("\r\n")
         except UnicodeDecodeError:
             raise line_error(number, "not UTF-8 text") from None
-        if not text.strip() or text.startswith("#"):
+        if not text.strip() or (
+            text.startswith("#") and (self._rows is None or self._rows.is_comment(text, number))
+        ):
             return None
         try:
             if self._read is not None:
@@ -143,6 +147,7 @@ class Samples:
                 members=self.members,
             )
             self.units = rows.units
+            self._rows = rows
             self._read = self._convert(rows)
         except TraceError as error:
             if str(error).startswith(STDIN):
@@ -369,13 +374,20 @@ class CsvSamples:
         self.units = {name: field.unit for name, field in selection.signals if field.unit}
         self._boolean: dict[str, bool] = {}
 
+    def is_comment(self, text: str, number: int) -> bool:
+        """Return whether one line is a comment; raise :class:`TraceError` if it may be a sample as well."""
+        return is_comment(self._cells(text, number), self._header, number)
+
+    def _cells(self, text: str, number: int) -> list[str]:
+        try:
+            return next(csv.reader([text], delimiter=self._header.delimiter, skipinitialspace=True))
+        except csv.Error as error:
+            raise self._header.error(number, str(error)) from None
+
     def read(self, text: str, number: int) -> Sample:
         """Return the sample in one line."""
         header: Header = self._header
-        try:
-            row = next(csv.reader([text], delimiter=header.delimiter, skipinitialspace=True))
-        except csv.Error as error:
-            raise header.error(number, str(error)) from None
+        row = self._cells(text, number)
         check_width(row, header, number)
         if self._timestamps.column is None:
             self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))

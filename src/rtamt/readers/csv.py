@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import TraceError, shown
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
-from rtamt.readers.dates import is_date
+from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.signals.time_columns import unit_called
 
 if TYPE_CHECKING:
@@ -126,14 +126,53 @@ def blocks(lines: Iterator[str], header: Header) -> Iterator[list[tuple[int, lis
 
 def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[int, list[str]]]:
     """Yield the cells of each row with its line; ``before``: lines of the file before these."""
-    reader = csv.reader(lines, delimiter=header.delimiter, skipinitialspace=True)
+    taken: list[str] = []  # the lines of one row
+
+    def kept() -> Iterator[str]:
+        for line in lines:
+            taken.append(line)
+            yield line
+
+    reader = csv.reader(kept(), delimiter=header.delimiter, skipinitialspace=True)
     try:
         for row in reader:
-            if not row or (len(row) == 1 and not row[0].strip()) or row[0].startswith("#"):
+            if len(taken) > 1:
+                _check_quotes(taken, header, before + reader.line_num)
+            taken.clear()
+            if not row or (len(row) == 1 and not row[0].strip()):
                 continue
-            yield before + reader.line_num, row
+            if not is_comment(row, header, before + reader.line_num):
+                yield before + reader.line_num, row
     except csv.Error as error:
         raise header.error(before + reader.line_num, str(error)) from None
+
+
+def _check_quotes(lines: Sequence[str], header: Header, last: int) -> None:
+    """Raise :class:`TraceError` if a quote that nothing closes has joined rows; ``last``: the last of their lines."""
+    try:
+        next(csv.reader(lines, delimiter=header.delimiter, skipinitialspace=True, strict=True))
+    except csv.Error:
+        first = last - len(lines) + 1
+        raise header.error(
+            first,
+            f"a cell begins with a quote that nothing closes before line {last}: close it, or write it twice in quotes",
+        ) from None
+
+
+def is_comment(row: Sequence[str], header: Header, line: int) -> bool:
+    """Return whether a row is a comment; raise :class:`TraceError` if it may be a sample as well, as in ``#N/A,1``."""
+    if not row[0].startswith("#"):
+        return False
+    if (
+        row[0][1:2].strip()
+        and len(row) == len(header.names)
+        and any(is_value(cell.strip()) for cell in row[1:])
+    ):
+        raise header.error(
+            line,
+            f"{shown(row[0])} may begin a sample or a comment: begin no sample with '#', and a comment with '# '",
+        )
+    return True
 
 
 def check_width(row: list[str], header: Header, line: int) -> None:
@@ -156,11 +195,18 @@ def number(text: str, name: str, header: Header, line: int, *, nan: bool = False
     """Return the number in one cell; ``nan``: whether NaN is one."""
     text = text.strip()
     if not is_number(text):
+        expected = f"'{name}' is '{text}', expected a number"
+        if text.lower() in _MISSING:
+            raise header.error(line, f"{expected}; where a sample is missing, leave the cell empty", name)
+        if _is_like_date(text):
+            raise header.error(
+                line, f"{expected}; write dates as in {EXAMPLE}, times since a start in seconds", name
+            )
         hint = " with a decimal point" if is_number(text.replace(",", ".")) else ""
         unit = text.strip("[]() ")
         if line == header.line + 1 and unit_called(unit) is not None:
             hint = f"; if the line holds units, write them behind the names, such as '{name} [{unit}]', and delete it"
-        raise header.error(line, f"'{name}' is '{text}', expected a number{hint}", name)
+        raise header.error(line, f"{expected}{hint}", name)
     value = float(text)
     if isinf(value) and any(character.isdigit() for character in text):
         raise header.error(
@@ -169,6 +215,18 @@ def number(text: str, name: str, header: Header, line: int, *, nan: bool = False
     if isnan(value) and not nan:
         raise header.error(line, f"'{name}' is NaN: fill the gap or leave the sample out", name)
     return value
+
+
+#: How programs write that there is no number.
+_MISSING = frozenset(
+    "- -- ? . na n/a <na> #n/a #nv null none nil #null! #div/0! #value! #ref! #num! 1.#ind -1.#ind 1.#qnan -1.#qnan "
+    "nan(ind) -nan(ind) missing".split()
+)
+
+
+def _is_like_date(text: str) -> bool:
+    """Return whether a text may be a date, or a time of day, in another way than dates are written here."""
+    return text[:1].isdigit() and not is_date(text) and any(text.count(mark) > 1 for mark in ":-/")
 
 
 #: How CSV files write truth.

@@ -20,7 +20,7 @@ EXAMPLE = "2026-05-01T12:00:00.5"
 #: ISO 8601: a date, perhaps a time, perhaps a time zone.
 _DATE = lazy_pattern(
     r"(?P<date>[0-9]{4}-[0-9]{2}-[0-9]{2})"
-    r"(?:[T ](?P<time>[0-9]{2}:[0-9]{2}(?::[0-9]{2}(?:\.[0-9]{1,9})?)?)(?P<zone>Z|[+-][0-9]{2}:?[0-9]{2})?)?"
+    r"(?:[T ](?P<time>[0-9]{2}:[0-9]{2}(?::[0-9]{2}(?:\.[0-9]{1,9})?)?)(?P<zone>Z|[+-][0-9]{2}(?::?[0-9]{2})?)?)?"
 )
 #: Years that nanoseconds since 1970 can hold.
 _YEARS = range(1678, 2262)
@@ -143,7 +143,7 @@ def _offset(i: int, zone: str | None) -> int:
     if zone in (None, "Z"):
         return 0
     assert zone is not None
-    hours, minutes = int(zone[1:3]), int(zone[-2:])
+    hours, minutes = int(zone[1:3]), int(zone[3:].lstrip(":") or 0)
     if hours * 60 + minutes >= _DAY or minutes >= 60:
         raise DateError(i, f"whose time zone {zone} is none: give less than 24:00")
     return -(hours * 60 + minutes) if zone[0] == "-" else hours * 60 + minutes

@@ -8,6 +8,7 @@ from rtamt.errors import TraceError
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.modules import np
 from rtamt.readers.numbers import numbers_of
+from rtamt.signals.time_columns import counts_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,12 +29,15 @@ def possible_field(fields: Sequence[Field]) -> Field | None:
 
 
 class FirstColumn:
-    """Whether the numbers of the first column increase, by steps that do not count the rows."""
+    """Whether the numbers of the first column increase, by steps that do not count the rows.
+
+    Where its name has a unit of time other than seconds, no steps count the rows.
+    """
 
     def __init__(self, field: Field) -> None:
         self._field = field
         self._increases = True
-        self._counts = True
+        self._counts = not counts_time(field.column)
         self._last: float | None = None
 
     def take(self, raw: Raw) -> None:

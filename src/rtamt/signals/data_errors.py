@@ -92,10 +92,13 @@ def possible_times(column: str) -> TraceError:
     """Return the error for a first column that may hold the timestamps, where nothing gives the times of samples."""
     from shlex import quote
 
+    from rtamt.signals.time_columns import counts_time
+
+    why = ", and its name has a unit of time" if counts_time(column) else ", but not by 1 from row to row"
     called = f" '{column}'" if column else ", which has no name,"
     choice = f"choose it with time={column!r}, on the command line --time-column {quote(column)}"
     return TraceError(
-        f"the first column{called} may hold the timestamps: its values increase, but not by 1 from row to row; "
+        f"the first column{called} may hold the timestamps: its values increase{why}; "
         f"{choice if column else 'give it a name and choose it with time=, on the command line --time-column'}, "
         f"or give the period of the samples, such as period='1s', on the command line --period 1s",
         variable=TIME,

@@ -80,6 +80,16 @@ def unit_of(name: str) -> str | None:
     return _UNIT_OF[last] if last in _SUFFIXES else None
 
 
+def counts_time(column: str) -> bool:
+    """Return whether the name of a column has a unit of time other than seconds: 0, 1, 2 in it number no rows.
+
+    >>> [column for column in ("Zeit [ms]", "tick_us", "t/ms", "Zeit [s]", "row") if counts_time(column)]
+    ['Zeit [ms]', 'tick_us', 't/ms']
+    """
+    name, unit = split_unit(column)
+    return (unit_called(unit) or unit_of(name) or "s") != "s"
+
+
 def may_be_stamps(name: str) -> bool:
     """Return whether a column may hold timestamps, though its name alone does not decide it.
 
@@ -117,8 +127,8 @@ def check_frame(frame: Any, time: str, names: Collection[str]) -> None:
 def check_first_column(frame: Any, columns: Sequence[Any], time: str, names: Collection[str]) -> None:
     """Raise :class:`TraceError` if the first column of a frame without the column ``time`` may hold the timestamps.
 
-    Its numbers then increase, but not by 1 from row to row, and no variable of ``names`` is read from it. Only where no
-    period is given.
+    Its numbers then increase, but not by 1 from row to row unless its name has a unit of time, and no variable of
+    ``names`` is read from it. Only where no period is given.
     """
     if time in columns:
         return
@@ -131,11 +141,14 @@ def check_first_column(frame: Any, columns: Sequence[Any], time: str, names: Col
             f"period of the samples, such as period='1s'",
             variable=time,
         )
-    if columns and columns[0] not in names and increases_otherwise(frame[columns[0]]):
+    if not columns or columns[0] in names:
+        return
+    timed = counts_time(str(columns[0]))
+    if increases_otherwise(frame[columns[0]], counts_rows=not timed):
         raise TraceError(
-            f"the frame may have its timestamps in its first column '{columns[0]}', whose values increase, but not by "
-            f"1 from row to row: read the frame with rtamt.read(frame, time='{columns[0]}'), or give the period of the "
-            f"samples, such as period='1s'",
+            f"the frame may have its timestamps in its first column '{columns[0]}', whose values increase, "
+            f"{'and whose name has a unit of time' if timed else 'but not by 1 from row to row'}: read the frame with "
+            f"rtamt.read(frame, time='{columns[0]}'), or give the period of the samples, such as period='1s'",
             variable=time,
         )
 
@@ -147,8 +160,10 @@ def numbers_no_rows(index: Any) -> bool:
     return increases_otherwise(index)
 
 
-def increases_otherwise(values: Any) -> bool:
+def increases_otherwise(values: Any, *, counts_rows: bool = True) -> bool:
     """Return whether values are numbers that increase, but not by 1 from one to the next.
+
+    ``counts_rows``: whether those that increase by 1 are numbers of rows.
 
     >>> [increases_otherwise(values) for values in ([0, 10, 20], [5, 6, 7], [0, 2, 1], ["a", "b"])]
     [True, False, False, False]
@@ -158,7 +173,7 @@ def increases_otherwise(values: Any) -> bool:
     except (TypeError, ValueError):
         return False
     steps = np.diff(numbers) if numbers.ndim == 1 else np.empty(0)
-    return bool(len(steps) and (steps > 0).all() and (steps != 1).any())
+    return bool(len(steps) and (steps > 0).all() and not (counts_rows and (steps == 1).all()))
 
 
 def _index_called(index: Any) -> str:

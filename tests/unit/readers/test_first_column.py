@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import sqlite3
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -23,10 +24,13 @@ if TYPE_CHECKING:
 SPEC = rtamt.parse("always[0:2](x > 0)")
 
 
-def rejected(column: str) -> str:
+BY_ONE = "its values increase, but not by 1 from row to row;"
+
+
+def rejected(column: str, why: str = BY_ONE) -> str:
     return (
-        f"the first column '{column}' may hold the timestamps: its values increase, but not by 1 from row to row; "
-        f"choose it with time='{column}', on the command line --time-column {column}, or give the period of the "
+        f"the first column '{column}' may hold the timestamps: {why} "
+        f"choose it with time='{column}', on the command line --time-column {quote(column)}, or give the period of the "
         f"samples, such as period='1s', on the command line --period 1s"
     )
 
@@ -83,6 +87,36 @@ def test_every_source_is_rejected_if_its_first_column_may_hold_the_timestamps(
         SPEC.evaluate(trace)
     assert str(caught.value) == rejected("Zeit")
     assert SPEC.evaluate(trace, period="1s").robustness == -1
+
+
+@pytest.mark.parametrize("column", ["Zeit [ms]", "t/ms", "tick_us"])
+@pytest.mark.parametrize("kind", ["CSV", "pandas", "dict", "polars"])
+def test_a_first_column_with_a_unit_of_time_counts_no_rows(tmp_path: Path, column: str, kind: str) -> None:
+    frame = pd.DataFrame({column: [0, 1, 2], "x": [1, 2, -1]})
+    sources = {
+        "CSV": lambda: written(tmp_path, frame.to_csv(index=False)),
+        "pandas": lambda: frame,
+        "dict": lambda: frame.to_dict("list"),
+        "polars": lambda: pl.from_pandas(frame),
+    }
+    trace = rtamt.read(sources[kind]())
+    with pytest.raises(TraceError) as caught:
+        SPEC.evaluate(trace)
+    reason = "its values increase, and its name has a unit of time;"
+    assert str(caught.value) == rejected(column, reason)
+    assert SPEC.evaluate(trace, period="1s").robustness == -1
+    assert SPEC.evaluate(rtamt.read(frame.rename(columns={column: "Zeit [s]"}))).robustness == -1
+
+
+def test_a_frame_whose_first_column_has_a_unit_of_time_is_rejected() -> None:
+    frame = pd.DataFrame({"tick_ms": [0, 1, 2], "x": [1, 2, -1]})
+    with pytest.raises(TraceError) as caught:
+        SPEC.evaluate(frame)
+    assert str(caught.value) == (
+        "the frame may have its timestamps in its first column 'tick_ms', whose values increase, and whose name has a "
+        "unit of time: read the frame with rtamt.read(frame, time='tick_ms'), or give the period of the samples, such "
+        "as period='1s'"
+    )
 
 
 ROWS = "whose values increase, but not by 1 from row to row"
