@@ -82,8 +82,8 @@ class Uncertainty:
             if outside.any():
                 i = int(outside.argmax())
                 raise TraceError(
-                    f"'{name}' is {values[i]:.15g} at sample {i}, outside its declared range [{low:g}, {high:g}]; "
-                    f"mend the range or the sample",
+                    f"'{name}' is {values[i]:.15g} at sample {i}, outside its declared range [{low:g}, {high:g}]: "
+                    f"correct the value, or declare a wider range",
                     variable=name,
                     index=i,
                 )

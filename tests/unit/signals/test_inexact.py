@@ -116,7 +116,7 @@ REJECTED = {
     "outside": (
         {"x": [1.0, 7.0]},
         {"ranges": {"x": (0, 5)}},
-        "'x' is 7 at sample 1, outside its declared range [0, 5]; mend the range or the sample",
+        "'x' is 7 at sample 1, outside its declared range [0, 5]: correct the value, or declare a wider range",
     ),
     "reversed": (
         {"x": [1.0]},

@@ -56,9 +56,9 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
             scale, tick, known = self._check_sample(time, values)
             self._check_in_order(tick, scale, known)
             if tick <= self._backend.closed:
-                final = f"what was up to {scale.show(self._backend.closed)} is final"
+                final = f"everything up to {scale.show(self._backend.closed)} is final"
                 raise TraceError(
-                    f"sample {self.samples} is of time {scale.show(tick)}, and {final}; leave it out, or set the "
+                    f"the sample at {scale.show(tick)} comes too late: {final}; leave it out, or set the "
                     f"watermark later",
                     variable=arrays.TIME,
                     index=self.samples,

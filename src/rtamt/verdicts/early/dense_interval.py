@@ -83,15 +83,15 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         backend = self._backend
         if tick > backend.closed:
             return
-        final = f"what was up to {scale.show(backend.closed)} is final; leave it out, or"
+        final = f"everything up to {scale.show(backend.closed)} is final; leave it out, or"
         if self._late is None:
             raise TraceError(
-                f"sample {self.samples} is of time {scale.show(tick)}, and {final} set the watermark later",
+                f"the sample at {scale.show(tick)} comes too late: {final} set the watermark later",
                 variable=arrays.TIME,
                 index=self.samples,
             )
         raise LateSampleError(
-            f"sample {self.samples} is of time {scale.show(tick)}, later than the lateness of "
+            f"the sample at {scale.show(tick)} is later than the lateness of "
             f"{format_duration(self._lateness)} allows: {final} allow for more lateness",
             variable=arrays.TIME,
             index=self.samples,

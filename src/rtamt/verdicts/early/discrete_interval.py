@@ -254,8 +254,8 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
             raise irregular(self.samples, time, last, self._step, self._tolerance)
         if place <= backend.closed:
             raise LateSampleError(
-                f"sample {self.samples} is of time {time:.15g} s, later than the lateness of "
-                f"{format_duration(self._lateness)} allows: what was up to {backend.time(backend.closed):.15g} s "
+                f"sample {self.samples}, at {time:.15g} s, is later than the lateness of "
+                f"{format_duration(self._lateness)} allows: everything up to {backend.time(backend.closed):.15g} s "
                 f"is final; leave it out, or allow for more lateness",
                 variable=arrays.TIME,
                 index=self.samples,

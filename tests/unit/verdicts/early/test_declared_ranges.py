@@ -113,7 +113,7 @@ def test_missing_and_uncertain_samples_of_a_recording_lie_in_the_declared_ranges
     with pytest.raises(rtamt.TraceError) as error:
         spec.evaluate({"x": [3, None, 12]})
     assert str(error.value) == (
-        "'x' is 12 at sample 2, outside its declared range [0, 10]; mend the range or the sample"
+        "'x' is 12 at sample 2, outside its declared range [0, 10]: correct the value, or declare a wider range"
     )
 
 

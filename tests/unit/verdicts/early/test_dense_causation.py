@@ -94,7 +94,7 @@ def test_sample_at_or_before_the_watermark_is_rejected(backend):
     monitor = opened("x >= 3", backend)
     monitor.update(0, x=4)
     monitor.watermark(5)
-    with pytest.raises(rtamt.TraceError, match=r"what was up to .*5.* is final; leave it out"):
+    with pytest.raises(rtamt.TraceError, match=r"everything up to .*5.* is final; leave it out"):
         monitor.update(5, x=4)
     assert monitor.update(6, x=4) == NOTHING
 

@@ -171,7 +171,7 @@ def test_correction_is_replayed_and_reported_as_a_retraction():
     monitor.update(4, x=2)
     (change,) = monitor.changes()
     assert (change.begin, change.interval, change.retracted) == (4.0, Interval(-1, -1), True)
-    with pytest.raises(rtamt.TraceError, match=r"what was up to 3.5 s is final"):
+    with pytest.raises(rtamt.TraceError, match=r"everything up to 3.5 s is final"):
         monitor.update(3.5, x=1)
 
 
@@ -239,7 +239,7 @@ def test_sample_later_than_the_lateness_is_rejected_with_one_sentence():
     with pytest.raises(rtamt.TraceError) as error:
         monitor.update(0.5, x=4)
     assert str(error.value) == (
-        "sample 4 is of time 0.5 s, later than the lateness of 2 s allows: what was up to 0.9 s is final; "
+        "the sample at 0.5 s is later than the lateness of 2 s allows: everything up to 0.9 s is final; "
         "leave it out, or allow for more lateness"
     )
 
@@ -251,7 +251,7 @@ def test_sample_before_the_watermark_is_rejected_with_one_sentence():
     with pytest.raises(rtamt.TraceError) as error:
         monitor.update(2, x=4)
     assert str(error.value) == (
-        "sample 1 is of time 2 s, and what was up to 3 s is final; leave it out, or set the watermark later"
+        "the sample at 2 s comes too late: everything up to 3 s is final; leave it out, or set the watermark later"
     )
 
 

@@ -179,7 +179,7 @@ def test_sample_later_than_the_lateness_is_rejected_with_one_sentence():
     with pytest.raises(rtamt.TraceError) as error:
         monitor.update(0, x=4)
     assert str(error.value) == (
-        "sample 4 is of time 0 s, later than the lateness of 2 s allows: what was up to 0 s is final; "
+        "sample 4, at 0 s, is later than the lateness of 2 s allows: everything up to 0 s is final; "
         "leave it out, or allow for more lateness"
     )
 
