@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 from rtamt.language.formula import KEPT, Apply, Var, postorder, store_contents
 from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from weakref import ref
 
     from rtamt.language.formula import Formula
     from rtamt.language.operators import Operator
     from rtamt.language.value_types import ValueType
+
+
+#: How many large formulas keep their contents: a monitor asks for those of one or two again and again.
+_LARGE_KEPT = 4
 
 
 class Contents(NamedTuple):
@@ -41,18 +48,41 @@ def contents(formula: Formula) -> Contents:
     if not isinstance(formula, Apply):
         return Contents(frozenset(), (formula,), (), frozenset(), *_variables_in((formula,)))
     try:
-        return formula._contents
+        kept = formula._contents
     except AttributeError:
-        nodes = postorder(formula)
-        leaves = [node for node in nodes if not isinstance(node, Apply)]
-        applied = [node for node in nodes if isinstance(node, Apply)]
-        timed = [node for node in applied if node.interval is not None]
-        untimed = frozenset([node.op for node in applied if node.interval is None])
-        operators = untimed.union([node.op for node in timed])
-        found = Contents(operators, tuple(leaves), tuple(timed), untimed, *_variables_in(leaves))
-        if len(nodes) <= KEPT:
-            store_contents(formula, found)
-        return found
+        kept = None
+    if isinstance(kept, LargeContents):
+        kept = kept.found
+    if kept is not None:
+        return kept
+    nodes = postorder(formula)
+    leaves = [node for node in nodes if not isinstance(node, Apply)]
+    applied = [node for node in nodes if isinstance(node, Apply)]
+    timed = [node for node in applied if node.interval is not None]
+    untimed = frozenset([node.op for node in applied if node.interval is None])
+    operators = untimed.union([node.op for node in timed])
+    found = Contents(operators, tuple(leaves), tuple(timed), untimed, *_variables_in(leaves))
+    store_contents(formula, found if len(nodes) <= KEPT else LargeContents(found))
+    return found
+
+
+class LargeContents:
+    """The contents of a large formula, until those of others have been found: one text may have many such formulas."""
+
+    __slots__ = ("__weakref__", "found")
+
+    #: The last ones; they end with their formulas.
+    _last: ClassVar[deque[ref[LargeContents]]] = deque()
+
+    def __init__(self, found: Contents) -> None:
+        from weakref import ref  # most formulas are small
+
+        self.found: Contents | None = found
+        self._last.append(ref(self))
+        if len(self._last) > _LARGE_KEPT:
+            oldest = self._last.popleft()()
+            if oldest is not None:
+                oldest.found = None
 
 
 def _variables_in(leaves: Sequence[Formula]) -> tuple[tuple[str, ...], tuple[Var, ...]]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
-    from rtamt.language.contents import Contents
+    from rtamt.language.contents import Contents, LargeContents
     from rtamt.language.operators import Operator
     from rtamt.language.shares import Share
     from rtamt.language.value_types import PartType
@@ -179,7 +179,7 @@ class Apply(Formula):
     _class: EqualNodes = field(init=False, repr=False)
     #: The nodes below in postorder, and what they contain: a formula is walked many times.
     _below: tuple[Formula, ...] = field(init=False, repr=False)
-    _contents: Contents = field(init=False, repr=False)
+    _contents: Contents | LargeContents = field(init=False, repr=False)
 
     def __init__(
         self,
