@@ -4,6 +4,7 @@
 module             purpose
 =================  ====================================================================
 fleet              ``Fleet``: an array of monitors by key: vehicles, machines, sessions
+fleet_keys         the keys of a fleet: their number, monitors and removal
 updates            what a batch has made known
 keys               the keys and columns of a batch
 opening            what a fleet has for its keys: records of the core, or monitors
