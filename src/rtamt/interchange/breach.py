@@ -1,26 +1,30 @@
 """Breach's files of signal temporal logic (``.stl``): read and written.
 
-``signal`` declares signals, ``param`` parameters with values, and ``name := formula`` formulas over ``x[t]``. Facts:
-the examples of Breach (github.com/decyphir/breach).
+``signal`` declares signals, ``input signal`` and ``output signal`` those with a role, ``param`` parameters with values,
+and ``name := formula`` formulas over ``x[t]``. Facts: the examples of Breach (github.com/decyphir/breach).
 """
 
 from __future__ import annotations
 
 import re
+from fractions import Fraction
+from math import isfinite
+from operator import add, mul, neg, sub, truediv
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
-from rtamt.language.formula import Formula, Parameter, Span, Var, postorder
+from rtamt.language.formula import Apply, Const, Formula, Parameter, Span, Var, fold, postorder
 from rtamt.language.operators import Fixity
+from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import Boolean, Enumeration
+from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from fractions import Fraction
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
     from rtamt.specification import Specification
 
@@ -45,7 +49,7 @@ BREACH = Dialect(
     ),
     characters={"=>": "->"},
     tokens=r"\s+|[A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|[<>=!]=|=>|/(?![/*])|-(?!>)|[][(),<>+*]",
-    bounds=(r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[A-Za-z_]\w*", "numbers or parameters"),
+    bounds=(r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+/\d+|[A-Za-z_]\w*", "numbers or parameters"),
 )  # fmt: skip
 
 #: What nothing can be called: its operators and functions, and the time.
@@ -64,15 +68,23 @@ _RESERVED = frozenset(
 
 _COMMENT = lazy_pattern(r"[#%][^\n]*")
 _AT = lazy_pattern(r"(?P<name>[A-Za-z_]\w*)\[t\]")
+_WORD = lazy_pattern(r"[A-Za-z_]\w*(?!\w|\[t)")
+_INTERVAL = lazy_pattern(r"\[([^][]*)\]")
+_PLAIN_BOUND = lazy_pattern(r"\s*\d+\.?\d*[eE][-+]?\d+\s*|[^-+*/()]*")
 _SHIFTED = lazy_pattern(r"[A-Za-z_]\w*\[\s*t\s*[-+][^]]*\]")
 _STATEMENT = lazy_pattern(
-    r"^[ \t]*(?:(?P<kind>signal|param)\b|(?P<name>[A-Za-z_]\w*)[ \t]*:=|(?P<test>test)\b)", re.MULTILINE
+    r"^[ \t]*(?:(?P<kind>(?:(?:in|out)put[ \t]+)?signal|param)\b|(?P<name>[A-Za-z_]\w*)[ \t]*:=|(?P<test>test)\b)",
+    re.MULTILINE,
 )
 _NAME = lazy_pattern(r"[A-Za-z_]\w*")
 _VALUE = lazy_pattern(
     r"\s*(?P<name>[A-Za-z_]\w*)\s*=\s*(?P<value>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*"
 )
 _NESTING = lazy_pattern(r"[()]|=>|\b(?:and|or|until)\b|\buntil_\[")
+#: How bounds are computed, exactly.
+_ARITHMETIC: Mapping[str, Callable[..., Fraction]] = {
+    "add": add, "sub": sub, "mul": mul, "div": truediv, "neg": neg
+}  # fmt: skip
 #: Operators without an interval have no underscore.
 _UNBOUNDED = lazy_pattern(r"\b(alw|ev|once|hist|until)_(?!\[)")
 _NOTE = (
@@ -102,46 +114,103 @@ def read_breach(text: str, period: Fraction | None = None) -> Conversion:
     >>> print(read_breach(text).text.splitlines()[-1].strip())
     always(speed > 100 -> eventually[0:2](speed < vmax))
     """
-    signals: list[str] = []
-    values: dict[str, float] = {}
-    sources: dict[str, str] = {}
-    for kind, name, body in _statements(text):
-        if kind == "signal":
-            signals += _signals(body)
-        elif kind == "param":
-            for parameter, value in _parameters(body).items():
-                if values.setdefault(parameter, value) != value:
-                    raise UsageError(f"the parameter '{parameter}' has two values: remove one of them")
-        elif name in sources:
-            raise UsageError(f"'{name}' is the name of two formulas: rename one of them")
-        else:
-            sources[name] = body
-    definitions: dict[str, Formula] = {}
-    rejected: list[Rejection] = []
-    for name, source in sources.items():
-        try:
-            definitions[name] = _formula(source, signals, values, definitions)
-        except SpecificationError as error:  # noqa: PERF203 - one formula must not reject the others
-            rejected.append(Rejection(name, str(error)))
-    if not sources:
-        raise UsageError("there is no formula in the text: Breach has them after ':='")
-    used = {word for source in sources.values() for word in re.findall(r"[A-Za-z_]\w*(?!\w|\[t)", source)}
+    file = _read_file(text)
+    definitions = {scope: _definitions(file, scope) for scope in dict.fromkeys(file.scopes.values())}
+    used = {word for source in file.sources.values() for word in _words(source)}
     written: list[ReadRequirement] = []
-    for name, formula in definitions.items():
-        if name in used:
-            continue
+    rejected: list[Rejection] = []
+    for name, source in file.sources.items():
+        formula = definitions[file.scopes[name]][name]
         try:
+            if isinstance(formula, SpecificationError):
+                raise formula
+            if name in used:
+                continue
             require_period(formula, period)
-        except InexpressibleError as error:
+        except (SpecificationError, InexpressibleError) as error:
             rejected.append(Rejection(name, str(error)))
         else:
-            written.append(ReadRequirement(name, formula, f"{name} := {sources[name]}"))
+            written.append(ReadRequirement(name, formula, f"{name} := {source}"))
+    names = Names(file.roles, parameters=file.parameters())
     return Conversion(
-        specification_text("Formulas of Breach.", written, Names(parameters=values), period),
+        specification_text("Formulas of Breach.", written, names, period),
         tuple(each.name for each in written),
         tuple(rejected),
         (_NOTE, _END_NOTE),
     )
+
+
+@dataclass
+class _File:
+    """What a file declares.
+
+    Attributes:
+        roles: the roles of signals: "input" or "output", or "" for none.
+        values: each state of the parameters, from the first to the last; a later ``param`` makes another one.
+        sources: the text of each formula.
+        scopes: which of ``values`` each formula has: Breach reads a formula, with those that it uses, where the next
+            one begins.
+    """
+
+    roles: dict[str, str] = field(default_factory=dict)
+    values: list[dict[str, float]] = field(default_factory=lambda: [{}])
+    sources: dict[str, str] = field(default_factory=dict)
+    scopes: dict[str, int] = field(default_factory=dict)
+
+    def parameters(self) -> dict[str, float]:
+        """Return the parameters that have one value in all formulas; the others are plain numbers."""
+        last = self.values[-1]
+        return {
+            name: value
+            for name, value in last.items()
+            if all(v.get(name, value) == value for v in self.values)
+        }
+
+
+def _read_file(text: str) -> _File:
+    file, latest = _File(), ""
+    for kind, name, body in _statements(text):
+        if kind == "param":
+            file.values.append(file.values[-1] | _parameters(body))
+        elif kind == "formula":
+            if name in file.sources:
+                raise UsageError(f"'{name}' is the name of two formulas: rename one of them")
+            file.sources[name] = body
+            latest = name
+        else:
+            role = kind.removesuffix("signal").strip()
+            file.roles |= dict.fromkeys(_signals(body), role)
+        if latest:
+            file.scopes[latest] = len(file.values) - 1
+    if not file.sources:
+        raise UsageError("there is no formula in the text: Breach has them after ':='")
+    return file
+
+
+def _definitions(file: _File, scope: int) -> dict[str, Formula | SpecificationError]:
+    """Return the formulas with a scope, and those that they use, or why one of them cannot be read."""
+    needed: set[str] = set()
+    for name, source in reversed(file.sources.items()):
+        if name in needed or file.scopes[name] == scope:
+            needed |= {name, *_words(source)}
+    parameters = file.parameters().keys()
+    definitions: dict[str, Formula] = {}
+    found: dict[str, Formula | SpecificationError] = {}
+    for name, source in file.sources.items():
+        if name not in needed:
+            continue
+        try:
+            found[name] = definitions[name] = _formula(
+                source, file.roles, file.values[scope], parameters, definitions
+            )
+        except SpecificationError as error:
+            found[name] = error
+    return found
+
+
+def _words(source: str) -> list[str]:
+    """Return the names in the text of a formula that are no signals."""
+    return _WORD.findall(source)
 
 
 def _statements(text: str) -> Iterator[tuple[str, str, str]]:
@@ -176,7 +245,11 @@ def _parameters(body: str) -> dict[str, float]:
 
 
 def _formula(
-    source: str, signals: list[str], values: dict[str, float], definitions: dict[str, Formula]
+    source: str,
+    signals: Iterable[str],
+    values: Mapping[str, float],
+    parameters: Collection[str],
+    definitions: Mapping[str, Formula],
 ) -> Formula:
     shifted = _SHIFTED.search(source)
     if shifted is not None:
@@ -191,12 +264,49 @@ def _formula(
         )
     variables = {*signals, *(match["name"] for match in _AT.finditer(source))}
     plain = _AT.sub(lambda match: f"{match['name']}   ", source)
+    plain = _INTERVAL.sub(lambda match: _computed(match, source, values), plain)
     try:
         return BREACH.read(
-            plain, variables=variables, constants=values, parameters=set(values), definitions=definitions
+            plain,
+            variables=variables,
+            constants=values,
+            parameters=parameters & values.keys(),
+            definitions=definitions,
         )
     except SpecificationError as error:
-        raise SpecificationError(error.message, source, error.span) from None
+        span = error.span if len(plain) == len(source) else None
+        raise SpecificationError(error.message, source, span) from None
+
+
+def _computed(interval: re.Match[str], source: str, values: Mapping[str, float]) -> str:
+    """Return the text of an interval with its bounds computed, if possible with the same number of characters."""
+    try:
+        bounds = [_value(bound, values) for bound in interval[1].split(",")]
+    except SpecificationError as error:
+        span = Span(*interval.span())
+        message = f"the interval {source[span.start : span.end]} cannot be computed: {error.message}"
+        raise SpecificationError(message, source, span) from None
+    return f"[{','.join(bounds)}]"
+
+
+def _value(bound: str, values: Mapping[str, float]) -> str:
+    """Return the text of a bound, with the value of one that is computed."""
+    if _PLAIN_BOUND.fullmatch(bound):
+        return bound
+
+    def step(node: Formula, args: tuple[Fraction, ...]) -> Fraction:
+        if isinstance(node, Const) and isfinite(node.value):
+            return Fraction(repr(node.value))
+        operation = _ARITHMETIC.get(node.op.name) if isinstance(node, Apply) else None
+        if operation is None:
+            raise SpecificationError(f"'{node}' is no arithmetic of numbers", bound, None)
+        if operation is truediv and not args[1]:
+            raise SpecificationError(f"'{node}' divides by 0", bound, None)
+        return operation(*args)
+
+    number = fold(BREACH.read(bound, condition=False, constants=values, variables=()), step)
+    indent = bound[: -len(bound.lstrip())]
+    return (indent + (decimal(number) or str(number))).ljust(len(bound))
 
 
 def _mixes_untils(source: str) -> bool:

@@ -339,7 +339,6 @@ def test_a_second_formula_of_one_name_is_left_out(read, text: str) -> None:
         (read_c2po, "ENUM e: {A, A}; FTSPEC true;", "the enumeration e has the member 'A' twice"),
         (read_breach, "signal x, 3\nR := x[t] > 3", "'3' is no name of a signal: use letters, digits and underscores"),
         (read_breach, "R := x[t] > 3\nR := x[t] > 4", "'R' is the name of two formulas: rename one of them"),
-        (read_breach, "param a=1\nparam a=2\nR := x[t] > a", "the parameter 'a' has two values: remove one of them"),
     ],
 )  # fmt: skip
 def test_a_malformed_statement_is_an_error(read, text: str, message: str) -> None:
