@@ -40,8 +40,8 @@ MTL = Dialect(
         Word("true", "TRUE"),
         Word("false", "FALSE"),
         Word("not", "~ ¬", 130),
-        Word("always", "G", 130),
-        Word("eventually", "F", 130),
+        Word("always", "G \ue002", 130),
+        Word("eventually", "F \ue003", 130),
         Word("next", "X \ue001", 130),
         Word("until", "U", 60),
         Word("unless", "W", 60),
@@ -51,12 +51,17 @@ MTL = Dialect(
         Word("iff", "<-> iff ⇔"),
         Word("xor", "^ xor ⊕"),
     ),
-    tokens=r"\s+|[A-Za-z_][A-Za-z_\d]*|(?:\d*\.\d+|\d+)(?![\w.])|<->|->|< >|[][(),~¬@&∧|∨→⇔^⊕+-]",
+    tokens=r"\s+|[A-Za-z_][A-Za-z_\d]*|(?:\d*\.\d+|\d+)(?![\w.])|<->|->|< >|[][(),~¬@\ue001-\ue003&∧|∨→⇔^⊕+-]",
     bounds=(r"[-+]?(?:\d*\.\d+|\d+)|inf|[a-z\d]+", "numbers of seconds or inf"),
     meanings={"until": _until},
     characters={"@": "\ue001", "< >": "F  ", "[ ]": "G  "},
 )
 
+_SIGNED = lazy_pattern(r"([\[,]\s*)\+(?=[\d.])")
+#: Operators that their operand follows without a space, as in the formulas that it prints: GFa is G F a.
+_JOINED = lazy_pattern(r"\b[GFX]+(?=[a-z_]|TRUE\b|FALSE\b)")
+_APART = str.maketrans("XGF", "\ue001\ue002\ue003")
+_TOGETHER = {other: letter for letter, other in _APART.items()}
 _ATOM = lazy_pattern(r"\b[a-z_][A-Za-z_\d]*\b")
 _WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
 _LABEL = lazy_pattern(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
@@ -90,9 +95,8 @@ def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
             continue
         match = _LABEL.fullmatch(line)
         name, source = (match["name"], match["formula"]) if match else (f"line_{number}", line.strip())
-        atoms = set(_ATOM.findall(source)) - _WORDS
         try:
-            formula = MTL.read(source, variables=atoms, types=dict.fromkeys(atoms, BOOLEAN))
+            formula = _formula(source)
             require_period(formula, period)
             require_new(name, written)
         except (SpecificationError, InexpressibleError) as error:
@@ -107,6 +111,15 @@ def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
         tuple(rejected),
         _notes(each.formula for each in written),
     )
+
+
+def _formula(source: str) -> Formula:
+    plain = _JOINED.sub(lambda match: match[0].translate(_APART), _SIGNED.sub(r"\1 ", source))
+    atoms = set(_ATOM.findall(plain)) - _WORDS
+    try:
+        return MTL.read(plain, variables=atoms, types=dict.fromkeys(atoms, BOOLEAN))
+    except SpecificationError as error:
+        raise SpecificationError(error.message.translate(_TOGETHER), source, error.span) from None
 
 
 def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:

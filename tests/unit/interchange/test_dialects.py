@@ -352,3 +352,26 @@ def test_a_malformed_statement_is_an_error(read, text: str, message: str) -> Non
 )  # fmt: skip
 def test_symbols_of_py_metric_temporal_logic(formula: str, here: str) -> None:
     assert rtamt.parse(read_mtl(formula).text).formula == rtamt.parse(f"bool a\nbool b\n{here}").formula
+
+
+@pytest.mark.parametrize(
+    ("formula", "here"),
+    [
+        ("GFa", "always eventually a"),
+        ("~XXa", "not next next a"),
+        ("(G[0,+2]Fa & G~GFALSE)", "always[0:2](eventually a) and always(not always false)"),
+        ("(a U XTRUE)", "a until next true"),
+        ("(aGF -> Ga_F)", "aGF -> always a_F"),
+    ],
+)
+def test_operators_of_py_metric_temporal_logic_need_no_space(formula: str, here: str) -> None:
+    found = rtamt.parse(read_mtl(formula).text).formula
+    assert found == rtamt.parse(f"bool a\nbool aGF\nbool a_F\n{here}").formula
+
+
+def test_an_error_names_the_operators_of_py_metric_temporal_logic() -> None:
+    (rejected,) = read_mtl("(Ga U[0,1] Fb) Gc").rejected
+    assert rejected.reason == (
+        "expected an operator between ')' and 'G'\n"
+        "  line 1, column 16:\n    (Ga U[0,1] Fb) Gc\n                   ^"
+    )
