@@ -7,6 +7,7 @@ formats     the list of formats
 conversion  what a conversion gives, and what it leaves out
 fret        FRET's structured English: read and written
 c2po        the specifications of R2U2
+c_integers  arithmetic with integers as in C
 breach      Breach's files of signal temporal logic
 mtl         formulas of py-metric-temporal-logic
 dialect     operators of this language with the spellings of another

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, UsageError
+from rtamt.interchange.c_integers import remainder, with_integers
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_new, specification_text
@@ -99,7 +100,7 @@ C2PO = Dialect(
         (infix("power", "pow", 110, "", "x pow 2", operands=STL["mul"].operands, result=STL["mul"].result,
                definition=STL["pow"].definition), lambda a, b, _i: STL["pow"](a, b)),
         (infix("remainder", "\ue000", 110, "", "x % 2", operands=STL["mul"].operands, result=STL["mul"].result,
-               definition=STL["mod"].definition), lambda a, b, _i: STL["mod"](a, b)),
+               definition=STL["mod"].definition), lambda a, b, _i: remainder(a, b)),
         (function("prev", 2, "", "prev(0, x)", definition=STL["add"].definition), _previous),
     ),
     meanings={"until": _until, "since": _since},
@@ -122,6 +123,7 @@ class _File:
 
     types: dict[str, ValueType] = field(default_factory=dict)
     numbers: list[str] = field(default_factory=list)
+    integers: set[str] = field(default_factory=set)
     enumerations: dict[str, Enumeration] = field(default_factory=dict)
     definitions: dict[str, Formula] = field(default_factory=dict)
     unknown: dict[str, str] = field(default_factory=dict)
@@ -223,6 +225,8 @@ def _inputs(file: _File, statement: str, _step: Fraction) -> None:
             file.types[name] = BOOLEAN
         elif kind in ("int", "float"):
             file.numbers.append(name)
+            if kind == "int":
+                file.integers.add(name)
         elif kind in file.enumerations:
             file.types[name] = file.enumerations[kind]
         else:
@@ -254,7 +258,8 @@ def _specification(file: _File, statement: str, step: Fraction) -> None:
         file.rejected.append(Rejection(name, str(error)))
         return
     file.definitions[name] = formula
-    file.requirements.append(ReadRequirement(name, _in_seconds(STL["always"](formula), step), statement))
+    whole = STL["always"](with_integers(formula, file.integers))
+    file.requirements.append(ReadRequirement(name, _in_seconds(whole, step), statement))
 
 
 _READERS = {

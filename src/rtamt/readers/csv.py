@@ -125,8 +125,12 @@ def blocks(lines: Iterator[str], header: Header) -> Iterator[list[tuple[int, lis
 
 
 def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[int, list[str]]]:
-    """Yield the cells of each row with its line; ``before``: lines of the file before these."""
+    """Yield the cells of each row with its line; ``before``: lines of the file before these.
+
+    An empty line is no row, but in a file of one column a missing sample, unless none follows.
+    """
     taken: list[str] = []  # the lines of one row
+    empty: list[int] = []  # lines of a file of one column that may be missing samples
 
     def kept() -> Iterator[str]:
         for line in lines:
@@ -136,13 +140,18 @@ def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[in
     reader = csv.reader(kept(), delimiter=header.delimiter, skipinitialspace=True)
     try:
         for row in reader:
+            line = before + reader.line_num
+            blank = not any(map(str.strip, taken))
             if len(taken) > 1:
-                _check_quotes(taken, header, before + reader.line_num)
+                _check_quotes(taken, header, line)
             taken.clear()
-            if not row or (len(row) == 1 and not row[0].strip()):
+            if blank and len(header.names) == 1:
+                empty.append(line)
+            if blank or is_comment(row, header, line):
                 continue
-            if not is_comment(row, header, before + reader.line_num):
-                yield before + reader.line_num, row
+            yield from ((each, [""]) for each in empty)
+            empty.clear()
+            yield line, row
     except csv.Error as error:
         raise header.error(before + reader.line_num, str(error)) from None
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from itertools import chain
+from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
 from rtamt.errors import TraceError, choices
+from rtamt.readers.dates import is_date
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import Source, library
+from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -44,6 +46,11 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
                 f"{path}: expected a row of column names, such as time, x; the first row is {header}"
             )
         columns = ["" if cell is None else str(cell).strip() for cell in header]
+        first = next(rows, None)
+        if first is not None:
+            rows = chain([first], rows)
+        if _is_timed(columns, first or ()):
+            rows = (row for row in rows if _is_filled(row))
         notes = (f"sheet '{name}'",) if len(found) > 1 else ()
         return Source(path, (table_of_rows(columns, rows),), notes=notes, close=stack.pop_all().close)
 
@@ -75,8 +82,8 @@ def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
 
 
 def _filled_rows(page: Any, path: str) -> Iterator[Sequence[Any]]:
-    """Yield the rows that have a value in them, all as long as the first one."""
-    width, cells = None, 0
+    """Yield the rows from the first one to the last one that have a value in them, all as long as the first one."""
+    width, cells, empty = None, 0, 0
     for number, whole in enumerate(page.iter_rows(values_only=True), 1):
         cells += len(whole)
         if number > MOST_ROWS or cells > MOST_CELLS:
@@ -85,8 +92,21 @@ def _filled_rows(page: Any, path: str) -> Iterator[Sequence[Any]]:
                 f"empty ones included: delete what is far from the table, or save the sheet as CSV"
             )
         row = whole[:width]
-        if row.count(None) == len(row):
+        if not _is_filled(row):
+            empty += width is not None
             continue
         if width is None:
             width = max(i for i, cell in enumerate(row) if cell is not None) + 1
+        yield from repeat((None,) * width, empty)
+        empty = 0
         yield tuple(chain(row, [None] * (width - len(row))))[:width]
+
+
+def _is_filled(row: Sequence[Any]) -> bool:
+    return row.count(None) < len(row)
+
+
+def _is_timed(columns: Sequence[str], first: Sequence[Any]) -> bool:
+    """Return whether a table may have timestamps, from its names and its first row: empty rows are then no samples."""
+    names = [split_unit(column)[0] for column in columns]
+    return not names[0] or any(is_stamps(n) or may_be_stamps(n) for n in names) or any(map(is_date, first))

@@ -42,7 +42,7 @@ def c2po(formula: str, period: str = "1/2") -> str:
         ("a -> b -> a", "((a -> b) -> a)"),
         ("a == b", "(a <-> b)"),
         ("m == Busy || m != Idle", "(m == Busy or m != Idle)"),
-        ("x % 3 + x pow 2 >= 1", "(mod(x, 3) + pow(x, 2) >= 1)"),
+        ("x % 3 + x pow 2 >= 1", "(sign(x) * mod(abs(x), 3) + pow(x, 2) >= 1)"),
         ("twice", "(always[0:1](abs(x - delay[0.5](x, 22)) < 1))"),
         ("a U[0,3] b", "(a until[0:1.5] b)"),
         ("a U[1,3] b", "(eventually[0.5:0.5](a until[0:1] b))"),
@@ -67,6 +67,18 @@ def test_what_is_left_out_of_c2po(formula: str, reason: str) -> None:
     found = read_c2po(C2PO % f"R: {formula};")
     assert found.converted == ("spec_1",)
     assert found.rejected[0].reason.startswith(reason)
+
+
+@pytest.mark.parametrize("b", [-3, -2, 1, 2, 5])
+@pytest.mark.parametrize("a", [-7, -6, -1, 0, 1, 5, 6])
+def test_integers_of_c2po_divide_as_in_c(a: int, b: int) -> None:
+    declared = "INPUT i, j, q, r: int; f: float; DEFINE half := i / j; near := i / 2 == 1; FTSPEC "
+    text = f"A: half == q; B: i % j == r; C: i / {b} == q; D: i % {b} == r; E: near -> f / 4.0 == 0.25; F: 5 / 2 < i;"
+    spec = rtamt.parse(read_c2po(declared + text).text)
+    quotient = int(a / b)
+    result = spec.evaluate({"i": [a], "j": [b], "q": [quotient], "r": [a - quotient * b], "f": [1.0]})
+    verdicts = {name: each.satisfied for name, each in result.requirements.items()}
+    assert verdicts == {**dict.fromkeys("ABCDE", True), "F": a > 2}
 
 
 def test_until_of_c2po_does_not_need_its_first_operand_before_the_interval() -> None:

@@ -235,6 +235,23 @@ def test_message_for_a_field_too_long_for_a_csv_file(write):
     assert str(error.value) == "log.csv, line 2: field larger than field limit (131072)"
 
 
+@pytest.mark.parametrize("block", [1, 2, 65_536])
+@pytest.mark.parametrize("gap", ["", "   ", '""'])
+def test_an_empty_line_between_samples_of_one_column_is_a_missing_sample(write, monkeypatch, gap, block):
+    monkeypatch.setattr(csv_module, "BLOCK", block)
+    with pytest.raises(TraceError) as error:
+        rtamt.read(write(f"x\n1\n2\n{gap}\n4\n\n\n"))
+    assert str(error.value) == (
+        "'x' is missing at sample 2 of log.csv: fill the gap, or name the column of timestamps, so that each signal "
+        "has its own time base"
+    )
+    assert as_lists(read(write("x\n1\n2\n4\n\n  \n"))) == {"x": [1.0, 2.0, 4.0]}
+
+
+def test_empty_lines_between_rows_of_several_columns_are_no_rows(write):
+    assert as_lists(read(write("x,y\n1,2\n\n3,4\n"))) == {"x": [1.0, 3.0], "y": [2.0, 4.0]}
+
+
 @pytest.mark.parametrize("first", ["#N/A", "#DIV/0!", "#7", '"#7"', "#0.5"])
 def test_a_row_that_may_be_a_sample_is_not_dropped_as_a_comment(write, first):
     with pytest.raises(TraceError) as error:

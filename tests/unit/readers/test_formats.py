@@ -49,6 +49,27 @@ def test_excel_dates_and_sheets(tmp_path):
     assert rtamt.read(path, sheet="second")["x"].values.tolist() == [2]
 
 
+@pytest.mark.parametrize("columns", [["x"], ["x", "y"], ["Zeit", "x"]], ids=len)
+def test_an_empty_row_of_a_sheet_without_timestamps_is_a_missing_sample(tmp_path, columns):
+    row = [1] * len(columns)
+    path = workbook(tmp_path / "a.xlsx", log=[columns, row, [], row, []])
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"'{columns[0]}' is missing at sample 1 of {path}: fill the gap, or name the column of timestamps, so that "
+        f"each signal has its own time base"
+    )
+    path = workbook(tmp_path / "b.xlsx", log=[columns, row, row, [], [None] * len(columns)])
+    assert rtamt.read(path, time="").channel("x").values.tolist() == [1, 1]
+
+
+@pytest.mark.parametrize("name", ["when", None])
+def test_an_empty_row_of_a_sheet_with_dates_is_no_row(tmp_path, name):
+    dates = [dt.datetime(2024, 5, 1, 10, 0, second) for second in (0, 1)]
+    path = workbook(tmp_path / "a.xlsx", log=[[name, "x"], [dates[0], 1], [], [dates[1], 2]])
+    assert rtamt.read(path)["x"].values.tolist() == [1, 2]
+
+
 def test_a_lone_cell_at_the_far_end_of_a_sheet_takes_no_17_billion_steps(tmp_path):
     book = openpyxl.Workbook()
     for row in (["t", "x"], [0, 5], [1, 6]):
