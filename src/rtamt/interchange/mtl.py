@@ -59,7 +59,7 @@ MTL = Dialect(
 
 _SIGNED = lazy_pattern(r"([\[,]\s*)\+(?=[\d.])")
 #: Operators that their operand follows without a space, as in the formulas that it prints: GFa is G F a.
-_JOINED = lazy_pattern(r"\b[GFX]+(?=[a-z_]|TRUE\b|FALSE\b)")
+_JOINED = lazy_pattern(r"\b[GFX]+(?=[a-z_]|TRUE\b|FALSE\b)|\b[GFX]{2,}\b")
 _APART = str.maketrans("XGF", "\ue001\ue002\ue003")
 _TOGETHER = {other: letter for letter, other in _APART.items()}
 _ATOM = lazy_pattern(r"\b[a-z_][A-Za-z_\d]*\b")
@@ -67,12 +67,20 @@ _WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
 _LABEL = lazy_pattern(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
 _NOTE = "py-metric-temporal-logic holds each value until the next sample: use --time dense for verdicts between samples"
 _END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
+_WINDOW_NOTE = (
+    "its evaluator leaves out the end of a window: F[0,3] misses what begins 3 s later; here it counts"
+)
 _WEAK_NOTE = "its evaluator takes 'a W b' as true where b never holds from then on; here a has to hold then"
 
 
 def _notes(formulas: Iterable[Formula]) -> tuple[str, ...]:
-    weak = any(isinstance(node, Apply) and node.op is STL["unless"] for node in postorder(*formulas))
-    return (_NOTE, _END_NOTE, _WEAK_NOTE) if weak else (_NOTE, _END_NOTE)
+    nodes = [node for node in postorder(*formulas) if isinstance(node, Apply)]
+    notes = [_NOTE, _END_NOTE]
+    if any(node.interval is not None and node.interval.end is not None for node in nodes):
+        notes.append(_WINDOW_NOTE)
+    if any(node.op is STL["unless"] for node in nodes):
+        notes.append(_WEAK_NOTE)
+    return tuple(notes)
 
 
 def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
