@@ -77,6 +77,11 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         return self._violations + online
 
     @property
+    def online_interpreter(self) -> OnlineInterpreter:
+        """What RTAMT's monitor counts: samples, and gaps that miss the period."""
+        return OnlineInterpreter(self)
+
+    @property
     def var_object_dict(self) -> dict[str, Any]:
         """The current value of each variable; a value assigned to an entry is used by the next update."""
         if not self._shared:
@@ -216,6 +221,36 @@ class StlDiscreteTimeOnlineSpecification(OnlineSpecification, DiscreteTimeSpecif
         for name, formula in [*((name, Var(name)) for name in self._inputs), *self._formulas.items()]:
             if isinstance(self._objects.get(name), Real):
                 self._objects[name] = self._latest(formula)
+
+
+class OnlineInterpreter:
+    """The counters of an online specification, under the name that they have in RTAMT. Not instantiated by users."""
+
+    __slots__ = ("_spec",)
+
+    def __init__(self, spec: StlDiscreteTimeOnlineSpecification) -> None:
+        self._spec = spec
+
+    @property
+    def update_counter(self) -> int:
+        """The number of samples since the start or the last reset."""
+        stream = self._spec._stream
+        return 0 if stream is None else int(stream.monitor.samples)
+
+    @property
+    def previous_time(self) -> float:
+        """The timestamp of the latest sample, in the unit of the specification; 0 if there is none."""
+        stream = self._spec._stream
+        return float(stream.monitor.last_time) if stream is not None and stream.monitor.samples else 0.0
+
+    @property
+    def sampling_violation_counter(self) -> int:
+        """The number of gaps between samples that missed the period by more than the tolerance."""
+        return self._spec.sampling_violation_counter
+
+    def get_sampling_frequency(self) -> float:
+        """Return the number of samples per second."""
+        return self._spec.get_sampling_frequency()
 
 
 class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):

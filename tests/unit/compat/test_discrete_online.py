@@ -68,6 +68,32 @@ def test_online_violations_are_counted_from_reset_to_reset():
     assert spec.sampling_violation_counter == 0
 
 
+def test_the_interpreter_has_the_counters_of_the_specification():
+    spec = declared("x")
+    spec.set_sampling_period(10, "ms", 0.1)
+    spec.unit = "ms"
+    interpreter = spec.online_interpreter
+
+    def counters():
+        return (
+            interpreter.update_counter,
+            interpreter.previous_time,
+            interpreter.sampling_violation_counter,
+        )
+
+    assert counters() == (0, 0.0, 0)
+    for time in (5, 15, 35):
+        spec.update(time, [("x", 1)])
+    assert counters() == (3, 35.0, 1)
+    assert interpreter.get_sampling_frequency() == 100.0
+    spec.reset()
+    assert counters() == (0, 0.0, 0)
+    spec.update(0, [("x", 1)])
+    assert counters() == (1, 0.0, 0)
+    with pytest.raises(AttributeError):
+        interpreter.updateVisitor = None
+
+
 @pytest.mark.parametrize(
     ("time", "pairs", "message"),
     [
