@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 inf = math.inf
 
+#: The members of the enumeration of the field ``mode``, with their codes.
+MODES = {"Idle": 0.0, "Busy": 4.0}
+
 COMPARISONS: dict[str, tuple[Callable[[float, float], float], Callable[[float, float], bool]]] = {
     ">=": (lambda x, y: x - y, lambda x, y: x >= y),
     ">": (lambda x, y: x - y, lambda x, y: x > y),
@@ -99,6 +102,11 @@ class _Scope:
             x, y = map(self.number, rest)
             compare = COMPARISONS[kind][truth]
             return self.entries(lambda t: compare(x[t], y[t]))
+        if kind in ("truth", "mode"):
+            group, member = self.bound[rest[0]]
+            values = self.world.groups[group].members[member]["on" if kind == "truth" else "mode"]
+            wanted = 1.0 if kind == "truth" else MODES[rest[1]]
+            return self.entries(lambda t: top if values[t] == wanted else bottom)
         if kind == "not":
             p = below(rest[0])
             return self.entries(lambda t: negate(p[t]))
@@ -249,8 +257,10 @@ def text(node: Node) -> str:
         return f"{rest[0]:g}" if rest[0] >= 0 else f"(-{-rest[0]:g})"
     if kind == "signal":
         return str(rest[0])
-    if kind == "field":
+    if kind in ("field", "truth"):
         return f"{rest[0]}.{rest[1]}"
+    if kind == "mode":
+        return f"({rest[0]}.mode == {rest[1]})"
     if kind in COMPARISONS or kind in ARITHMETIC or kind in ("and", "or"):
         return f"({text(rest[0])} {kind} {text(rest[1])})"
     if kind in ("forall", "exists", "number of"):
