@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import PACK, CommandError, read_specifications
 from rtamt.cli.outcome import Requirement
 from rtamt.cli.parser import complain
-from rtamt.cli.reading_options import names_of, reading_of
+from rtamt.cli.reading_options import names_of, reading_of, require_time_base
 from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy.dataclasses import replace
@@ -43,6 +43,7 @@ def requirements_and_traces(args: Namespace, command: str) -> tuple[list[Require
         raise CommandError(
             f"there is no trace to {command}: name a file, or --sql URL; see 'rtamt {command} --help'"
         )
+    require_time_base(args, specs, traces)
     names = Counter(spec.name for spec in specs)
     called = [
         spec.name if spec.name and names[spec.name] == 1 else text
@@ -91,7 +92,7 @@ def _resample(spec: Specification, args: Namespace) -> Specification:
         spec = replace(spec, domain=domain, period=domain.period, sampling=None)
         spec._check_bounds()
         return spec
-    if args.how != "hold" and rule.hold:
+    if args.how not in (None, "hold") and rule.hold:
         complain(f"--how {args.how} replaces 'hold' of '{rule}' in the specification")
     if args.hold_for is not None and rule.hold:
         limit = positive_period(args.hold_for, "longest time for which a value is held")

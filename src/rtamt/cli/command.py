@@ -7,6 +7,7 @@ import re
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.language import add_language_option, read_language
@@ -28,7 +29,7 @@ from rtamt.specification_loader import load, pack, packs, parse
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from rtamt.lint.found import LintWarning
     from rtamt.settings import Settings
@@ -54,6 +55,20 @@ def options(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGr
     """Return the group of options that the help lists under a title."""
     found = next((group for group in parser._action_groups if group.title == title), None)
     return found or parser.add_argument_group(title)
+
+
+#: What the options of a specification are where they are not given.
+SPECIFICATION_DEFAULTS: Mapping[str, Any] = MappingProxyType(
+    {
+        "period": None,
+        "unit": "s",
+        "backend": "cpp",
+        "semantics": "standard",
+        "set": [],
+        "language": None,
+        "time": DEFAULT,
+    }
+)
 
 
 def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rtamt.cli.command import (
+    SPECIFICATION_DEFAULTS,
     CommandError,
     add_specification_options,
     read_specification,
@@ -38,16 +39,6 @@ these requirements mean, a note says so.
 examples:
   rtamt convert examples/fret/pump.txt --from fret --period 500ms -o build/pump.stl
   rtamt convert examples/request_grant/spec.stl --to fret --component arbiter -o build/arbiter.json"""
-
-
-#: What the options of a specification are where they are not given; only --to reads a specification.
-_DEFAULTS: dict[str, Any] = {
-    "unit": "s",
-    "backend": "cpp",
-    "semantics": "standard",
-    "set": [],
-    "language": None,
-}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -94,8 +85,8 @@ def run(args: argparse.Namespace) -> int:
 def _read(args: argparse.Namespace) -> Conversion:
     if args.component is not None:
         raise UsageError("--component is for --to: the file that is read names its components")
-    for name, default in _DEFAULTS.items():
-        if getattr(args, name) != default:
+    for name, default in SPECIFICATION_DEFAULTS.items():
+        if name not in ("period", "time") and getattr(args, name) != default:
             raise UsageError(
                 f"--{name} is for --to: it is about specifications, and --from reads another format"
             )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
+    SPECIFICATION_DEFAULTS,
     CommandError,
     add_specification_options,
     add_time_option,
@@ -92,6 +93,7 @@ def run(args: argparse.Namespace) -> int:
             raise CommandError("--set is for requirements, and this is a recording")
         if args.latex or args.program:
             raise UsageError("--latex and --program are for requirements, and this is a recording")
+        _refuse_specification_options(args)
         if args.sql is not None and args.spec is not None:
             args.signals.insert(0, args.spec)
         trace = _select_signals(recording(args, args.sql or args.spec), args.signals)
@@ -101,6 +103,8 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError("name a requirement, a program or a recording; see 'rtamt info --help'")
     if args.program and (args.latex or args.json):
         raise UsageError("--program prints the program alone: leave out --latex and --json")
+    if args.latex and args.json:
+        raise UsageError("--latex prints the formula alone, and --json contains it: leave one out")
     if args.signals:
         raise CommandError(f"'{args.signals[0]}' chooses signals of a recording, and '{args.spec}' is none")
     _refuse_reading_options(args)
@@ -141,9 +145,26 @@ def _select_signals(trace: Trace, texts: Sequence[str]) -> Trace:
     return trace.select(found)
 
 
+def _refuse_specification_options(args: argparse.Namespace) -> None:
+    """Reject options for reading requirements if there is a recording."""
+    for option, default in SPECIFICATION_DEFAULTS.items():
+        if getattr(args, option) != default:
+            raise CommandError(f"--{option} is for requirements, and this is a recording")
+
+
 def _refuse_reading_options(args: argparse.Namespace) -> None:
     """Reject options for reading recordings if there is no recording."""
-    for option in ("time_column", "time_unit", "name", "sheet", "query", "skip_nan", "hold_for", "resample"):
+    for option in (
+        "time_column",
+        "time_unit",
+        "name",
+        "sheet",
+        "query",
+        "skip_nan",
+        "hold_for",
+        "resample",
+        "how",
+    ):
         if getattr(args, option) not in (None, []):
             raise CommandError(
                 f"--{option.replace('_', '-')} is for recordings, and '{args.spec}' is a requirement or program"

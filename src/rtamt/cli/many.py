@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 _PRINTED = 10
 #: Options of 'rtamt check' for single recordings, and what each is left out as.
 _SINGLE = {
-    **dict.fromkeys(("early", "junit", "sarif", "html", "resample", "sql", "query"), None),
-    "how": "hold",
+    **dict.fromkeys(("early", "junit", "sarif", "html", "resample", "how", "sql", "query"), None),
 }
 _VERDICTS = ("satisfied", "violated", "unchecked", "error")
 

@@ -147,6 +147,8 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
     if spec.groups:
         _check_quantified(spec, args)
     own_times = spec.domain.own_time_bases
+    if own_times and args.tolerance is not None:
+        raise CommandError("dense time has no sampling period: leave out --tolerance, or --time dense")
     live = _live(spec) if args.live else None
     output = Output(
         verdicts=spec.semantics == "boolean", live=live, metrics=metrics, name=spec.name or "requirement"

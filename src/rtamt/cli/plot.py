@@ -41,6 +41,10 @@ examples:
   rtamt plot requirement.stl log.csv --tree -o formula.pdf"""
 
 
+#: How many formulas a plot shows, unless --rows gives another number.
+_ROWS = 6
+
+
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
@@ -49,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_instant_option(parser)
     parser.add_argument("-o", "--output", metavar="FILE", help="write the plot: .png, .svg, .pdf, ...")
     parser.add_argument(
-        "--rows", type=int, default=6, metavar="N", help="the maximum number of formulas (default: 6)"
+        "--rows", type=int, metavar="N", help=f"the maximum number of formulas (default: {_ROWS})"
     )
     parser.add_argument(
         "--from", dest="start", metavar="TIME", help="the start of the plot, in the format of --at"
@@ -66,8 +70,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate the trace and plot the results."""
-    if args.rows < 1:
+    if args.rows is not None and args.rows < 1:
         raise CommandError(f"--rows is {args.rows}; give a number of formulas, 1 or more")
+    _refuse_unused(args)
     figure = _window() if args.output is None else _sheet(args.output)
     with Progress() as progress:
         progress.show("evaluating")
@@ -86,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
     if args.tree:
         draw_tree(seen, figure)
     else:
-        draw(seen, args.rows, figure, window)
+        draw(seen, args.rows or _ROWS, figure, window)
     if args.output is None:
         matplotlib("pyplot").show()
         return OK
@@ -97,6 +102,18 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
     say(f"{args.output}: {seen.verdict}{evaluated.listed_notes}")
     return OK
+
+
+def _refuse_unused(args: argparse.Namespace) -> None:
+    """Reject options that the plot would not show."""
+    over_time = {
+        "rows": args.rows, "from": args.start, "to": args.end, "zoom": args.zoom, "bounds": args.bounds or None
+    }  # fmt: skip
+    given = [f"--{name}" for name, value in over_time.items() if value is not None]
+    if args.tree and given:
+        raise CommandError(f"{given[0]} is for plots over time: leave it out, or --tree")
+    if args.zoom is not None and args.start is not None and args.end is not None:
+        raise CommandError("--from and --to choose what is shown: leave out --zoom")
 
 
 def _window() -> Any:

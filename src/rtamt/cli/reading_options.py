@@ -100,9 +100,8 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--how",
-        default="hold",
         metavar="{hold,linear}",
-        help="between two samples, hold the last value or interpolate (default: hold)",
+        help="on a new time base, between two samples, hold the last value or interpolate (default: hold)",
     )
     group.add_argument(
         "--recover",
@@ -141,11 +140,6 @@ def reading_of(
     for name in args.skip_nan:
         if name not in read:
             raise CommandError(f"--skip-nan {name}: no formula reads '{name}'")
-    if args.how != "hold":
-        from rtamt.signals.resampling import HOW
-
-        if args.how not in HOW:
-            raise CommandError(f"cannot resample by '{args.how}'{choices(args.how, HOW, 'methods')}")
     return Reading(
         args.time_column,
         args.time_unit,
@@ -154,12 +148,35 @@ def reading_of(
         tuple(args.skip_nan),
         args.hold_for,
         args.resample,
-        args.how,
+        how_of(args),
         args.recover,
         whole=whole,
         early=early,
         explained=explained,
     )
+
+
+def how_of(args: argparse.Namespace) -> str:
+    """Return how values between two samples are found."""
+    if args.how is None:
+        return "hold"
+    from rtamt.signals.resampling import HOW
+
+    if args.how not in HOW:
+        raise CommandError(f"cannot resample by '{args.how}'{choices(args.how, HOW, 'methods')}")
+    return str(args.how)
+
+
+def require_time_base(
+    args: argparse.Namespace, specs: Sequence[Specification], traces: Sequence[str]
+) -> None:
+    """Raise for ``--how`` where the samples are those of the recordings."""
+    how_of(args)
+    if args.how is None or args.resample is not None:
+        return
+    if any(is_resampled(spec, trace, Reading()) for spec in specs for trace in traces):
+        return
+    raise CommandError("--how is for samples on a new time base: give its period, such as --resample 100ms")
 
 
 def names_of(texts: Sequence[str]) -> dict[str, str]:
@@ -175,12 +192,13 @@ def names_of(texts: Sequence[str]) -> dict[str, str]:
 
 def recording(args: argparse.Namespace, source: str) -> Trace:
     """Return all that is in a recording, read and resampled as the options select."""
+    require_time_base(args, (), ())
     with opened(source, args.sheet, args.query, args.recover) as found:
         wanted = choice(
             args.time_column, None, names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
         )
         trace = trace_of(found, wanted)
-    return trace if args.resample is None else trace.resample(args.resample, args.how)
+    return trace if args.resample is None else trace.resample(args.resample, how_of(args))
 
 
 # ---- for requirements ----------------------------------------------------------------------------

@@ -244,9 +244,9 @@ class _Timestamps:
         if time is None and not any(self._kinds.values()) and not any(is_stamps(f.name) for f in fields):
             time = ""  # the columns' names do not decide, and there is no row yet
         read = {name: columns[name] for name in names}
-        choice = Choice(time=time, columns=names, names=read, units=self._choice.units)
+        choice = Choice(time=time, columns=names, names=read)
         (selection,) = select(source, choice)
-        self.column = timestamps_of(source, selection, choice)
+        self.column = timestamps_of(source, selection, replace(choice, units=self._choice.units))
         if self.column is not None and self._samples:
             column = self.column.field.column
             self.column = None
@@ -259,6 +259,8 @@ class _Timestamps:
     def sample(self, timestamp: str | None, values: dict[str, float], number: int) -> Sample:
         """Return a sample with its timestamp, a text in line ``number``; None where there are no timestamps."""
         time = None
+        if timestamp is None and not self._samples and self._choice.units:
+            raise line_error(number, "there is no timestamp: name its column, or leave out --time-unit")
         if timestamp is not None:
             assert self.column is not None
             if self._cells is None:

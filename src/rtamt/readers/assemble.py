@@ -189,6 +189,9 @@ def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[lis
         yield [raws]
 
 
+_NO_UNIT = "name their column, or leave out time_unit=, on the command line --time-unit"
+
+
 # ---- column selection ----------------------------------------------------------------------------
 
 
@@ -212,6 +215,9 @@ def select(source: Source, choice: Choice) -> list[Selection]:
             mine = [(name, f) for name, f in mine if f != time_field or name in choice.names]
         if mine or len(source.tables) == 1:
             found.append(Selection(table, time_field, guessed, tuple(mine), choice.columns is not None))
+    named = {name for each in found for name, _ in each.signals}
+    if TIME in choice.units and TIME not in named and not any(each.time_field for each in found):
+        raise TraceError(f"{source.name} has no timestamps: {_NO_UNIT}")
     return found
 
 

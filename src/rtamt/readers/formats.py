@@ -46,6 +46,8 @@ class Format:
         opener: Callable[..., Source] = getattr(importlib.import_module(f"rtamt.readers.{module}"), function)
         if sheet is not None and not self.sheets:
             raise UsageError(f"'{path}' is {self.name}, which has no sheets; leave the sheet out")
+        if recover and not (self.recovers and path.lower().endswith(self.recovers)):
+            raise UsageError(f"only MCAP files are read up to their damage; leave out recover for '{path}'")
         choice = {"sheet": sheet} if self.sheets else {"recover": recover} if self.recovers else {}
         guard = partial(self.guard, path)
         with guard():

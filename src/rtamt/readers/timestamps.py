@@ -88,6 +88,7 @@ class TimestampColumn:
     def __init__(self, field: Field, said: str | None, guessed: bool, source: str) -> None:
         self.field = field
         self._source = source
+        self._said = said
         why = "by its name" if is_stamps(field.name) else "the one column of dates"
         self.notes = [f"time is '{field.column}', {why}"] if guessed else []
         #: Of numbers; None where neither the caller nor the column names one.
@@ -120,6 +121,12 @@ class TimestampColumn:
         """
         raw = self._plain(raw, before)
         if raw.dtype.kind in "mM":
+            if self._said is not None:
+                what = "dates" if raw.dtype.kind == "M" else "durations"
+                raise TraceError(
+                    f"the times of {self._source} are {what}, which have a unit: leave out time_unit=, on the "
+                    f"command line --time-unit"
+                )
             raw = in_nanoseconds(raw, self.field.column, self._source)
         if raw.dtype.kind == "M":
             return raw
