@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
 #: Bytes at the beginning and at the end of a large file that its digest covers.
 _END = 2**19
+#: Under which names stores give what changes with the content: S3, GCS and Azure, and servers that have it, an etag.
+_ETAGS = ("ETag", "etag", "md5Hash", "content_md5", "Content-MD5", "Digest")
+#: How an etag begins that may stay the same when the content changes.
+_WEAK = "W/"
 #: Whether files have a time of their last change that no program can set.
 _HAS_CHANGE_TIME = os.name == "posix"
 
@@ -124,10 +128,22 @@ def _version_at(system: Any, path: str) -> Recording:
     if isinstance(system, fsspec.get_filesystem_class("file")):
         return Recording(system.unstrip_protocol(path), version_of(path))
     info = system.info(path)
-    keys = ("ETag", "etag", "md5Hash", "content_md5")
-    etag = next((str(info[key]) for key in keys if info.get(key)), "")
-    changed = next((str(info[key]) for key in ("LastModified", "mtime", "created") if info.get(key)), "")
-    return Recording(system.unstrip_protocol(path), f"{etag or changed}-{info.get('size')}")
+    etag = next((str(info[key]) for key in _ETAGS if info.get(key)), "")
+    if not etag or etag.startswith(_WEAK):
+        return Recording(system.unstrip_protocol(path), _digest_at(system, path))
+    return Recording(system.unstrip_protocol(path), f"{etag}-{info.get('size')}")
+
+
+def _digest_at(system: Any, path: str) -> str:
+    """Return the digest of all that a remote recording contains.
+
+    A time and a size are not enough: times are whole seconds in many stores, and a copy may keep them.
+    """
+    found = blake2b(digest_size=16)
+    with system.open(path, "rb") as file:
+        while part := file.read(_END):
+            found.update(part)
+    return found.hexdigest()
 
 
 def _file_system(path: str) -> tuple[Any, str]:
