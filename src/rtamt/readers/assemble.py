@@ -16,7 +16,7 @@ from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import missing_sample
-from rtamt.signals.trace import Channel, Trace, in_seconds
+from rtamt.signals.trace import LEFT_OUT, Channel, Trace, in_seconds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -96,7 +96,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
         if choice.columns is None:
             taken = {timestamps.field if timestamps else None, *(f for _, f in selection.signals)}
             left_out += [f.column for f in selection.table.fields if f.kind == "text" and f not in taken]
-        notes += [] if not left_out else [f"left out, not numbers: {', '.join(left_out)}"]
+        notes += [] if not left_out else [LEFT_OUT + ", ".join(left_out)]
         losses += [loss for each in gaps.values() for loss in each.losses()]
     if choice.columns is not None:  # in the caller's order, whatever the tables'
         channels = {name: channels[name] for name in choice.columns if name in channels}

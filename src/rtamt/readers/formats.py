@@ -81,10 +81,12 @@ _JSON = "'rtamt monitor SPEC < FILE' reads lines of JSON, and rtamt.read a frame
 _DATABASE = (
     "'--sql sqlite:///FILE --query TEXT' reads a database, in Python rtamt.read('sqlite:///FILE', query=...)"
 )
+_BUS = "decode the messages into signals, such as with asammdf, and export these as MDF or CSV"
 #: What to do with other files of measurements, by how their names end.
 _ELSEWHERE = MappingProxyType(
     dict.fromkeys((".gz", ".bz2", ".xz", ".zip", ".7z", ".tar", ".tgz", *_PACKED), "unpack it first")
-    | dict.fromkeys((".mat", ".h5", ".hdf5", ".nc", ".pkl", ".npz", ".npy"), _TO_PYTHON)
+    | dict.fromkeys((".mat", ".h5", ".hdf5", ".nc", ".pkl", ".npz", ".npy", ".tdms"), _TO_PYTHON)
+    | dict.fromkeys((".blf", ".asc", ".trc"), _BUS)
     | dict.fromkeys((".json", ".jsonl", ".ndjson"), _JSON)
     | dict.fromkeys((".db", ".sqlite", ".sqlite3"), _DATABASE)
     | dict.fromkeys((".xls", ".xlsb", ".ods"), "save it as .xlsx or .csv")

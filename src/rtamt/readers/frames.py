@@ -219,6 +219,8 @@ def _arrow_batch(batch: Any) -> Source:
 
 def _xarray(data: Any) -> Source:
     """Return a table for each dimension: the variables along it, and its coordinate as timestamps."""
+    for name, variable in data.variables.items():
+        _require_decoded(str(name), variable.attrs)
     tables, left_out = [], [str(name) for name, v in data.data_vars.items() if v.ndim != 1]
     for dim in data.dims:
         along = {str(name): v for name, v in data.data_vars.items() if v.dims == (dim,)}
@@ -242,6 +244,23 @@ def _xarray(data: Any) -> Source:
         tables.append(table_of(columns, time_column, units, axis))
     notes = (f"left out, not one-dimensional: {', '.join(left_out)}",) if left_out else ()
     return Source("an xarray dataset", tuple(tables), notes=notes)
+
+
+#: Attributes of numbers in a file that stand for others; xarray removes them where it decodes a file.
+_ENCODED = ("scale_factor", "add_offset", "_FillValue", "missing_value")
+
+
+def _require_decoded(name: str, attributes: Mapping[Any, Any]) -> None:
+    """Raise :class:`TraceError` for a variable of xarray whose values are those of a file, before they are decoded."""
+    found = next((key for key in _ENCODED if key in attributes), None)
+    since = " since " in str(attributes.get("units", ""))
+    if found is not None or since:
+        problem = f"the attribute '{found}'" if found is not None else f"the unit '{attributes['units']}'"
+        raise TraceError(
+            f"'{name}' of an xarray dataset has {problem}, so that its values are not decoded: read "
+            f"xarray.decode_cf(dataset)",
+            variable=name,
+        )
 
 
 def _floats(raw: Raw) -> Raw:

@@ -62,6 +62,10 @@ class Channel:
     stepped: bool = False
 
 
+#: The beginning of the note that names columns without numbers.
+LEFT_OUT = "left out, not numbers: "
+
+
 class Trace(WithTimeBases):
     """Named signals of one recording, each with its own times and values; cannot be changed.
 
@@ -158,6 +162,11 @@ class Trace(WithTimeBases):
         """Return one signal with its unit; raise :class:`TraceError` if there is none of that name."""
         found = self._channels.get(name) or self._channels.get(self.aliases.get(name, ""))
         if found is None:
+            if any(name in note.removeprefix(LEFT_OUT).split(", ") for note in self._notes):
+                raise TraceError(
+                    f"'{name}' of {self._source} was left out, because its values are not numbers",
+                    variable=name,
+                )
             raise TraceError(
                 f"{self._source} has no '{name}'{choices(name, self._channels, 'signals')}", variable=name
             )

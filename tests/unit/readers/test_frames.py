@@ -427,3 +427,36 @@ def test_a_range_that_is_the_index_of_a_frame_holds_its_timestamps():
         rtamt.read(table.append_column("clock", pa.array(STAMPS)), columns=["x"], time="clock")["x"].times[1]
         == 0.1
     )
+
+
+@pytest.mark.parametrize(
+    ("variable", "attributes", "problem", "decoded"),
+    [
+        ("x", {"scale_factor": 0.01}, "the attribute 'scale_factor'", [0.01, 0.9, 0.02]),
+        ("x", {"add_offset": 1}, "the attribute 'add_offset'", [2, 91, 3]),
+        ("x", {"_FillValue": 90}, "the attribute '_FillValue'", [1, 2]),
+        ("x", {"missing_value": 90}, "the attribute 'missing_value'", [1, 2]),
+        ("time", {"units": "minutes since 2026-05-01"}, "the unit 'minutes since 2026-05-01'", [1, 90, 2]),
+    ],
+)
+def test_encoded_values_of_xarray_are_rejected_and_decoded_ones_read(variable, attributes, problem, decoded):
+    data = xr.Dataset({"x": ("time", [1, 90, 2])}, coords={"time": [0, 1, 2]})
+    data[variable].attrs.update(attributes)
+    for encoded in (data, data["x"]):
+        with pytest.raises(rtamt.TraceError) as error:
+            rtamt.read(encoded)
+        assert str(error.value) == (
+            f"'{variable}' of an xarray dataset has {problem}, so that its values are not decoded: read "
+            f"xarray.decode_cf(dataset)"
+        )
+    assert rtamt.read(xr.decode_cf(data))["x"].values.tolist() == decoded
+
+
+def test_a_column_without_numbers_is_said_to_be_left_out():
+    trace = rtamt.read({"time": [0, 1], "x": ["a", "b"], "y": ["c", "d"], "z": [1, 2]})
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("always(y > 0)").evaluate(trace)
+    assert str(error.value) == "'y' of a dict was left out, because its values are not numbers"
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.parse("always(left > 0)").evaluate(trace)
+    assert str(error.value) == "a dict has no 'left'; signals: z"
