@@ -115,6 +115,7 @@ void take_records(rtamt_fleet& handle, const KeySpan& keys, const rtamt_fleet_ba
     const Batch batch{keys, given.times, columns_of(given.columns, handle.inputs())};
     for (const double* column : batch.columns)
         (void)items(column, count, "The values of a column");
+    require_truths(handle.metadata, batch, rejected);
     const std::size_t all = handle.outputs();
     handle.values.resize(count * all);
     handle.times.resize(count * all);

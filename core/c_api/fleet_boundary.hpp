@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,6 +37,37 @@ struct RejectedBatch : std::invalid_argument {
 
 [[nodiscard]] inline std::string at_index(std::size_t index) {
     return " at index " + std::to_string(index) + " of the batch ";
+}
+
+// The first value of a batch in place of a Boolean that is neither 1 nor 0. NaN is left to the
+// fleet.
+[[nodiscard]] inline std::optional<fleet::Rejected> wrong_truth(const Metadata& metadata,
+                                                                const fleet::Batch& batch) {
+    std::optional<fleet::Rejected> wrong;
+    std::size_t count = batch.size();
+    for (const std::uint32_t input : metadata.booleans) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double value = batch.columns[input][i];
+            if (value == 0.0 || value == 1.0 || std::isnan(value)) continue;
+            wrong = fleet::Rejected{i, fleet::Rejected::Reason::value, 0, {}, input};
+            count = i;
+        }
+    }
+    return wrong;
+}
+
+// Throws for such a value, and puts its index in the batch into `rejected`.
+inline void require_truths(const Metadata& metadata, const fleet::Batch& batch,
+                           std::size_t* rejected) {
+    const auto wrong = wrong_truth(metadata, batch);
+    if (!wrong) return;
+    const std::size_t index = wrong->index;
+    put(rejected, index);
+    throw RejectedBatch("Key " + name_of(batch.keys, index) + at_index(index) + "has " +
+                            shown(batch.columns[wrong->instruction][index]) + " as '" +
+                            metadata.inputs[wrong->instruction] + "' at " +
+                            shown(batch.times[index]) + " s, which is Boolean: give 0 or 1.",
+                        *wrong);
 }
 
 // `place`: of the sample in the batch, or that it waited.

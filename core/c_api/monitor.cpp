@@ -4,6 +4,7 @@
 #include "../program/reader.hpp"
 #include "../program/snapshot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -35,6 +36,10 @@ constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
     for (const std::string& name : names)
         list += (list.empty() ? "" : ", ") + name;
     return list.empty() ? "the formula reads no variable" : list;
+}
+
+[[nodiscard]] constexpr bool is_truth(double value) noexcept {
+    return value == 0.0 || value == 1.0;
 }
 
 [[nodiscard]] Domain domain_of(std::span<const std::uint8_t> program) noexcept {
@@ -116,6 +121,10 @@ void Monitor::set_parameter(std::size_t index, double value) {
     }
     const Parameter& parameter = parameters[index];
     if (std::isnan(value)) refuse("The parameter '" + parameter.name + "' may not be NaN.");
+    if (parameter.boolean && !is_truth(value)) {
+        refuse("The parameter '" + parameter.name + "' is " + shown(value) +
+               ", and declared as bool: give 1 or 0.");
+    }
     if (runner_->begun()) {
         refuse("The parameter '" + parameter.name +
                "' cannot change in the middle of a trace: set it before the first sample.");
@@ -141,8 +150,8 @@ void Monitor::hold(std::span<const double> row, std::size_t count, std::span<rta
     unbroken([&] { runner.hold(row, count, known); });
 }
 
-// Refuses a sample that has the wrong number of values, or one among them that is NaN or outside
-// its declared range.
+// Refuses a sample that has the wrong number of values, or one among them that is NaN, outside its
+// declared range, or neither 1 nor 0 in place of a Boolean.
 void Monitor::check_row(std::span<const double> row, std::size_t outputs) const {
     const std::int64_t sample = samples();
     if (row.size() != metadata_.inputs.size()) {
@@ -160,6 +169,8 @@ void Monitor::check_row(std::span<const double> row, std::size_t outputs) const 
                    ": fill the gap or leave the sample out.");
         }
     }
+    for (const std::uint32_t input : metadata_.booleans)
+        require_truth(input, row[input], sample);
     const std::span<const Bounds> ranges = discrete().ranges();
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         if (row[i] < ranges[i].lower || row[i] > ranges[i].upper) {
@@ -168,6 +179,13 @@ void Monitor::check_row(std::span<const double> row, std::size_t outputs) const 
                    shown(ranges[i].upper) + "]: correct the value, or declare a wider range.");
         }
     }
+}
+
+// Refuses a value of a Boolean that is neither 1 nor 0; `step`: its sample or tick.
+void Monitor::require_truth(std::size_t input, double value, std::int64_t step) const {
+    if (is_truth(value)) return;
+    refuse("'" + metadata_.inputs[input] + "' is " + shown(value) + " at " + time_of(step) +
+           ", and declared as bool: give 1 or 0.");
 }
 
 void Monitor::push(std::span<const rtamt_sample> samples) {
@@ -196,6 +214,8 @@ void Monitor::add(DenseRunner& runner, const rtamt_sample& sample) const {
         refuse("'" + name + "' is NaN at " + time_of(sample.tick) +
                ": fill the gap or leave the sample out.");
     }
+    if (std::ranges::find(metadata_.booleans, sample.input) != metadata_.booleans.end())
+        require_truth(sample.input, sample.value, sample.tick);
     if (sample.tick <= -farthest || sample.tick >= farthest ||
         sample.tick > runner.last_possible()) {
         refuse("'" + name + "' has a sample at tick " + std::to_string(sample.tick) +

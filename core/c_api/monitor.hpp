@@ -62,6 +62,7 @@ class Monitor {
     [[nodiscard]] SampledRunner& discrete() const;
     [[nodiscard]] DenseRunner& dense() const;
     void check_row(std::span<const double> row, std::size_t outputs) const;
+    void require_truth(std::size_t input, double value, std::int64_t step) const;
     void require_whole() const;
     void require_ready() const;
     void add(DenseRunner& runner, const rtamt_sample& sample) const;

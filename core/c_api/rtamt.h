@@ -122,7 +122,7 @@ RTAMT_API rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint3
                                              double* value);
 
 /* Only before the first sample, or after rtamt_reset. A Boolean is 1 or 0, a member of an
- * enumeration its code. */
+ * enumeration its code; other values of a Boolean are refused. */
 RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter,
                                            double value);
 
@@ -132,13 +132,14 @@ RTAMT_API rtamt_status rtamt_set_parameter_by_name(rtamt_monitor* monitor, const
 
 /* ---- a trace --------------------------------------------------------------------------------- */
 
-/* Discrete time: takes the next sample, `count` values, one an input. For each of the first
- * `outputs` outputs, `results` receives the value that has become known, the one `lag` samples ago;
- * it is not known in the first `lag` samples. Allocates nothing, unless the program is one of
- * bounds (rtamt compile --verdict interval): its outputs are lower and upper, bounds of the
- * robustness at the start of the trace for every possible continuation, verdict (infinite, with its
- * sign) and decided_since, the seconds from the first sample to the one that decided; these two are
- * not known while the verdict is open. */
+/* Discrete time: takes the next sample, `count` values, one an input. A value that is NaN, or of
+ * a declared Boolean neither 1 nor 0, is refused, here as in rtamt_push and in fleets. For each
+ * of the first `outputs` outputs, `results` receives the value that has become known, the one
+ * `lag` samples ago; it is not known in the first `lag` samples. Allocates nothing, unless the
+ * program is one of bounds (rtamt compile --verdict interval): its outputs are lower and upper,
+ * bounds of the robustness at the start of the trace for every possible continuation, verdict
+ * (infinite, with its sign) and decided_since, the seconds from the first sample to the one that
+ * decided; these two are not known while the verdict is open. */
 RTAMT_API rtamt_status rtamt_step(rtamt_monitor* monitor, const double* values, size_t count,
                                   rtamt_value* results, size_t outputs);
 

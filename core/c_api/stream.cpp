@@ -68,6 +68,7 @@ void update(rtamt_stream& handle, const KeySpan& keys, const double* times,
         items(columns, count == 0 ? 0 : handle.stream.fleet().program().inputs, "The columns")};
     for (const double* column : batch.columns)
         (void)items(column, count, "The values of a column");
+    require_truths(handle.metadata, batch, rejected);
     handle.late.assign(count, 0);
     if (auto failure = handle.stream.take(batch, handle.late.data())) {
         fail(handle, &batch, std::move(*failure), rejected);

@@ -2,6 +2,7 @@
 
 #include "../program/crc32.hpp"
 #include "../program/reader.hpp"
+#include "../values/ticks.hpp"
 
 #include <array>
 #include <cmath>
@@ -186,23 +187,37 @@ void Component::report_bounds(std::span<const rtamt_value> known) noexcept {
     outcome.since = outcome.known ? now_.start + known[3].value : 0.0;
 }
 
+// The tick of a time, as Python callers' times are counted; nothing where it is too far from 0.
+std::optional<std::int64_t> Component::tick_of(double time) const noexcept {
+    const Metadata& metadata = monitor_->metadata();
+    const auto rate = static_cast<double>(metadata.denominator);
+    if (metadata.numerator == 1) return ticks::tick_of(time, rate);
+    const double tick = std::nearbyint(time * rate / static_cast<double>(metadata.numerator));
+    return std::abs(tick) < ticks::farthest ? std::optional(static_cast<std::int64_t>(tick))
+                                            : std::nullopt;
+}
+
+double Component::seconds_of(std::int64_t tick) const noexcept {
+    const Metadata& metadata = monitor_->metadata();
+    if (metadata.numerator == 1) return ticks::seconds_of(tick, metadata.denominator);
+    return static_cast<double>(tick) * static_cast<double>(metadata.numerator) /
+           static_cast<double>(metadata.denominator);
+}
+
 void Component::advance_dense(double time) {
     if (std::abs(time - now_.reached) > step() + rounding_of(time)) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
     }
-    const double ticks_a_second = static_cast<double>(monitor_->metadata().denominator) /
-                                  static_cast<double>(monitor_->metadata().numerator);
-    const double tick = std::nearbyint(time * ticks_a_second);
-    constexpr double farthest = 4e18;
-    if (!(std::abs(tick) < farthest)) {
+    const auto tick = tick_of(time);
+    if (!tick) {
         refuse("The communication point " + shown(time) + " s is too far from 0 for ticks of " +
                shown(step()) + " s.");
     }
     std::vector<rtamt_sample> samples;
     samples.reserve(now_.inputs.size());
     for (std::uint32_t input = 0; input < now_.inputs.size(); ++input)
-        samples.push_back({static_cast<std::int64_t>(tick), now_.inputs[input], input});
+        samples.push_back({*tick, now_.inputs[input], input});
     monitor_->push(samples);
     for (std::size_t i = 0; i < now_.outcomes.size(); ++i) {
         Outcome& outcome = now_.outcomes[i];
@@ -212,7 +227,7 @@ void Component::advance_dense(double time) {
         if (verdict.count != 0) outcome.verdict = verdict.values[verdict.count - 1];
         if (const auto until = monitor_->runner().known_until(2 * i)) {
             outcome.known = true;
-            outcome.since = static_cast<double>(*until) / ticks_a_second;
+            outcome.since = seconds_of(*until);
         }
     }
 }

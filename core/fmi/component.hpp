@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -107,6 +108,8 @@ class Component {
     [[nodiscard]] bool is_early() const noexcept { return !monitor_->metadata().early.empty(); }
     void advance_dense(double time);
     [[nodiscard]] std::int64_t instant(double time) const;
+    [[nodiscard]] std::optional<std::int64_t> tick_of(double time) const noexcept;
+    [[nodiscard]] double seconds_of(std::int64_t tick) const noexcept;
 };
 
 // The value of fmi2ResourceLocation, a file URI, as a path.

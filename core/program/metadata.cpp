@@ -66,7 +66,8 @@ class NoteReader {
     }
 
     [[nodiscard]] Parameter parameter() {
-        Parameter parameter{text(), {}};
+        Parameter parameter;
+        parameter.name = text();
         const auto places = count();
         for (std::uint32_t i = 0; i < places; ++i) {
             const auto place = instruction();
@@ -79,6 +80,21 @@ class NoteReader {
         if (places == 0) refuse("its parameter '" + parameter.name + "' stands nowhere");
         return parameter;
     }
+
+    // Indices of things of which there are `count`.
+    [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t count, const char* what) {
+        std::vector<std::uint32_t> indices(this->count());
+        for (std::uint32_t& index : indices) {
+            index = number<std::uint32_t>();
+            if (index >= count) {
+                refuse("its metadata names " + std::string(what) + " " + std::to_string(index) +
+                       " of " + std::to_string(count));
+            }
+        }
+        return indices;
+    }
+
+    [[nodiscard]] bool left() const noexcept { return reader_.left() != 0; }
 
     void end() const {
         if (reader_.left() != 0) refuse("its metadata is longer than it should be");
@@ -118,6 +134,11 @@ Metadata Metadata::parse(const Program& program) {
         metadata.meanings[instruction] = note.text();
     }
     metadata.early = note.bytes();
+    if (note.left()) {
+        metadata.booleans = note.indices(metadata.inputs.size(), "input");
+        for (const std::uint32_t index : note.indices(metadata.parameters.size(), "parameter"))
+            metadata.parameters[index].boolean = true;
+    }
     note.end();
     return metadata;
 }

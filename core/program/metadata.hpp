@@ -13,6 +13,10 @@
 //     u32        number of meanings; of each: u32 instruction, text of the formula it computes
 //     u32        number of bytes that follow: the graph of bounds at the start of the trace
 //                (../c_api/early_runner.hpp), or none
+//     u32        number of Boolean inputs, and the u32 index of each
+//     u32        number of Boolean parameters, and the u32 index of each
+//
+// Notes without Boolean inputs and parameters end before the last two fields.
 #pragma once
 
 #include "program.hpp"
@@ -27,6 +31,7 @@ namespace rtamt {
 struct Parameter {
     std::string name;
     std::vector<std::uint32_t> instructions; // at least one
+    bool boolean = false;                    // its value is 1 or 0
 };
 
 struct Metadata {
@@ -39,6 +44,7 @@ struct Metadata {
     std::vector<Parameter> parameters;
     std::map<std::uint32_t, std::string> meanings; // by instruction
     std::string early;                             // the graph, as bytes
+    std::vector<std::uint32_t> booleans;           // inputs whose values are 1 or 0
 
     // Reads and checks the note of a program; throws std::invalid_argument with one sentence.
     [[nodiscard]] static Metadata parse(const Program& program);

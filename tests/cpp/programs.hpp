@@ -146,6 +146,16 @@ inline std::string note_of(const rtamt::Metadata& metadata) {
         put_text(bytes, text);
     }
     put_text(bytes, metadata.early);
+    std::vector<std::uint32_t> parameters; // Boolean ones
+    for (std::uint32_t i = 0; i < metadata.parameters.size(); ++i) {
+        if (metadata.parameters[i].boolean) parameters.push_back(i);
+    }
+    if (metadata.booleans.empty() && parameters.empty()) return {bytes.begin(), bytes.end()};
+    for (const std::vector<std::uint32_t>& indices : {metadata.booleans, parameters}) {
+        put(bytes, static_cast<std::uint32_t>(indices.size()));
+        for (const std::uint32_t index : indices)
+            put(bytes, index);
+    }
     return {bytes.begin(), bytes.end()};
 }
 
@@ -169,7 +179,8 @@ inline Program carried(rtamt::Domain domain = rtamt::Domain::discrete) {
                             {"robustness", "ratio"},
                             {{"limit", {limit}}},
                             {{quotient, "a / b"}, {margin, "a / b - limit"}},
-                            ""});
+                            "",
+                            {}});
     return program;
 }
 
@@ -187,7 +198,7 @@ inline Program everything() {
     const auto ratio = builder.pointwise(Opcode::div, both, builder.later(before, 4));
     builder.output(builder.unary(Opcode::slide_min, ratio, 3, 6));
     Program program = builder.program();
-    program.note = note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, ""});
+    program.note = note_of({1, 10, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, "", {}});
     return program;
 }
 
@@ -207,7 +218,7 @@ inline Program everything_dense() {
     builder.output(builder.pointwise(Opcode::abs, all));
     Program program = builder.program();
     program.domain = rtamt::Domain::dense;
-    program.note = note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, ""});
+    program.note = note_of({1, 1000, "", "everything", {"x", "y"}, {"robustness"}, {}, {}, "", {}});
     return program;
 }
 

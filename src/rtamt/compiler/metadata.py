@@ -26,7 +26,8 @@ class Metadata:
 
     ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a parameter or named constant to the
     instructions that hold its value. ``meanings`` maps an instruction to the formula it computes. ``early``: of a
-    program of bounds its graph, as the core reads it (core/c_api/early_runner.hpp).
+    program of bounds its graph, as the core reads it (core/c_api/early_runner.hpp). ``booleans``: the inputs and
+    parameters that are declared as bool.
     """
 
     name: str = ""
@@ -35,6 +36,7 @@ class Metadata:
     parameters: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MappingProxyType({}))
     meanings: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
     early: bytes = b""
+    booleans: frozenset[str] = frozenset()
 
     def to_bytes(self, inputs: tuple[str, ...], period: Fraction) -> bytes:
         """Serialise the metadata together with the program's inputs and period."""
@@ -50,6 +52,10 @@ class Metadata:
         for place, text in self.meanings.items():
             parts += [_COUNT.pack(place), _text(text)]
         parts += [_COUNT.pack(len(self.early)), self.early]
+        if self.booleans:
+            for names in (inputs, tuple(self.parameters)):
+                truths = [i for i, name in enumerate(names) if name in self.booleans]
+                parts.append(struct.pack(f"<{len(truths) + 1}I", len(truths), *truths))
         return b"".join(parts)
 
     @staticmethod
@@ -65,9 +71,18 @@ class Metadata:
         parameters = {reader.text(): tuple(reader.numbers()) for _ in range(reader.number())}
         meanings = {reader.number(): reader.text() for _ in range(reader.number())}
         early = reader.bytes(reader.number())
+        booleans: set[str] = set()
+        if reader.left():
+            booleans.update(reader.items(names, "input"), reader.items(tuple(parameters), "parameter"))
         reader.end()
         metadata = Metadata(
-            name, formula, results, MappingProxyType(parameters), MappingProxyType(meanings), early
+            name,
+            formula,
+            results,
+            MappingProxyType(parameters),
+            MappingProxyType(meanings),
+            early,
+            frozenset(booleans),
         )
         return metadata, names, Fraction(numerator, denominator)
 
@@ -103,6 +118,17 @@ class _Reader:
             return self.bytes(self.number()).decode()
         except UnicodeDecodeError:
             raise damaged("a text in its metadata is not UTF-8") from None
+
+    def items(self, names: tuple[str, ...], what: str) -> list[str]:
+        """Return the names that listed indices stand for."""
+        indices = self.numbers()
+        for index in indices:
+            if index >= len(names):
+                raise damaged(f"its metadata names {what} {index} of {len(names)}")
+        return [names[index] for index in indices]
+
+    def left(self) -> bool:
+        return self._at < len(self._note)
 
     def end(self) -> None:
         if self._at != len(self._note):

@@ -18,6 +18,7 @@ from rtamt.engine.early import EarlyProgram
 from rtamt.errors import UsageError
 from rtamt.fleet.collectors import collector_of
 from rtamt.fleet.monitor_state import MonitorStates
+from rtamt.language.contents import types_of
 from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE
@@ -51,7 +52,10 @@ def records_program(
     program = session.program
     outputs = tuple(f"robustness.{name}" for name in requirements) or ("robustness",)
     text = to_text(formulas[0], limit=PAGE)
-    metadata = Metadata(formula=text, outputs=outputs, meanings=_meanings(program.origins, formulas))
+    booleans = frozenset([name for name, type_ in types_of(*formulas).items() if type_ is BOOLEAN])
+    metadata = Metadata(
+        formula=text, outputs=outputs, meanings=_meanings(program.origins, formulas), booleans=booleans
+    )
     return replace(program, metadata=metadata).to_bytes()
 
 

@@ -14,12 +14,12 @@ from rtamt.compiler.program import Instruction, Program, records_of
 from rtamt.engine import engine_of
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
-from rtamt.language.contents import variables
+from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Apply, Const, Formula, Parameter, fold
 from rtamt.language.parameters import bounds_of
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import EXCERPT, PAGE
-from rtamt.language.value_types import Enumeration
+from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.check import check_online
 from rtamt.rewrite.desugar import as_written, desugar, written
@@ -80,6 +80,7 @@ def carried_program(
         tuple(f"{output}{suffix}" for suffix in pairs for output in OUTPUTS),
         _places(constants, 0),
         MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in grounded])),
+        booleans=_booleans(formula, constants),
     )
     return replace(program, metadata=metadata)
 
@@ -153,6 +154,7 @@ def bounds_program(
             }
         ),
         early=b"".join(parts),
+        booleans=_booleans(formula, graph.origins),
     )
     last = (len(instructions) - 1,) * len(BOUNDS)
     return Program(records_of(instructions), inputs, last, period, metadata=metadata)
@@ -190,6 +192,13 @@ def _with_parameters(formula: Formula, structural: frozenset[str]) -> Formula:
         return kind(node.value, node.span, node.name, node.type)
 
     return fold(formula, step)
+
+
+def _booleans(formula: Formula, origins: Sequence[Formula | None]) -> frozenset[str]:
+    """Return the variables of a formula, and the parameters among ``origins``, that are declared as bool."""
+    inputs = [name for name, type_ in types_of(formula).items() if type_ is BOOLEAN]
+    given = [each.name for each in origins if isinstance(each, Parameter) and each.type is BOOLEAN]
+    return frozenset([*inputs, *given])
 
 
 def _places(origins: Sequence[Formula | None], first: int) -> Mapping[str, tuple[int, ...]]:

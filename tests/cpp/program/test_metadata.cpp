@@ -48,7 +48,23 @@ TEST_CASE("no truncation is read") {
         CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
     }
     program.note = note + "x";
+    CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
+    program.note = note + std::string(8, '\0') + "x";
     CHECK(refusal(program) == refused("its metadata is longer than it should be"));
+}
+
+TEST_CASE("Boolean inputs and parameters are read") {
+    CHECK((good().booleans.empty() && !good().parameters[0].boolean));
+    Program program = programs::carried();
+    Metadata metadata = good();
+    metadata.booleans = {1};
+    metadata.parameters[0].boolean = true;
+    program.note = programs::note_of(metadata);
+    const Metadata read = Metadata::parse(program);
+    CHECK(read.booleans == std::vector<std::uint32_t>({1}));
+    CHECK(read.parameters[0].boolean);
+    metadata.booleans = {2};
+    CHECK(refusal_of(metadata) == refused("its metadata names input 2 of 2"));
 }
 
 TEST_CASE("lengths that promise the world are refused") {

@@ -308,3 +308,29 @@ def test_a_unit_takes_booleans_and_members_as_the_monitor_does(exported, tmp_pat
         assert there.get("robustness") == monitor.update(i * PERIOD, mode=mode, armed=armed)
         assert list(get_member([reference["mode"], reference["start"]])) == [code, 4]
         assert [bool(value) for value in slave.getBoolean([reference["armed"]])] == [bool(armed)]
+
+
+@BOTH
+def test_a_number_in_place_of_a_boolean_is_a_rejected_step(exported, tmp_path, version):
+    there = Unit(exported("input bool p  historically(p)", version, period=PERIOD), tmp_path / "unit").begin()
+    there.set(p=1.0)
+    there.step(0.0)
+    there.set(p=0.5)
+    assert there.refusal(PERIOD) == ("'p' is 0.5 at sample 1, time 0.1 s, and declared as bool: give 1 or 0.")
+    assert (there.get("robustness"), there.get("verdict")) == (np.inf, 1)
+    there.close()
+
+
+@BOTH
+def test_windows_in_dense_time_are_exact_at_unix_times(unit, version):
+    text, start = "once[0:100ms](x >= 1)", 1.7e9
+    monitor = rtamt.parse(text).monitor(time="dense")
+    there = unit(text, version, time="dense").begin(start=start)
+    at = start
+    for k in range(60):
+        value = 5.0 if k % 3 == 0 else 0.0
+        there.set(x=value)
+        there.step(at, start + (k + 1) / 10 - at)
+        known = monitor.update(at, x=value)
+        assert (there.get("robustness"), there.get("known_since")) == (known.values[-1], at)
+        at = start + (k + 1) / 10

@@ -8,8 +8,9 @@ import pytest
 
 import rtamt
 from rtamt.c_api import header, library
-from rtamt.compiler.program import records_of
+from rtamt.compiler.program import Program, records_of
 from tests.support import c_api
+from tests.support.c_fleet import CFleet, RejectedError
 
 RATIO = rtamt.parse("const float c = 1  always[0:3](x / y >= c)").compile()
 
@@ -48,6 +49,54 @@ def test_a_constant_is_a_parameter_unless_it_bounds_an_interval():
     monitor = c_api.Monitor(program.to_bytes())
     monitor.set_parameter(0, -2.0)
     assert [monitor.step((0.0, 0.0))[0] for _ in range(3)][-1] == 1.0
+
+
+BOOLEAN = "input bool p  parameter bool strict = false  historically[0:2](strict or p)"
+
+
+def test_a_number_in_place_of_a_boolean_is_refused_as_in_python():
+    spec = rtamt.parse(BOOLEAN, period="1s")
+    program = spec.compile()
+    assert Program.from_bytes(program.to_bytes()).metadata.booleans == {"p", "strict"}
+    dense = rtamt.parse(BOOLEAN, time="dense", resolution="1s").compile()
+    for value in (0.5, -1.0, 2.0, float("inf")):
+        with pytest.raises(rtamt.TraceError, match=f"'p' is {value:.15g} at sample 0"):
+            spec.monitor().update(0, p=value)
+        monitor = c_api.Monitor(program.to_bytes())
+        with pytest.raises(c_api.RefusedError) as refused:
+            monitor.set_parameter(0, value)
+        assert refused.value.args[1] == (
+            f"The parameter 'strict' is {value:.15g}, and declared as bool: give 1 or 0."
+        )
+        for carried, give in (
+            (program, lambda m, x: m.step([x])),
+            (spec.compile(verdict="interval"), lambda m, x: m.step([x], 4)),
+            (dense, lambda m, x: m.push([(0, 0, x)])),
+        ):
+            monitor = c_api.Monitor(carried.to_bytes())
+            before = monitor.save()
+            with pytest.raises(c_api.RefusedError) as refused:
+                give(monitor, value)
+            status, sentence = refused.value.args
+            assert status == c_api.REFUSED
+            assert sentence.startswith(f"'p' is {value:.15g} at ")
+            assert sentence.endswith(", and declared as bool: give 1 or 0.")
+            assert monitor.save() == before
+            give(monitor, 1.0)
+
+
+@pytest.mark.parametrize("mode", ["delayed", "eager", "interval"])
+def test_a_number_in_place_of_a_boolean_is_refused_by_fleets(mode):
+    spec = rtamt.parse("input bool p  input float x  historically[0:2](p or x > 0)", period="1s")
+    fleet = CFleet(rtamt.Fleet(spec, 4, verdict=mode).compile(), 4)
+    with pytest.raises(RejectedError) as refused:
+        fleet.update([7, 8, 9], [0.0, 0.0, 0.0], {"p": [1.0, 0.5, 2.0], "x": [0.0, 0.5, 0.0]})
+    assert refused.value.args == (
+        c_api.REFUSED, "Key 8 at index 1 of the batch has 0.5 as 'p' at 0 s, which is Boolean: give 0 or 1.", 1,
+    )  # fmt: skip
+    assert len(fleet) == 0
+    fleet.update([7, 8], [0.0, 0.0], {"p": [1.0, 0.0], "x": [0.0, 0.5]})
+    assert len(fleet) == 2
 
 
 def test_the_verdict_is_boolean_where_the_robustness_is_zero():
