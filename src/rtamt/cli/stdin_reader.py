@@ -32,6 +32,7 @@ from rtamt.readers.csv import (
     is_number,
     numbers,
     read_header,
+    separator,
     truth,
 )
 from rtamt.readers.csv_cells import Cells
@@ -116,6 +117,8 @@ class Samples:
         if not text.strip() or (
             text.startswith("#") and (self._rows is None or self._rows.is_comment(text, number))
         ):
+            return None
+        if number == 1 and separator(text) is not None:
             return None
         try:
             if self._read is not None:

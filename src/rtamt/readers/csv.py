@@ -58,15 +58,17 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
 
     Where the first row is all numbers, a comment right above it has the names: numpy writes such files.
     """
-    first, comment, count = "", "", before
+    first, comment, count, chosen = "", "", before, None
     for first in lines:
         count += 1
+        if count == 1 and (chosen := separator(first)):
+            continue
         if not first.isspace() and not first.startswith("#"):
             break
         comment = first.lstrip("#") if first.startswith("#") else ""
     else:
         raise TraceError(f"'{file}' is empty: it needs a row of column names, then a row for each sample")
-    delimiter = max(DELIMITERS, key=first.count)
+    delimiter = chosen or max(DELIMITERS, key=first.count)
     reader = csv.reader(chain([first], lines), delimiter=delimiter, skipinitialspace=True)
     try:
         cells = next(reader)
@@ -82,6 +84,16 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
         header.line,
         f"expected a row of column names, such as time,x; got '{first.strip()}': put the names above it",
     )
+
+
+def separator(line: str) -> str | None:
+    """Return the delimiter that the first line of a file names, as spreadsheets read and write it.
+
+    >>> separator("sep=;"), separator("sep"), separator("sep=ab")
+    (';', None, None)
+    """
+    name, _, delimiter = line.rstrip("\r\n").partition("=")
+    return delimiter if name.lower() == "sep" and delimiter in DELIMITERS else None
 
 
 def _listing(header: Header) -> str:

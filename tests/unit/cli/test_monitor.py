@@ -39,6 +39,7 @@ def test_a_line_may_have_more_than_the_formula_reads(run):
     [
         "time,x\n0,5\n1,2\n",
         "x;note;t [ms]\n5;a;0\n\n2;b;1000\n",
+        "\ufeffsep=;\r\ntime;x\r\n0;5\r\n1;2\r\n",
         '\ufeff# comment\ntime,"x"\r\n0,5\r\n1," 2 "\r\n',
         jsonl({"time": 0, "x": 5}, {"time": 1, "x": 2}),
         "\ufeff\n" + jsonl({"t": 0, "x": 5}) + "\n# comment\n" + jsonl({"t": 1, "x": 2}),
@@ -51,6 +52,15 @@ def test_every_way_to_write_the_same_samples(run, stdin):
         0,
         '{"time": 0.0, "robustness": 2.0}\n{"time": 1.0, "robustness": -1.0}\n',
         "",
+    )
+
+
+def test_a_row_that_may_be_a_sample_is_not_skipped_as_a_comment(run):
+    answer = run("monitor", "x >= 3", stdin="y,x\n# a, comment\n1,5\n#N/A,2\n")
+    assert (answer.code, answer.out) == (2, '{"time": 0.0, "robustness": 2.0}\n')
+    assert answer.err.splitlines()[-1] == (
+        "rtamt: stdin, line 4: '#N/A' may begin a sample or a comment: begin no sample with '#', and a comment with "
+        "'# '"
     )
 
 
