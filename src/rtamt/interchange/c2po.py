@@ -101,7 +101,7 @@ C2PO = Dialect(
                definition=STL["pow"].definition), lambda a, b, _i: STL["pow"](a, b)),
         (infix("remainder", "\ue000", 110, "", "x % 2", operands=STL["mul"].operands, result=STL["mul"].result,
                definition=STL["mod"].definition), lambda a, b, _i: remainder(a, b)),
-        (function("prev", 2, "", "prev(0, x)", definition=STL["add"].definition), _previous),
+        (function("prev", 2, "", "prev(0, x)", definition=STL["add"].definition, keeps=(0, 1)), _previous),
     ),
     meanings={"until": _until, "since": _since},
     characters={"%": "\ue000"},

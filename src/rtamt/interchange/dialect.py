@@ -159,8 +159,10 @@ class Dialect:
                     )
 
     def _here(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
-        if not isinstance(node, Apply) or node.op is TRUTH:
+        if not isinstance(node, Apply):
             return node
+        if node.op is TRUTH:
+            return TRUTH(*args)
         own = next((expand for operator, expand in self.own if operator is node.op), None)
         if own is not None:
             return own(*args, node.interval)
@@ -193,8 +195,10 @@ class Dialect:
         """Return a formula with the operators of the dialect; arguments and errors are those of :meth:`write`."""
 
         def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
-            if not isinstance(node, Apply) or node.op is TRUTH:
+            if not isinstance(node, Apply):
                 return node
+            if node.op is TRUTH:
+                return TRUTH(*args)
             # Equality of enumeration members is a different operator with the same symbol.
             operator = self._written.get(node.op.name.removeprefix("holds_"))
             if operator is None or node.op is not builtin(node.op.name):

@@ -369,29 +369,13 @@ def test_symbols_of_py_metric_temporal_logic(formula: str, here: str) -> None:
 @pytest.mark.parametrize(
     ("formula", "here"),
     [
-        ("GFa", "always eventually a"),
-        ("~XXa", "not next next a"),
-        ("XG[0,1]FF(a)", "next always[0:1](eventually eventually a)"),
-        ("(G[0,+2]Fa & G~GFALSE)", "always[0:2](eventually a) and always(not always false)"),
-        ("(a U XTRUE)", "a until next true"),
-        ("(aGF -> Ga_F)", "aGF -> always a_F"),
+        ("prev(true, a)", "delay[1](a, true)"),
+        ("!prev(false, a) && b", "not delay[1](a, false) and b"),
+        ("F[0,2] prev(a, prev(true, b))", "eventually[0:2] delay[1](delay[1](b, true), a)"),
+        ("prev(0, x) > 1", "delay[1](x, 0) > 1"),
     ],
 )
-def test_operators_of_py_metric_temporal_logic_need_no_space(formula: str, here: str) -> None:
-    found = rtamt.parse(read_mtl(formula).text).formula
-    assert found == rtamt.parse(f"bool a\nbool aGF\nbool a_F\n{here}").formula
-
-
-def test_an_error_names_the_operators_of_py_metric_temporal_logic() -> None:
-    (rejected,) = read_mtl("(Ga U[0,1] Fb) Gc").rejected
-    assert rejected.reason == (
-        "expected an operator between ')' and 'G'\n"
-        "  line 1, column 16:\n    (Ga U[0,1] Fb) Gc\n                   ^"
-    )
-
-
-@pytest.mark.parametrize(
-    ("formula", "notes"), [("Ga", 2), ("G[1,inf]a", 2), ("F[0,3]a", 3), ("(F[0,3]a & (a W b))", 4)]
-)
-def test_windows_and_weak_until_of_py_metric_temporal_logic_have_notes(formula: str, notes: int) -> None:
-    assert len(read_mtl(formula).notes) == notes
+def test_the_previous_value_in_c2po_is_a_boolean_or_a_number(formula: str, here: str) -> None:
+    found = read_c2po(_FTSPEC % formula)
+    declared = "input bool a\ninput bool b\ninput float x\n"
+    assert rtamt.parse(found.text).formula == rtamt.parse(f"{declared}always({here})").formula
