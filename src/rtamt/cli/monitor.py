@@ -21,7 +21,7 @@ from rtamt.cli.command import (
 )
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.held_feed import HeldFeed
-from rtamt.cli.json_lines import STDIN
+from rtamt.cli.json_lines import STDIN, line_error
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
 from rtamt.cli.robustness_lines import Output
@@ -32,6 +32,7 @@ from rtamt.errors import StlError, TraceError
 from rtamt.lazy.modules import np
 from rtamt.metrics import add_metrics_options, exported
 from rtamt.rewrite.check import unbounded_future
+from rtamt.signals.data_errors import possible_times
 from rtamt.signals.sampling import HeldSampler
 from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.signal import Signal
@@ -204,7 +205,7 @@ def _follow(
 
     ``assumed``: whether nothing determines the period of samples without timestamps, and it matters.
     """
-    code = OK
+    code, noted = OK, False
     for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
         try:
             sample = samples.read(line, number)
@@ -214,9 +215,12 @@ def _follow(
             while samples.conversions:
                 complain(f"note: {STDIN}: {samples.conversions.pop(0)}")
             if assumed and sample is not None:
-                if sample[0] is None:
+                assumed = sample[0] is None
+                if assumed and samples.possible_times is not None:
+                    raise line_error(number, str(possible_times(samples.possible_times)))
+                if assumed and not noted:
                     complain(f"note: {STDIN}: the samples have no timestamps and are taken to be 1 s apart")
-                assumed = False
+                    noted = True
             problem = watched.take(*sample, number) if sample is not None else ""
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)

@@ -22,6 +22,7 @@ from rtamt.cli.rounded import Rounded, may_be_rounded
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy.dataclasses import replace
+from rtamt.lazy.modules import np
 from rtamt.readers.assemble import Choice, select, timestamps_of
 from rtamt.readers.csv import (
     Column,
@@ -37,6 +38,7 @@ from rtamt.readers.csv import (
 )
 from rtamt.readers.csv_cells import Cells
 from rtamt.readers.dates import is_date
+from rtamt.readers.first_column import FirstColumn, possible_field
 from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
@@ -158,6 +160,11 @@ class Samples:
             raise line_error(number, str(error).replace(f" of {STDIN}", "", 1), error.variable) from None
         return None
 
+    @property
+    def possible_times(self) -> str | None:
+        """The name of a first column of CSV that may hold the timestamps, as in a file of the lines so far."""
+        return None if self._rows is None else self._rows.possible_times
+
     def _convert(self, rows: CsvSamples) -> Callable[[str, int], Sample]:
         """Return the reader of rows, which converts values to their declared units."""
         found = {}
@@ -205,6 +212,11 @@ class _Timestamps:
         self._samples = 0
         self._cells: Cells | None = None
         self.column: TimestampColumn | None = None
+
+    @property
+    def guessed(self) -> bool:
+        """Whether no choice of the caller decides which column holds the timestamps."""
+        return self._choice.time is None
 
     def add(self, names: Iterable[str]) -> None:
         """Take further columns for signals."""
@@ -376,6 +388,10 @@ class CsvSamples:
         self._columns = [
             Column(name, self._header.names.index(f.column), skip_nan) for name, f in selection.signals
         ]
+        possible = None
+        if timestamps.column is None and timestamps.guessed and all(c.position for c in self._columns):
+            possible = possible_field([field_of(column, "") for column in self._header.names])
+        self._first_column = None if possible is None else FirstColumn(possible)
         self.units = {name: field.unit for name, field in selection.signals if field.unit}
         self._boolean: dict[str, bool] = {}
 
@@ -394,6 +410,10 @@ class CsvSamples:
         header: Header = self._header
         row = self._cells(text, number)
         check_width(row, header, number)
+        if self._first_column is not None:
+            first = row[0].strip()
+            value = float(first) if is_number(first) else first or None
+            self._first_column.take(np.array([value], dtype=np.float64 if is_number(first) else object))
         if self._timestamps.column is None:
             self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))
         empty = [c for c in self._columns if not row[c.position].strip()]
@@ -417,6 +437,13 @@ class CsvSamples:
         timestamps = self._timestamps.column
         timestamp = None if timestamps is None else row[header.names.index(timestamps.field.column)]
         return self._timestamps.sample(timestamp, values, number)
+
+    @property
+    def possible_times(self) -> str | None:
+        """The name of the first column if it may hold the timestamps, as far as rows were read."""
+        if self._first_column is None or self._timestamps.column is not None:
+            return None
+        return self._first_column.possible_times
 
     def _member(self, column: Column, row: Sequence[str], number: int) -> float | None:
         """Return the code of the member in a cell, None where a number is expected."""

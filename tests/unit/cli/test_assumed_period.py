@@ -7,6 +7,7 @@ import pytest
 
 SPEC = "always[0:2](x > 0)"
 NOTE = "no column holds timestamps: the samples are taken to be 1 s apart"
+STREAMED = "rtamt: note: stdin: the samples have no timestamps and are taken to be 1 s apart\n"
 UNKNOWN = (
     "the first column 'Zeit' may hold the timestamps: its values increase, but not by 1 from row to row; choose it "
     "with time='Zeit', on the command line --time-column Zeit, or give the period of the samples, such as period='1s', "
@@ -100,10 +101,34 @@ def test_explain_notes_what_was_left_out_of_a_recording(run, write):
     assert answer.out.endswith("\n\nnote: nan.csv: left out, NaN: 1 sample of x, the first at 1 s\n")
 
 
-@pytest.mark.parametrize("stdin", ["Zeit,x\n0,1\n0.1,2\n", '{"x": 1}\n{"x": 2}\n'], ids=["CSV", "JSON"])
+@pytest.mark.parametrize("more", [(), ("--keep-going",), ("--verdict", "eager")], ids=" ".join)
+def test_a_monitor_rejects_a_first_column_at_the_first_sample_that_shows_timestamps(run, more):
+    answer = run("monitor", "once[0:2](x > 0)", *more, stdin="Zeit,x\n0,1\n1,2\n1.1,3\n1.2,4\n")
+    assert (answer.code, answer.err) == (2, f"{STREAMED}rtamt: stdin, line 4: {UNKNOWN}\n")
+    assert answer.out.count("\n") == 2
+    for option in (("--period", "1s"), ("--time-column", "")):
+        answer = run("monitor", "once[0:2](x > 0)", *option, stdin="Zeit,x\n0,1\n0.1,2\n")
+        assert (answer.code, answer.err) == (0, "")
+    assert run("monitor", "once(x > 0)", stdin="Zeit,x\n0,1\n0.1,2\n").code == 0
+
+
+@pytest.mark.parametrize(
+    "rows", ["5,1\n6,2\n", "5,1\n4,2\n9,3\n", "a,1\nb,2\n", ",1\n1,2\n3,4\n", "0,1\n0,2\n"]
+)
+def test_a_first_column_that_counts_or_does_not_increase_has_a_note_only(run, rows):
+    answer = run("monitor", SPEC, stdin=f"first,x\n{rows}")
+    assert (answer.code, answer.err) == (0, STREAMED)
+
+
+def test_the_units_in_a_name_show_timestamps_at_the_first_sample_of_a_stream(run):
+    answer = run("monitor", SPEC, stdin="tick_us,x\n0,1\n1,2\n")
+    assert (answer.code, answer.out) == (2, "")
+    assert "stdin, line 2: the first column 'tick_us' may hold the timestamps" in answer.err
+
+
+@pytest.mark.parametrize("stdin", ["seq,x\n0,1\n1,2\n", '{"x": 1}\n{"x": 2}\n'], ids=["CSV", "JSON"])
 def test_a_monitor_notes_once_that_the_samples_of_a_stream_have_no_timestamps(run, stdin):
-    note = "rtamt: note: stdin: the samples have no timestamps and are taken to be 1 s apart\n"
-    assert run("monitor", SPEC, stdin=stdin).err == note
+    assert run("monitor", SPEC, stdin=stdin).err == STREAMED
     assert run("monitor", SPEC, "--period", "1s", stdin=stdin).err == ""
     assert run("monitor", "once(x > 0)", stdin=stdin).err == ""
 
