@@ -50,6 +50,13 @@ class StlError(Exception):
     """Base class of all exceptions of this library.
 
     Very long words of a message, such as a number of a million digits, are abbreviated.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("x >= 3").evaluate({"y": [1]})
+    ... except rtamt.StlError as error:
+    ...     print(error)
+    the data has no 'x'; signals: y
     """
 
     def __init__(self, message: object = "", *more: object) -> None:
@@ -60,6 +67,13 @@ class SpecificationError(StlError):
     """The text of a requirement is invalid.
 
     ``message`` is the sentence alone; ``str()`` adds line, column and a caret if the text is known.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("x >= 3 y")
+    ... except rtamt.SpecificationError as error:
+    ...     print(error.message, error.span)
+    expected an operator between '3' and 'y' Span(start=7, end=8)
     """
 
     def __init__(self, message: str, text: str | None = None, span: Span | None = None) -> None:
@@ -75,19 +89,54 @@ class SpecificationError(StlError):
 
 
 class ParseError(SpecificationError):
-    """The text is not a formula or specification file."""
+    """The text is not a formula or specification file.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("x >= 3 y")
+    ... except rtamt.ParseError as error:
+    ...     print(error.message)
+    expected an operator between '3' and 'y'
+    """
 
 
 class NameInFormulaError(SpecificationError):
-    """A name in the text is not declared."""
+    """A name in the text is not declared.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("float speed; sped <= 3")
+    ... except rtamt.NameInFormulaError as error:
+    ...     print(error)
+    'sped' is not declared; did you mean 'speed'?
+      line 1, column 14:
+        float speed; sped <= 3
+                     ^^^^
+    """
 
 
 class BoundError(SpecificationError):
-    """An interval is reversed, negative, not a multiple of the period, or unbounded where this is not allowed."""
+    """An interval is reversed, negative, not a multiple of the period, or unbounded where this is not allowed.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("once[2:1](x >= 3)")
+    ... except rtamt.BoundError as error:
+    ...     print(error.message)
+    the interval [2:1] is reversed: it ends before it begins
+    """
 
 
 class TraceError(StlError):
-    """The data is invalid; the message names the variable, the index and the time."""
+    """The data is invalid; the message names the variable, the index and the time.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("x >= 3").evaluate({"x": [1, float("nan")]})
+    ... except rtamt.TraceError as error:
+    ...     print(error.variable, error.index)
+    x 1
+    """
 
     def __init__(
         self,
@@ -104,7 +153,15 @@ class TraceError(StlError):
 
 
 class EvaluationError(StlError):
-    """A sub-formula is undefined at an instant; the message names both."""
+    """A sub-formula is undefined at an instant; the message names both.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("sqrt(x) >= 1").evaluate({"x": [1, -1]})
+    ... except rtamt.EvaluationError as error:
+    ...     print(str(error).partition(":")[0])
+    'sqrt(x)' has no value at sample 1, time 1 s
+    """
 
 
 class WaitedError(EvaluationError):
@@ -112,6 +169,11 @@ class WaitedError(EvaluationError):
 
     It rejects each batch that would release it, until :meth:`rtamt.Fleet.discard` forgets it. ``reason``: the message
     without this advice.
+
+    >>> import rtamt
+    >>> error = rtamt.WaitedError("'sqrt(x)' has no value for key 7 at 1 s", 7, 1.0)
+    >>> print(error)
+    'sqrt(x)' has no value for key 7 at 1 s; forget the sample with discard(7, 1.0), then give the batch again
     """
 
     def __init__(self, reason: str, key: Any, time: float) -> None:
@@ -125,18 +187,44 @@ class WaitedError(EvaluationError):
 
 
 class UsageError(StlError):
-    """A call, option or setting is invalid."""
+    """A call, option or setting is invalid.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.parse("x >= 3", time="discreet")
+    ... except rtamt.UsageError as error:
+    ...     print(error)
+    unknown time domain 'discreet'; did you mean 'discrete'? (time domains: discrete, dense)
+    """
 
 
 class RTAMTException(StlError):  # noqa: N818 - the name is the paper's API
-    """Raised by the classes of the paper's API."""
+    """Raised by the classes of the paper's API.
+
+    >>> import rtamt
+    >>> try:
+    ...     rtamt.StlDiscreteTimeSpecification().evaluate({"time": [0]})
+    ... except rtamt.RTAMTException as error:
+    ...     print(error)
+    RTAMT Exception: no specification has been read; set spec and call parse() first
+    """
 
     def __str__(self) -> str:
         return f"RTAMT Exception: {super().__str__()}"
 
 
 class STLParseException(RTAMTException):
-    """Raised by the paper's API for text that cannot be parsed."""
+    """Raised by the paper's API for text that cannot be parsed.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeSpecification()
+    >>> spec.spec = "always(x >= "
+    >>> try:
+    ...     spec.parse()
+    ... except rtamt.STLParseException as error:
+    ...     print(str(error).splitlines()[0])
+    RTAMT Exception: expected an operand after '>=', got the end of the text
+    """
 
 
 def line_and_column(text: str, offset: int) -> tuple[int, int]:

@@ -254,7 +254,16 @@ class OnlineInterpreter:
 
 
 class StlDiscreteTimeOnlineSpecificationCpp(StlDiscreteTimeOnlineSpecification):
-    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built."""
+    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeOnlineSpecificationCpp()
+    >>> spec.declare_var("x", "float")
+    >>> spec.spec = "once[0:1](x >= 3)"
+    >>> spec.parse()
+    >>> [spec.update(t, [("x", x)]) for t, x in enumerate([5.0, 1.0, 2.0])]
+    [2.0, 2.0, -1.0]
+    """
 
     @raises_rtamt
     def __init__(self) -> None:
@@ -297,7 +306,16 @@ class StlDiscreteTimeSpecification(StlDiscreteTimeOfflineSpecification, StlDiscr
 
 
 class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
-    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built."""
+    """The same with RTAMT's C++ back end named: raises :class:`RTAMTException` where the core is not built.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeSpecificationCpp()
+    >>> spec.declare_var("x", "float")
+    >>> spec.spec = "once[0:1](x >= 3)"
+    >>> spec.parse()
+    >>> spec.evaluate({"time": [0, 1, 2], "x": [5.0, 1.0, 2.0]})
+    [[0.0, 2.0], [1.0, 2.0], [2.0, -1.0]]
+    """
 
     @raises_rtamt
     def __init__(self, semantics: Semantics = Semantics.STANDARD) -> None:

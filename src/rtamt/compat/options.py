@@ -14,7 +14,13 @@ if TYPE_CHECKING:
 
 
 class Semantics(Enum):
-    """The semantics of predicates (the paper's interface-aware semantics)."""
+    """The semantics of predicates (the paper's interface-aware semantics).
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeSpecification(semantics=rtamt.Semantics.OUTPUT_ROBUSTNESS)
+    >>> print(spec.semantics)
+    output-robustness
+    """
 
     STANDARD = "standard"
     OUTPUT_ROBUSTNESS = "output-robustness"
@@ -27,7 +33,13 @@ class Semantics(Enum):
 
 
 class Language(Enum):
-    """The back end in RTAMT; here both run the compiled core, and PYTHON also works without it."""
+    """The back end in RTAMT; here both run the compiled core, and PYTHON also works without it.
+
+    >>> import rtamt
+    >>> spec = rtamt.StlDiscreteTimeSpecification(language=rtamt.Language.CPP)
+    >>> print(rtamt.Language.CPP)
+    C++
+    """
 
     PYTHON = "python"
     CPP = "C++"
@@ -37,7 +49,12 @@ class Language(Enum):
 
 
 class TimeInterpretation(Enum):
-    """Whether a signal is defined only at its samples or also between them."""
+    """Whether a signal is defined only at its samples or also between them.
+
+    >>> import rtamt
+    >>> print(rtamt.TimeInterpretation.DENSE)
+    dense-time
+    """
 
     DISCRETE = "discrete_time"
     DENSE = "dense-time"
@@ -47,7 +64,12 @@ class TimeInterpretation(Enum):
 
 
 class StlIOType(Enum):
-    """The role of a variable: input or output."""
+    """The role of a variable: input or output.
+
+    >>> import rtamt
+    >>> rtamt.StlIOType.IN.name
+    'IN'
+    """
 
     IN = 0
     OUT = 1
