@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, UsageError, no_specification, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
+from rtamt.specification_data import over_data, require_period, sample
 from rtamt.verdicts.offline import findings_of
 
 if TYPE_CHECKING:
@@ -204,11 +205,11 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
     """
     query = spec._query()
     if spec.groups:
-        over, bound = spec._over_data(query, data)
+        over, bound = over_data(spec, query, data)
         return evaluate_requirements(over, bound)
-    sampled = spec._sample(query, spec.binding.applied(data))
+    sampled = sample(spec, query, spec.binding.applied(data))
     recording = spec._with_units(query.record(sampled, spec.input_names, spec.types))
-    spec._require_period(query, sampled)
+    require_period(spec, query, sampled)
     if spec.resolved is not None:
         recording = recording.ended_by(spec.resolved[0].input_names)
     spec._check(query, recording)

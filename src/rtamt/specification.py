@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property, wraps
 
 from rtamt.engine import engine_of
-from rtamt.errors import EvaluationError, TraceError, UsageError
+from rtamt.errors import EvaluationError, UsageError
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import check_unit
@@ -140,8 +140,9 @@ class Specification(OnlineSpecification):
         """Return the result of any data; ``plain``: without settings."""
         if self.groups:
             from rtamt.signals.data_errors import nan_of_members
+            from rtamt.specification_data import over_data
 
-            spec, data = self._over_data(query, data)
+            spec, data = over_data(self, query, data)
             with nan_of_members(self.groups):
                 return spec.evaluate(
                     data,
@@ -152,17 +153,24 @@ class Specification(OnlineSpecification):
                     ranges=ranges,
                 )
         if not self._reads_as_given:
-            data = self._sample(query, self.binding.applied(data))
+            from rtamt.specification_data import sample
+
+            data = sample(self, query, self.binding.applied(data))
             plain = False
         recording = None
         if uncertainty is None and ranges is None:
             recording = query.read(data, self.input_names, self.types)
         if recording is None:
-            recording = self._record_inexact(query, data, uncertainty, ranges)
+            from rtamt.specification_data import record_inexact
+
+            recording = record_inexact(self, query, data, uncertainty, ranges)
             # Signals with separate time bases need conversion even if they are plain; this is detected once.
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
-        self._require_period(query, data)
+        if len(self.requirements) > 1:
+            from rtamt.specification_data import require_period
+
+            require_period(self, query, data)
         if self.units:
             recording = self._with_units(recording)
         self._check(query, recording)
@@ -218,41 +226,6 @@ class Specification(OnlineSpecification):
 
         return evaluate_rows(self, query, rows, evaluate)
 
-    def _over_data(self, query: Query, data: Any) -> tuple[Specification, Any]:
-        """Return the specification over the members of groups that data has, and data with their presence."""
-        from rtamt.signals import members
-        from rtamt.signals.trace import Trace
-
-        rule = self.sampling
-        own_time_bases = query.domain.own_time_bases or (rule is not None and rule.hold)
-        found = members.bound(
-            self.binding.applied(data),
-            self.groups,
-            self.input_names,
-            own_time_bases=own_time_bases,
-            source=data.source if isinstance(data, Trace) else "the data",
-            regular=own_time_bases or query.domain.step is not None,
-        )
-        return self.over(found.members), found.data
-
-    def _require_period(self, query: Query, data: Any) -> None:
-        """Raise :class:`TraceError` if one of several requirements needs a period that nothing gives."""
-        if len(self.requirements) > 1 and query.domain.sampled and query.domain.period is None:
-            from rtamt.signals.assumed_period import require_times_of_each  # monitors do not wait for it
-
-            require_times_of_each(data, [one.input_names for one in self.requirements.values()])
-
-    def _sample(self, query: Query, data: Any) -> Any:
-        """Return data with the samples that the sampling rule takes of it."""
-        if self.sampling is None:
-            return data
-        rule = query.domain.sampling(self.sampling)
-        if rule is None or not rule.hold:
-            return data
-        from rtamt.signals.sampling import sampled
-
-        return sampled(data, self.input_names, rule, query.domain.period or rule.period, query.unit)
-
     def _result(self, query: Query, recording: DomainTrace) -> Result:
         """Return the result on a normalised recording; the formula must have been checked."""
         from rtamt.results import Result, requirements_of
@@ -275,33 +248,6 @@ class Specification(OnlineSpecification):
         return Result(
             self, recording, self._evaluators.signals(query.formulas, recording)[0], query.semantics
         )
-
-    def _record_inexact(self, query: Query, data: Any, uncertainty: Any, ranges: Any) -> DomainTrace:
-        """Return a recording that may have missing and uncertain samples."""
-        from rtamt.signals.inexact import Uncertainty
-
-        declared = Uncertainty.of(uncertainty, ranges, self.input_names)
-        recording, missing = self._record(query, data)
-        if self.resolved is not None:
-            recording = recording.ended_by(self.resolved[0].input_names)
-        if missing or uncertainty is not None:  # exact recordings are not checked
-            declared = declared.within(self.ranges)
-        return declared.applied(recording, missing)
-
-    def _record(self, query: Query, data: Any) -> tuple[DomainTrace, dict[str, Any]]:
-        """Return a recording, and which samples of its variables are missing."""
-        try:
-            return query.record(data, self.input_names, self.types), {}
-        except TraceError as error:
-            if error.variable not in self.input_names:
-                raise
-            from rtamt.signals.inexact import fill_gaps
-
-            own_time_bases = query.domain.own_time_bases
-            filled, missing = fill_gaps(data, self.input_names, own_time_bases=own_time_bases)
-            if not missing:
-                raise
-            return query.record(filled, self.input_names, self.types), missing
 
     def _with_units(self, recording: DomainTrace) -> DomainTrace:
         """Return a recording with the declared units of the variables whose source names none."""
