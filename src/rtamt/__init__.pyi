@@ -12,6 +12,8 @@ from rtamt.compat.dense import StlDenseTimeSpecification as StlDenseTimeSpecific
 from rtamt.compat.discrete import (
     StlDiscreteTimeOfflineSpecification as StlDiscreteTimeOfflineSpecification,
 )
+from rtamt.compat.discrete_online import LTLDiscreteTimeSpecification as LTLDiscreteTimeSpecification
+from rtamt.compat.discrete_online import LTLSpecification as LTLSpecification
 from rtamt.compat.discrete_online import (
     StlDiscreteTimeOnlineSpecification as StlDiscreteTimeOnlineSpecification,
 )
@@ -22,6 +24,16 @@ from rtamt.compat.discrete_online import STLDiscreteTimeSpecification as STLDisc
 from rtamt.compat.discrete_online import StlDiscreteTimeSpecification as StlDiscreteTimeSpecification
 from rtamt.compat.discrete_online import StlDiscreteTimeSpecificationCpp as StlDiscreteTimeSpecificationCpp
 from rtamt.compat.discrete_online import STLSpecification as STLSpecification
+from rtamt.compat.failures import LTLException as LTLException
+from rtamt.compat.failures import LTLNotImplementedException as LTLNotImplementedException
+from rtamt.compat.failures import LTLOfflineException as LTLOfflineException
+from rtamt.compat.failures import LTLParseException as LTLParseException
+from rtamt.compat.failures import LTLPastifyException as LTLPastifyException
+from rtamt.compat.failures import LTLSpecificationException as LTLSpecificationException
+from rtamt.compat.failures import STLException as STLException
+from rtamt.compat.failures import STLNotImplementedException as STLNotImplementedException
+from rtamt.compat.failures import STLOfflineException as STLOfflineException
+from rtamt.compat.failures import STLSpecificationException as STLSpecificationException
 from rtamt.compat.interface_aware import (
     IAStlInputRobustnessDenseTimeOfflineSpecification as IAStlInputRobustnessDenseTimeOfflineSpecification,
 )

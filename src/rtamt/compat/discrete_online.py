@@ -326,3 +326,5 @@ class StlDiscreteTimeSpecificationCpp(StlDiscreteTimeSpecification):
 #: Spellings of older programs and of the paper's ROS code.
 STLSpecification = StlDiscreteTimeSpecification
 STLDiscreteTimeSpecification = StlDiscreteTimeSpecification
+#: LTL is STL without bounds.
+LTLSpecification = LTLDiscreteTimeSpecification = StlDiscreteTimeSpecification

@@ -32,3 +32,10 @@ def raises_rtamt(method: Callable[P, R]) -> Callable[P, R]:
             raise RTAMTException(str(error)) from error
 
     return translating
+
+
+#: Exceptions of RTAMT 0.3: errors of the classes are an RTAMTException, and those in the text an STLParseException.
+STLException = STLOfflineException = STLSpecificationException = STLNotImplementedException = RTAMTException
+LTLException = LTLOfflineException = LTLSpecificationException = LTLNotImplementedException = RTAMTException
+LTLPastifyException = RTAMTException
+LTLParseException = STLParseException

@@ -20,9 +20,26 @@ CLASSES = (
 )
 
 
+@pytest.mark.parametrize("language", ["STL", "LTL"])
+def test_exceptions_of_older_versions_are_raised(language):
+    spec = rtamt.LTLSpecification()
+    spec.declare_var("x", "float")
+    spec.spec = "always x >="
+    with pytest.raises(getattr(rtamt, f"{language}ParseException")):
+        spec.parse()
+    spec.spec = "always x >= 0"
+    spec.parse()
+    with pytest.raises(rtamt.LTLPastifyException):
+        spec.pastify()
+    for kind in ("", "NotImplemented", "Offline", "Specification"):
+        with pytest.raises(getattr(rtamt, f"{language}{kind}Exception")):
+            spec.update(0, [("x", 1.0)])
+
+
 def test_old_spellings_are_the_same_classes():
     assert rtamt.STLSpecification is rtamt.StlDiscreteTimeSpecification
     assert rtamt.STLDiscreteTimeSpecification is rtamt.StlDiscreteTimeSpecification
+    assert rtamt.LTLSpecification is rtamt.LTLDiscreteTimeSpecification is rtamt.StlDiscreteTimeSpecification
     for cls in CLASSES:
         assert getattr(legacy, cls.__name__) is cls
     assert exception.RTAMTException is rtamt.RTAMTException
