@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import ExitStack
 from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,15 @@ MOST_ROWS = 2**20
 MOST_CELLS = 2**28
 
 
+#: Bytes of a sheet that are examined at a time.
+_BLOCK = 2**20
+#: A cell with a formula and no value; the value of one that gives a text may be empty.
+_NO_VALUE = re.compile(
+    rb'<c r="(?P<cell>[A-Z0-9]+)"(?![^>]*t="str")[^>]*>\s*<f\b(?:[^>]*/>|[^>]*>[^<]*</f>)\s*'
+    rb"(?:<v\s*/>|<v>\s*</v>)?\s*</c>"
+)
+
+
 def open_excel(path: str, sheet: str | None = None) -> Source:
     """Open a workbook. ``sheet``: by default the one sheet that has something in it."""
     openpyxl = library("openpyxl", "Excel")
@@ -37,6 +47,7 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         for page in book.worksheets:
             page.reset_dimensions()  # what the file claims them to be, not what they are
         name = _choose(path, found, sheet)
+        _check_formulas(path, found[name])
         rows = _filled_rows(found[name], path)
         header = next(rows, None)
         if header is None:
@@ -64,6 +75,22 @@ def _check_size(path: str, file: Any) -> None:
             f"a workbook: save its sheets as CSV, or split it"
         )
     file.seek(0)
+
+
+def _check_formulas(path: str, page: Any) -> None:
+    """Raise :class:`TraceError` at a formula without its value, which nothing has computed since it was written."""
+    rest = b""
+    with page._get_source() as source:
+        while block := source.read(_BLOCK):
+            text = rest + block
+            found = _NO_VALUE.search(text) if b"<f" in text else None
+            if found is not None:
+                cell = found["cell"].decode("ascii", "replace")
+                raise TraceError(
+                    f"the cell {cell} in the sheet '{page.title}' of {path} is a formula without its value: open the "
+                    f"workbook in a spreadsheet and save it"
+                )
+            rest = text[max(text.rfind(b"<c "), len(text) - _BLOCK, 0) :]
 
 
 def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:

@@ -63,6 +63,33 @@ def test_an_empty_row_of_a_sheet_without_timestamps_is_a_missing_sample(tmp_path
     assert rtamt.read(path, time="").channel("x").values.tolist() == [1, 1]
 
 
+@pytest.mark.parametrize("rows", [0, 30_000])
+def test_a_formula_that_nothing_has_computed_is_rejected(tmp_path, rows):
+    log = [["time", "x"], *([i, 1] for i in range(rows)), [rows, 1], [rows + 1, "=1+1"], [rows + 2, 1]]
+    path = workbook(tmp_path / "a.xlsx", log=log)
+    with pytest.raises(rtamt.TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"the cell B{rows + 3} in the sheet 'log' of {path} is a formula without its value: open the workbook in a "
+        f"spreadsheet and save it"
+    )
+
+
+def test_a_formula_with_its_value_or_with_an_empty_text_is_read(tmp_path):
+    path = workbook(tmp_path / "a.xlsx", log=[["time", "x"], [0, 1], [1, "=1+1"], [2, "=A1"], [3, 4]])
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    sheet = parts["xl/worksheets/sheet1.xml"]
+    assert sheet.count(b"<f>") == 2
+    sheet = sheet.replace(b"<f>1+1</f><v></v>", b"<f>1+1</f><v>2</v>")
+    sheet = sheet.replace(b'<c r="B4"><f>', b'<c r="B4" t="str"><f>')
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, part in parts.items():
+            archive.writestr(name, sheet if name == "xl/worksheets/sheet1.xml" else part)
+    trace = rtamt.read(path)
+    assert (trace["x"].times.tolist(), trace["x"].values.tolist()) == ([0, 1, 3], [1, 2, 4])
+
+
 @pytest.mark.parametrize("name", ["when", None])
 def test_an_empty_row_of_a_sheet_with_dates_is_no_row(tmp_path, name):
     dates = [dt.datetime(2024, 5, 1, 10, 0, second) for second in (0, 1)]
