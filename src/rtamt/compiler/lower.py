@@ -70,6 +70,10 @@ class Lowering(Emission, ABC):
         self.parameters: dict[Parameter, int] = {}
         #: The index of each operator's node, by its identity.
         self.found: dict[int, int] = {}
+        #: The groups of a recipe that are done, and the places of its steps, by the identity of a node that waits.
+        self.begun: dict[int, tuple[int, list[int]]] = {}
+        #: Bounds, and their steps, by identity: most intervals of a text share a few bounds.
+        self.counts: dict[int, tuple[Fraction, int]] = {}
         self.variables: dict[str, int] = {}
         self.orders: dict[Operator, Order] = {}
         self.calls: dict[CallSite, int] = {}
@@ -119,73 +123,68 @@ class Lowering(Emission, ABC):
         """Emit the instructions of an operator and of what is below it, and return the index of its own."""
         # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
         found, orders = self.found, self.orders
+        known = found.get(id(formula))
+        if known is not None:
+            return known
         leaf, pointwise = self._lower_leaf, self.pointwise
-        stack: list[Any] = [formula]  # of operators
-        while stack:
+        waiting: list[Apply] = []  # for an operand
+        node = formula
+        while True:
             # A node is visited again until its operands, in the order in which it reads them, are lowered.
-            node = stack[-1]
-            if id(node) in found:
-                stack.pop()
-                continue
             try:
                 alone, groups = orders[node.op]
             except KeyError:
                 alone, groups = orders[node.op] = order_of(node.op)
+            missing: Any = None
             if alone is not None:  # most, so that no function is called for an operand that is found
                 code, first, second = alone
-                left = node.args[first]
+                args = node.args
+                left = args[first]
                 place = found.get(id(left)) if left.__class__ is Apply else leaf(left)
                 if place is None:
-                    stack.append(left)
+                    missing = left
                 elif second is None:
                     place = pointwise(code, node, place)
                 else:
-                    right = node.args[second]
+                    right = args[second]
                     b = found.get(id(right)) if right.__class__ is Apply else leaf(right)
                     if b is None:
-                        stack.append(right)
-                        place = None
+                        missing = right
                     else:
                         place = pointwise(code, node, place, b)
             elif groups:
-                place = self._lower_groups(node, groups, stack)
+                place, missing = self._lower_groups(node, groups)
             else:
-                place = self._lower_alone(node, stack)
-            if place is not None:
-                found[id(node)] = place
-                stack.pop()
-        return found[id(formula)]
+                places = []
+                for arg in node.args:
+                    place = found.get(id(arg)) if arg.__class__ is Apply else leaf(arg)
+                    if place is None:
+                        missing = arg
+                        break
+                    places.append(place)
+                else:
+                    place = self._lower_apply(node, node.op.kernel, self.align(places))
+            if missing is not None:
+                waiting.append(node)
+                node = missing
+                continue
+            assert place is not None
+            found[id(node)] = place
+            if not waiting:
+                return place
+            node = waiting.pop()
 
-    def _operand(self, node: Formula, stack: list[Any]) -> int | None:
-        """Return the index of an operand; None if it has to be lowered first, for which it is put on the stack."""
-        if not isinstance(node, Apply):
-            return self._lower_leaf(node)
-        place = self.found.get(id(node))
-        if place is None:
-            stack.append(node)
-        return place
-
-    def _lower_alone(self, node: Apply, stack: list[Any]) -> int | None:
-        """Return the index of a node that is not expanded; None if an operand has to be lowered first."""
-        places = []
-        for arg in node.args:
-            place = self._operand(arg, stack)
-            if place is None:
-                return None
-            places.append(place)
-        return self._lower_apply(node, node.op.kernel, self.align(places))
-
-    def _lower_groups(self, node: Apply, groups: Sequence[Group], stack: list[Any]) -> int | None:
-        """Emit steps of a recipe, and return the index of the last one; None if an operand has to be lowered first.
-
-        Steps that were emitted before are found again.
-        """
-        parts = [-1] * len(node.args)
-        for reads, steps in groups:
+    def _lower_groups(self, node: Apply, groups: Sequence[Group]) -> tuple[int, None] | tuple[None, Formula]:
+        """Emit steps of a recipe, and return the index of the last one, or else the operand to be lowered first."""
+        begun = self.begun.pop(id(node), None)
+        done, parts = (0, [-1] * len(node.args)) if begun is None else begun
+        for reads, steps in groups[done:]:
             for place in reads:
-                part = self._operand(node.args[place], stack)
+                arg = node.args[place]
+                part = self.found.get(id(arg)) if arg.__class__ is Apply else self._lower_leaf(arg)
                 if part is None:
-                    return None
+                    self.begun[id(node)] = done, parts
+                    return None, arg
                 parts[place] = part
             for code, core, places in steps:
                 if code is not None:  # most
@@ -195,7 +194,8 @@ class Lowering(Emission, ABC):
                     parts.append(self._lower_apply(core, core.op.kernel, operands))
                 else:
                     parts.append(self._lower_leaf(core))
-        return parts[-1]
+            done += 1
+        return parts[-1], None
 
     def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
         """Return the index of an operator over aligned operands."""
@@ -219,19 +219,19 @@ class Lowering(Emission, ABC):
 
     def _lower_leaf(self, node: Formula) -> int:
         """Return the index of a variable or a constant."""
+        if node.__class__ is Const:  # no parameter
+            return self.constant(node.value, node)
         if isinstance(node, Var):
             place = self.variables.get(node.name)  # most occur several times
             if place is None:
                 assert not node.bound, "quantifiers are resolved before"
                 place = self.variables[node.name] = self.add("input", node, n=self.places[node.name])
             return place
-        assert isinstance(node, Const)
-        if isinstance(node, Parameter):
-            known = self.parameters.get(node)
-            if known is None:
-                known = self.parameters[node] = self.parameter(node.value, node)
-            return known
-        return self.constant(node.value, node)
+        assert isinstance(node, Parameter)
+        known = self.parameters.get(node)
+        if known is None:
+            known = self.parameters[node] = self.parameter(node.value, node)
+        return known
 
     # ---- intervals in steps ------------------------------------------------------------------------
 
@@ -242,6 +242,13 @@ class Lowering(Emission, ABC):
         count, rest = divmod(a * d, b * c)
         assert rest == 0, "bounds are checked before compilation"
         return count
+
+    def count(self, bound: Fraction) -> int:
+        """Return a bound of the formulas in steps."""
+        known = self.counts.get(id(bound))
+        if known is None:
+            known = self.counts[id(bound)] = bound, self.whole(bound)
+        return known[1]
 
     def steps(self, bound: Fraction) -> int:
         """Return a bound in steps, clipped to the length of the trace."""
@@ -254,7 +261,7 @@ class Lowering(Emission, ABC):
             return 0, None
         begin, end = node.interval.begin, node.interval.end
         if self.clip is None:
-            return self.whole(begin), None if end is None else self.whole(end)
+            return self.count(begin), None if end is None else self.count(end)
         # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
         first = self.steps(begin)
         return first, None if end is None else first + self.steps(end - begin)
@@ -288,14 +295,14 @@ class Lowering(Emission, ABC):
             if end is None:
                 x = self.add(f"run_{kernel.reduce}", node, x, lag=lag)
             else:
-                x = self.slide(kernel.reduce, x, end - begin + self.point, lag, node)
+                x = self.extremum(kernel.reduce, x, end - begin + self.point, lag, node)
             return self.moved(x, begin, fill, lag, node) if begin else x
         assert end is not None, "unbounded future is cut off before"
         if end == 0:
             return x
         if begin == end:
             return self.moved(x, 0, fill, lag + end, node)
-        return self.slide(kernel.reduce, x, end - begin + self.point, lag + end, node)
+        return self.extremum(kernel.reduce, x, end - begin + self.point, lag + end, node)
 
     def rank(self, node: Apply, x: int) -> int:
         """Lower the k-th largest value in a window, whose values outside the trace count as the same infinity."""
@@ -321,6 +328,12 @@ class Lowering(Emission, ABC):
             )  # of a window that is clipped to the trace, so many are never inside
             x = self.add(f"rank_{reduce}", node, x, n=width, x=float(order), lag=lag)
         return self.moved(x, begin, outside, lag, node) if past and begin else x
+
+    def extremum(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
+        """Return the extremum over the last ``width`` steps."""
+        if width == self.point:
+            return x
+        return self.emit((_SLIDES[reduce], x, NO_OPERAND, 0, width, 0.0, lag), origin)
 
     def slide(self, reduce: str, x: int, width: int, lag: int, origin: Formula) -> int:
         """Return the extremum or the sum over the last ``width`` steps."""

@@ -56,8 +56,8 @@ def contents(formula: Formula) -> Contents:
     if kept is not None:
         return kept
     nodes = postorder(formula)
-    leaves = [node for node in nodes if not isinstance(node, Apply)]
-    applied = [node for node in nodes if isinstance(node, Apply)]
+    leaves = [node for node in nodes if node.__class__ is not Apply]
+    applied: list[Any] = [node for node in nodes if node.__class__ is Apply]
     timed = [node for node in applied if node.interval is not None]
     untimed = frozenset([node.op for node in applied if node.interval is None])
     operators = untimed.union([node.op for node in timed])
@@ -87,7 +87,7 @@ class LargeContents:
 
 def _variables_in(leaves: Sequence[Formula]) -> tuple[tuple[str, ...], tuple[Var, ...]]:
     """Return the names of the variables, and those that are no plain numbers."""
-    free = [node for node in leaves if isinstance(node, Var) and not node.bound]
+    free: list[Any] = [node for node in leaves if node.__class__ is Var]  # no field of a member
     typed = [node for node in free if node.type is not None and isinstance(node.type, Boolean | Enumeration)]
     return tuple(dict.fromkeys([node.name for node in free])), tuple(typed)
 

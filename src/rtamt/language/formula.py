@@ -325,12 +325,12 @@ def postorder(*formulas: Formula) -> tuple[Formula, ...]:
 def _distinct(formulas: tuple[Formula, ...]) -> tuple[Formula, ...]:
     """Return every distinct node object of formulas, operands first."""
     found: list[Formula] = []
-    stack = list(formulas)
+    stack: list[Any] = list(formulas)
     limit = _UNCHECKED
     while stack:  # the last operands first, each before its own operands
         node = stack.pop()
         found.append(node)
-        if isinstance(node, Apply):
+        if node.__class__ is Apply:
             stack += node.args
         elif len(found) > limit:  # a formula that shares nodes may have too many to walk
             if _repeats(found):

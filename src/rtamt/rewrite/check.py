@@ -74,12 +74,18 @@ def check_bounds(
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
     a, b = step.as_integer_ratio()
+    known: dict[
+        int, int
+    ] = {}  # the steps of bounds, by identity: most intervals of a text share a few bounds
     for node in contents(spelled_out(formula)).timed:
         interval = node.interval
         assert interval is not None
         counts: list[int] = []
         for bound in (interval.begin, interval.end):
             if bound is None:
+                continue
+            if id(bound) in known:
+                counts.append(known[id(bound)])
                 continue
             c, d = bound.as_integer_ratio()
             count, rest = divmod(c * b, d * a)  # a division of fractions costs ten times as much
@@ -98,6 +104,7 @@ def check_bounds(
                     text,
                     interval.span or node.span,
                 )
+            known[id(bound)] = count
             counts.append(count)
         if len(counts) == 2 and counts[1] - interval.end_open < counts[0] + interval.begin_open:
             from rtamt.language.printing.printer import interval_text
