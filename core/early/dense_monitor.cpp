@@ -47,6 +47,8 @@ DenseMonitor::DenseMonitor(Graph graph, DenseSettings settings)
     }
     for (const std::uint32_t output : settings.outputs)
         outputs_.emplace_back(output, settings.decides, engine_);
+    postpones_ = samples_.late() && !settings.decides && !causes_ && !settings.several &&
+                 !engine_.may_fail();
 }
 
 // ---- samples ------------------------------------------------------------------------------------
@@ -60,18 +62,25 @@ void DenseMonitor::stage(Tick time, std::span<const Given> given, std::optional<
 }
 
 void DenseMonitor::stage_watermark(Tick time) {
+    catch_up();
     at_ = time;
     before_ = samples_.newest();
     samples_.close(time);
 }
 
 void DenseMonitor::stage_finish() {
+    catch_up();
     before_ = samples_.newest();
     at_ = before_.value_or(0);
     samples_.finish();
 }
 
 std::optional<DenseMonitor::Failure> DenseMonitor::take(Tick time, std::span<const Given> given) {
+    if (postpones_ && begun_ && !given.empty()) {
+        postpone(time, given);
+        return std::nullopt;
+    }
+    catch_up();
     stage(time, given, std::nullopt);
     return learn();
 }
@@ -128,8 +137,7 @@ void DenseMonitor::accept() {
         return;
     }
     if (begins_) rehearsal_.clear();
-    for (DenseOutput& output : outputs_)
-        output.collect(engine_, start(), at_, begins_ ? -1 : *before_ - start(), newest());
+    report();
     if (at_start_) at_start_->read(engine_);
     if (causes_) causes_->read(engine_, *at_start_, observations_);
     if (finished_) return; // what was kept can still be read
@@ -137,24 +145,79 @@ void DenseMonitor::accept() {
     if (++calls_ % pause == 0) settle();
 }
 
+// What the last call has changed.
+void DenseMonitor::report() {
+    for (DenseOutput& output : outputs_)
+        output.collect(engine_, start(), at_, begins_ ? -1 : *before_ - start(), newest());
+}
+
+// ---- late samples -------------------------------------------------------------------------------
+
+void DenseMonitor::postpone(Tick time, std::span<const Given> given) {
+    if (!postponed_.empty()) {
+        take_closed();
+        samples_.postpone();
+        others_ = true;
+    }
+    postponed_.assign(given.begin(), given.end());
+    begins_ = false;
+    stage(time, given, std::nullopt);
+    closed_ = *samples_.closed() - start();
+    if (++calls_ % pause == 0) settle();
+}
+
+// Those of earlier calls that no other one can precede.
+void DenseMonitor::take_closed() {
+    samples_.collect_closed(observations_);
+    if (!observations_.empty()) apply();
+}
+
+void DenseMonitor::catch_up() {
+    if (postponed_.empty()) return;
+    if (others_) {
+        samples_.rollback();
+        samples_.collect(observations_);
+        apply();
+        samples_.commit();
+        stage(at_, postponed_, std::nullopt);
+    }
+    samples_.collect(observations_);
+    apply();
+    samples_.commit();
+    report();
+    postponed_.clear();
+    others_ = false;
+}
+
+// The engine takes what has been collected, which cannot fail.
+void DenseMonitor::apply() {
+    engine_.settle_inputs(std::ranges::min(samples_.settled()));
+    (void)engine_.learn(observations_, newest());
+    if (at_start_) at_start_->read(engine_);
+}
+
 // ---- results ------------------------------------------------------------------------------------
 
-std::vector<BoundChange> DenseMonitor::changes(std::size_t output) const {
+std::vector<BoundChange> DenseMonitor::changes(std::size_t output) {
+    catch_up();
     return outputs_[output].changes(engine_, start());
 }
 
-std::vector<BoundChange> DenseMonitor::runs(std::size_t output) const {
+std::vector<BoundChange> DenseMonitor::runs(std::size_t output) {
     if (!begun_) return {};
+    catch_up();
     return outputs_[output].runs(engine_, start(), newest());
 }
 
-std::optional<Bounds> DenseMonitor::at_start() const {
+std::optional<Bounds> DenseMonitor::at_start() {
     if (!at_start_ || at_start_->size() == 0) return std::nullopt;
+    catch_up();
     return at_start_->value();
 }
 
-std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) const {
+std::optional<Bounds> DenseMonitor::at(std::size_t output, Tick time) {
     if (!begun_) return std::nullopt;
+    catch_up();
     return outputs_[output].at(engine_, time - start());
 }
 
@@ -176,6 +239,7 @@ std::vector<BoundChange> DenseMonitor::caused_up_to(std::size_t output, Tick las
 std::variant<Bounds, DenseMonitor::Failure> DenseMonitor::suppose(std::optional<std::size_t> output,
                                                                   Tick time,
                                                                   std::span<const Supposed> later) {
+    catch_up();
     std::vector<BoundsEngine::Observation> observations;
     for (std::size_t k = 0; k < later.size(); ++k) {
         const Supposed& each = later[k];
@@ -215,14 +279,16 @@ std::optional<Tick> DenseMonitor::complete() const noexcept {
 // ---- clean-up -----------------------------------------------------------------------------------
 
 void DenseMonitor::settle() {
+    const Tick closed = std::ranges::min(samples_.settled());
     std::ranges::fill(wanted_, forever);
     for (DenseOutput& output : outputs_) {
+        if (!postponed_.empty()) output.expect(*before_ - start(), newest());
         Tick& wanted = wanted_[output.ref() / 2];
         wanted = std::min(wanted, output.settle(engine_, closed_));
     }
-    if (at_start_) at_start_->settle(engine_, closed_, wanted_);
-    if (causes_) causes_->settle(engine_, closed_, wanted_);
-    engine_.settle(closed_, wanted_);
+    if (at_start_) at_start_->settle(engine_, closed, wanted_);
+    if (causes_) causes_->settle(engine_, closed, wanted_);
+    engine_.settle(closed, wanted_);
 }
 
 std::size_t DenseMonitor::bytes() const noexcept {
@@ -233,6 +299,7 @@ std::size_t DenseMonitor::bytes() const noexcept {
 }
 
 void DenseMonitor::transfer(Snapshot& snapshot) {
+    catch_up();
     engine_.transfer(snapshot);
     if (at_start_) at_start_->transfer(snapshot);
     if (causes_) causes_->transfer(snapshot);

@@ -3,6 +3,12 @@
 // Times are ticks of the caller; the engine counts from the start of the trace. An instant of which
 // something is known is reported when a sample of any input has reached it.
 //
+// Samples that may be late change bounds when no sample at their ticks or before can arrive any
+// more, or when somebody reads bounds. Without a reader the engine thus takes them in the order of
+// time, however they come, and each of them once. A reader of changes gets those of the last call:
+// all others are taken before it. Operations that may have no value are computed at once, as they
+// may be an error.
+//
 // Cost: that of the engine. Memory: its runs, and samples as Samples keeps them.
 #pragma once
 
@@ -74,10 +80,10 @@ class DenseMonitor {
     [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept {
         return outputs_[output].decisions();
     }
-    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
+    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output);
 
     // The bounds at the start, where they are computed.
-    [[nodiscard]] std::optional<Bounds> at_start() const;
+    [[nodiscard]] std::optional<Bounds> at_start();
 
     // What the last call caused, where that is required: at the start of the trace, of an output
     // there or at a later time, and at all times, in order.
@@ -101,8 +107,8 @@ class DenseMonitor {
 
     // The bounds of an output at a tick; none before the first that is held, or before the trace
     // has started. All of them, up to the newest sample. What is final is held for some more calls.
-    [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time) const;
-    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output) const;
+    [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time);
+    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output);
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
 
     // What an output is in ticks from the start of the trace on.
@@ -135,14 +141,23 @@ class DenseMonitor {
     Tick closed_ = -1; // the last tick of the trace before its end that is final
     bool begun_ = false;
     bool finished_ = false;
+    bool postpones_ = false;
     // Of what is staged: its date, the newest sample before, and whether the trace begins with it.
     Tick at_ = 0;
     std::optional<Tick> before_;
     bool begins_ = false;
+    // The samples of the last call, if they are postponed, and whether others before are as well.
+    std::vector<Given> postponed_;
+    bool others_ = false;
 
     [[nodiscard]] Tick start() const noexcept { return samples_.start().value_or(0); }
     [[nodiscard]] Tick newest() const noexcept { return *samples_.newest() - start(); }
     [[nodiscard]] std::optional<Failure> learn();
+    void postpone(Tick time, std::span<const Given> given);
+    void take_closed();
+    void catch_up();
+    void apply();
+    void report();
     void settle();
 };
 

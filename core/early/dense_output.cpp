@@ -10,6 +10,7 @@ std::vector<BoundChange> timed(std::vector<BoundChange> runs, Tick start) {
     for (BoundChange& change : runs) {
         change.l = plus(change.l, start);
         change.r = plus(change.r, start);
+        change.bounds = unsigned_zeros(change.bounds);
     }
     return runs;
 }
@@ -44,6 +45,11 @@ void DenseOutput::collect(const BoundsEngine& engine, Tick start, Tick at, Tick 
     decided_.resize(count);
 }
 
+void DenseOutput::expect(Tick before, Tick newest) {
+    changes_ = {};
+    if (newest > before) changes_.add(before + 1, newest);
+}
+
 std::vector<BoundChange> DenseOutput::changes(const BoundsEngine& engine, Tick start) const {
     return timed(changes_.runs(engine, ref_), start);
 }
@@ -57,7 +63,7 @@ std::vector<BoundChange> DenseOutput::runs(const BoundsEngine& engine, Tick star
 
 std::optional<Bounds> DenseOutput::at(const BoundsEngine& engine, Tick t) const noexcept {
     if (t < held_) return std::nullopt;
-    return engine.at(ref_, std::min(t, forever));
+    return unsigned_zeros(engine.at(ref_, std::min(t, forever)));
 }
 
 Tick DenseOutput::settle(const BoundsEngine& engine, Tick closed) noexcept {

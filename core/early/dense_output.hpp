@@ -23,6 +23,10 @@ class DenseOutput {
     // -1 where the trace begins now.
     void collect(const BoundsEngine& engine, Tick start, Tick at, Tick before, Tick newest);
 
+    // The same of a change that the engine does not know yet, where bounds are reported: of what it
+    // changes, as much as settle() looks at.
+    void expect(Tick before, Tick newest);
+
     // What the last call decided, or changed, in order.
     [[nodiscard]] const std::vector<Decision>& decisions() const noexcept { return decided_; }
     [[nodiscard]] std::vector<BoundChange> changes(const BoundsEngine& engine, Tick start) const;
@@ -54,7 +58,7 @@ class DenseOutput {
     Tick next_held_ = 0; // after the next call of settle()
 };
 
-// Runs in the caller's ticks.
+// Runs in the caller's ticks, and as they are reported.
 [[nodiscard]] std::vector<BoundChange> timed(std::vector<BoundChange> runs, Tick start);
 
 } // namespace rtamt::early

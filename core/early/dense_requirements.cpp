@@ -235,19 +235,19 @@ const std::vector<Decision>& DenseRequirements::decisions(std::size_t output) co
     return of(output).decisions(outputs_[output].output);
 }
 
-std::vector<BoundChange> DenseRequirements::changes(std::size_t output) const {
+std::vector<BoundChange> DenseRequirements::changes(std::size_t output) {
     if (!is_minimum(output)) return of(output).changes(outputs_[output].output);
     return minimum_->output.changes(minimum_->engine, minimum_->start);
 }
 
-std::vector<BoundChange> DenseRequirements::runs(std::size_t output) const {
+std::vector<BoundChange> DenseRequirements::runs(std::size_t output) {
     if (!is_minimum(output)) return of(output).runs(outputs_[output].output);
     if (!minimum_->begun) return {};
     const Tick newest = *this->newest() - minimum_->start;
     return minimum_->output.runs(minimum_->engine, minimum_->start, newest);
 }
 
-std::optional<Bounds> DenseRequirements::at(std::size_t output, Tick time) const {
+std::optional<Bounds> DenseRequirements::at(std::size_t output, Tick time) {
     if (!is_minimum(output)) return of(output).at(outputs_[output].output, time);
     if (!minimum_->begun) return std::nullopt;
     return minimum_->output.at(minimum_->engine, time - minimum_->start);
@@ -259,19 +259,20 @@ std::optional<Tick> DenseRequirements::held(std::size_t output) const noexcept {
     return minimum_->start + minimum_->output.held();
 }
 
-std::optional<Bounds> DenseRequirements::at_start() const {
+std::optional<Bounds> DenseRequirements::at_start() {
     std::optional<Bounds> result;
     for (std::size_t group = 0; group < required_; ++group) {
         const auto bounds = monitors_[group].at_start();
         if (!bounds) return std::nullopt;
         result = result ? Interval::meet(*result, *bounds) : *bounds;
     }
-    return result;
+    if (!result) return std::nullopt;
+    return unsigned_zeros(*result);
 }
 
 // ---- causation ----------------------------------------------------------------------------------
 
-Bounds DenseRequirements::caused_at_start() const noexcept {
+Bounds DenseRequirements::caused_at_start() {
     if (required_ == 1) return monitors_.front().caused_at_start();
     Bounds result = bounds::anything;
     const auto limit = at_start();
@@ -363,7 +364,8 @@ DenseRequirements::suppose(std::optional<std::size_t> output, Tick time,
         }
         result = result ? Interval::meet(*result, value) : value;
     }
-    return result;
+    if (!result) return std::nullopt;
+    return unsigned_zeros(*result);
 }
 
 // ---- state --------------------------------------------------------------------------------------

@@ -61,12 +61,12 @@ class DenseRequirements {
     [[nodiscard]] bool finished() const noexcept { return monitors_.front().finished(); }
     [[nodiscard]] std::size_t outputs() const noexcept { return outputs_.size(); }
     [[nodiscard]] const std::vector<Decision>& decisions(std::size_t output) const noexcept;
-    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output) const;
-    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output) const;
-    [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time) const;
+    [[nodiscard]] std::vector<BoundChange> changes(std::size_t output);
+    [[nodiscard]] std::vector<BoundChange> runs(std::size_t output);
+    [[nodiscard]] std::optional<Bounds> at(std::size_t output, Tick time);
     [[nodiscard]] std::optional<Tick> held(std::size_t output) const noexcept;
-    [[nodiscard]] std::optional<Bounds> at_start() const;
-    [[nodiscard]] Bounds caused_at_start() const noexcept;
+    [[nodiscard]] std::optional<Bounds> at_start();
+    [[nodiscard]] Bounds caused_at_start();
     [[nodiscard]] std::optional<Bounds> caused(std::size_t output, std::optional<Tick> time) const;
     [[nodiscard]] std::vector<BoundChange> caused(std::size_t output) const;
     // None where nothing is held.
@@ -102,6 +102,9 @@ class DenseRequirements {
         return minimum_.has_value() && output == 0;
     }
     [[nodiscard]] const DenseMonitor& of(std::size_t output) const noexcept {
+        return monitors_[outputs_[output].group];
+    }
+    [[nodiscard]] DenseMonitor& of(std::size_t output) noexcept {
         return monitors_[outputs_[output].group];
     }
     template <class Stage>

@@ -108,7 +108,7 @@ void BoundsEngine::know(std::span<const Observation> observations) {
 }
 
 // What atoms make of observations, all of which are known already. One that reads several of the
-// same ticks is computed once.
+// same ticks, which are close to each other, is computed once.
 void BoundsEngine::relearn(std::span<const Observation> observations, bool supposed) {
     for (std::size_t k = 0; k < observations.size(); ++k) {
         const auto& [input, l, r, bounds] = observations[k];
@@ -116,7 +116,9 @@ void BoundsEngine::relearn(std::span<const Observation> observations, bool suppo
             const auto did = [&](const Observation& before) {
                 return before.l == l && before.r == r && reads(2 * i, before.input);
             };
-            if (std::ranges::any_of(observations.first(k), did)) continue;
+            constexpr std::size_t close = 16;
+            const std::size_t from = k < close ? 0 : k - close;
+            if (std::ranges::any_of(observations.subspan(from, k - from), did)) continue;
             relearn(i, l, r, supposed);
         }
     }

@@ -9,6 +9,13 @@
 
 namespace rtamt::early {
 
+namespace {
+
+// So many samples are not looked through for what need not wait.
+constexpr std::size_t few = 64;
+
+} // namespace
+
 Samples::Samples(std::vector<Bounds> ranges, std::optional<Tick> lateness, bool waits)
     : ranges_(std::move(ranges)), lateness_(lateness), inputs_(ranges_.size()),
       settled_(ranges_.size(), -1), committed_settled_(settled_) {
@@ -33,13 +40,15 @@ void Samples::add(std::uint32_t input, Tick time, const Bounds& bounds) {
     Column& column = inputs_[input];
     const std::size_t place = after(column, time);
     added_.reserve(added_.size() + 1);
+    if (waiting_.size() == waiting_.capacity()) waiting_.reserve(2 * waiting_.size() + few);
     if (place > 0 && column[place - 1].time == time) {
-        added_.push_back({input, time, column[place - 1].bounds});
-        column[place - 1].bounds = bounds;
+        added_.push_back({input, time, column[place - 1]});
+        column[place - 1] = {time, bounds};
     } else {
         column.insert(column.begin() + static_cast<std::ptrdiff_t>(place), {time, bounds});
         added_.push_back({input, time, std::nullopt});
     }
+    waiting_.emplace_back(input, time);
     reach(time);
 }
 
@@ -94,21 +103,9 @@ Tick Samples::certain(std::size_t input) const noexcept {
     return std::max(now_.closed, column.back().time);
 }
 
-// Whether a sample is not committed; if it is, its own tick was collected.
-bool Samples::is_new(std::size_t input, Tick time) const noexcept {
-    return std::ranges::any_of(
-        added_, [&](const Added& each) { return each.input == input && each.time == time; });
-}
-
-void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
+void Samples::collect_closed(std::vector<BoundsEngine::Observation>& observations) {
     observations.clear();
     if (!now_.start) return;
-    const bool starts = !committed_.start;
-    const auto learn = [&](std::size_t input, Tick l, Tick r, const Bounds& bounds) {
-        l = std::max<Tick>(0, relative(l));
-        r = relative(r);
-        if (l <= r) observations.push_back({static_cast<std::uint32_t>(input), l, r, bounds});
-    };
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         const Column& column = inputs_[i];
         const Tick before = absolute(settled_[i]);
@@ -117,18 +114,25 @@ void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
              k < column.size() && column[k].time <= now; ++k) {
             Tick end = now;
             if (k + 1 < column.size()) end = std::min(end, column[k + 1].time - 1);
-            const bool told = lateness_ && !starts && !is_new(i, column[k].time);
-            learn(i, std::max(column[k].time + (told ? 1 : 0), before + 1), end, column[k].bounds);
+            const Tick begin = column[k].time + (column[k].collected ? 1 : 0);
+            const Tick l = std::max<Tick>(0, relative(std::max(begin, before + 1)));
+            const Tick r = relative(end);
+            if (l <= r) {
+                observations.push_back({static_cast<std::uint32_t>(i), l, r, column[k].bounds});
+            }
         }
         settled_[i] = relative(now);
-        for (std::size_t k = starts ? after(column, now) : column.size(); k < column.size(); ++k)
-            learn(i, column[k].time, column[k].time, column[k].bounds);
     }
-    if (starts) return;
-    for (const Added& added : added_) {
-        if (added.time <= absolute(settled_[added.input])) continue; // it is among them
-        const Column& column = inputs_[added.input];
-        learn(added.input, added.time, added.time, column[after(column, added.time) - 1].bounds);
+}
+
+void Samples::collect(std::vector<BoundsEngine::Observation>& observations) {
+    collect_closed(observations);
+    if (!now_.start) return;
+    for (const auto& [input, time] : waiting_) {
+        const Tick tick = relative(time);
+        if (tick <= settled_[input]) continue; // it is among them
+        const Column& column = inputs_[input];
+        observations.push_back({input, tick, tick, column[after(column, time) - 1].bounds});
     }
 }
 
@@ -156,18 +160,42 @@ void Samples::rollback() noexcept {
         Column& column = inputs_[added.input];
         const std::size_t place = after(column, added.time) - 1;
         if (added.before) {
-            column[place].bounds = *added.before;
+            column[place] = *added.before;
         } else {
             column.erase(column.begin() + static_cast<std::ptrdiff_t>(place));
         }
     }
+    waiting_.resize(waiting_.size() - added_.size());
     added_.clear();
     now_ = committed_;
     std::ranges::copy(committed_settled_, settled_.begin());
 }
 
-// Drops samples that end before what is not known yet, once they are as many as the others.
 void Samples::commit() {
+    if (now_.start) {
+        for (const auto& [input, time] : waiting_) {
+            Column& column = inputs_[input];
+            const std::size_t place = after(column, time);
+            if (place > 0 && column[place - 1].time == time) column[place - 1].collected = true;
+        }
+        waiting_.clear();
+        many_ = 0;
+    }
+    keep();
+}
+
+void Samples::postpone() {
+    if (waiting_.size() > many_) {
+        std::erase_if(waiting_, [&](const auto& each) {
+            return relative(each.second) <= settled_[each.first];
+        });
+        many_ = 2 * waiting_.size() + few;
+    }
+    keep();
+}
+
+// Drops samples that end before what is not known yet, once they are as many as the others.
+void Samples::keep() {
     added_.clear();
     committed_ = now_;
     std::ranges::copy(settled_, committed_settled_.begin());
@@ -203,7 +231,7 @@ std::size_t Samples::bytes() const noexcept {
     std::size_t sum = 0;
     for (const Column& column : inputs_)
         sum += column.size() * sizeof(Sample);
-    return sum;
+    return sum + waiting_.size() * sizeof(waiting_[0]);
 }
 
 void Samples::transfer(Snapshot& snapshot) {
@@ -223,7 +251,7 @@ void Samples::transfer(Snapshot& snapshot) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         Column& column = inputs_[i];
         std::size_t size = column.size();
-        snapshot.count(size, sizeof(Sample));
+        snapshot.count(size, sizeof(Tick) + sizeof(Bounds));
         column.resize(size);
         for (std::size_t k = 0; k < size; ++k) {
             snapshot.item(column[k].time);
@@ -240,6 +268,13 @@ void Samples::transfer(Snapshot& snapshot) {
                                        column.front().time <= absolute(settled_[i]) + 1)));
     }
     added_.clear();
+    waiting_.clear();
+    for (std::uint32_t i = 0; i < inputs_.size(); ++i) {
+        for (Sample& sample : inputs_[i]) {
+            sample.collected = now_.start.has_value();
+            if (!now_.start) waiting_.emplace_back(i, sample.time);
+        }
+    }
     committed_ = now_;
     committed_settled_ = settled_;
 }

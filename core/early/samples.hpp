@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace rtamt::early {
@@ -49,9 +50,13 @@ class Samples {
     // Takes everything back since the last commit, or forgets how.
     void rollback() noexcept;
     void commit();
+    // The same where what has been added is not collected yet; samples may be late.
+    void postpone();
 
-    // What has become known since the last commit; ticks count from the start of the trace.
+    // What has become known since it was last collected; ticks count from the start of the trace.
     void collect(std::vector<BoundsEngine::Observation>& observations);
+    // The same up to the closed tick.
+    void collect_closed(std::vector<BoundsEngine::Observation>& observations);
     // Before the start: the own ticks of samples from a time on, of all that are before another
     // time, and of those added since the last commit. Ticks count from `origin`.
     void collect_first(Tick origin, Tick from, Tick before,
@@ -82,13 +87,14 @@ class Samples {
 
   private:
     struct Sample {
-        Tick time;
-        Bounds bounds;
+        Tick time = 0;
+        Bounds bounds{};
+        bool collected = false; // its own tick, before what follows is known
     };
     struct Added {
         std::uint32_t input = 0;
         Tick time = 0;
-        std::optional<Bounds> before; // of a sample that was there
+        std::optional<Sample> before; // that was there
     };
     static constexpr Tick never = std::numeric_limits<Tick>::min();
     static constexpr Tick at_end = std::numeric_limits<Tick>::max();
@@ -107,15 +113,18 @@ class Samples {
     State now_;
     State committed_;
     std::vector<Tick> committed_settled_;
-    std::vector<Added> added_;
+    std::vector<Added> added_; // since the last commit
+    // Samples whose own ticks have not been collected; some of what is closed by now.
+    std::vector<std::pair<std::uint32_t, Tick>> waiting_;
+    std::size_t many_ = 0; // so many that those are forgotten
 
     [[nodiscard]] static std::size_t after(const Column& column, Tick time) noexcept;
     [[nodiscard]] Tick relative(Tick time) const noexcept;
     [[nodiscard]] Tick absolute(Tick tick) const noexcept;
     [[nodiscard]] Tick certain(std::size_t input) const noexcept;
-    [[nodiscard]] bool is_new(std::size_t input, Tick time) const noexcept;
     [[nodiscard]] std::optional<Tick> first_start() const noexcept;
     void find_start() noexcept;
+    void keep();
 };
 
 } // namespace rtamt::early

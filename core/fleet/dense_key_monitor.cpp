@@ -240,7 +240,7 @@ class DenseEarly final : public DenseKeyMonitor {
         has_no_value(program_, program_.steps_before[failure.group][node] + step, time_of(tick));
     }
 
-    [[nodiscard]] AtStart at_start(bool late) const {
+    [[nodiscard]] AtStart at_start(bool late) {
         if (interval()) {
             const Bounds bounds = monitor_.at_start().value_or(bounds::anything);
             return {{bounds.lower, bounds.upper}, late};
@@ -250,7 +250,7 @@ class DenseEarly final : public DenseKeyMonitor {
         return {{caused.upper + 0.0, caused.lower + 0.0}, late};
     }
 
-    [[nodiscard]] AtStart report(std::size_t index, std::vector<Row>& rows) const {
+    [[nodiscard]] AtStart report(std::size_t index, std::vector<Row>& rows) {
         if (program_.mode == MonitorProgram::Mode::eager) {
             for (const early::Decision& each : monitor_.decisions(0)) {
                 const double begin = time_of(each.l);

@@ -184,24 +184,23 @@ DenseEarlyMonitor::verdicts(std::size_t output) const {
     return result;
 }
 
-DenseEarlyMonitor::Runs DenseEarlyMonitor::changes(std::size_t output) const {
+DenseEarlyMonitor::Runs DenseEarlyMonitor::changes(std::size_t output) {
     require_output(output);
     return tuples_of(monitor_.changes(output));
 }
 
-DenseEarlyMonitor::Runs DenseEarlyMonitor::runs(std::size_t output) const {
+DenseEarlyMonitor::Runs DenseEarlyMonitor::runs(std::size_t output) {
     require_output(output);
     return tuples_of(monitor_.runs(output));
 }
 
-std::optional<std::pair<double, double>> DenseEarlyMonitor::at_start() const {
+std::optional<std::pair<double, double>> DenseEarlyMonitor::at_start() {
     const auto bounds = monitor_.at_start();
     if (!bounds) return std::nullopt;
     return pair_of(*bounds);
 }
 
-std::optional<std::pair<double, double>> DenseEarlyMonitor::bounds(std::size_t output,
-                                                                   Tick tick) const {
+std::optional<std::pair<double, double>> DenseEarlyMonitor::bounds(std::size_t output, Tick tick) {
     require_output(output);
     const auto bounds = monitor_.at(output, tick);
     if (!bounds) return std::nullopt;
@@ -225,7 +224,7 @@ std::optional<std::pair<double, double>> DenseEarlyMonitor::supposed(
     return pair_of(*value);
 }
 
-std::pair<double, double> DenseEarlyMonitor::causation_at_start() const {
+std::pair<double, double> DenseEarlyMonitor::causation_at_start() {
     return caused_of(monitor_.caused_at_start());
 }
 

@@ -56,18 +56,17 @@ class DenseEarlyMonitor : public EarlyBackend {
     [[nodiscard]] std::vector<std::tuple<Tick, Tick, bool, Tick>>
     verdicts(std::size_t output) const;
     using Runs = std::vector<std::tuple<Tick, Tick, double, double>>;
-    [[nodiscard]] Runs changes(std::size_t output) const;
-    [[nodiscard]] Runs runs(std::size_t output) const;
+    [[nodiscard]] Runs changes(std::size_t output);
+    [[nodiscard]] Runs runs(std::size_t output);
 
-    [[nodiscard]] std::optional<std::pair<double, double>> at_start() const;
-    [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output,
-                                                                  Tick tick) const;
+    [[nodiscard]] std::optional<std::pair<double, double>> at_start();
+    [[nodiscard]] std::optional<std::pair<double, double>> bounds(std::size_t output, Tick tick);
     // Of an output, or none for the start; suppositions (input, from, lower, upper) in order.
     [[nodiscard]] std::optional<std::pair<double, double>>
     supposed(std::optional<std::size_t> output, Tick tick,
              const std::vector<std::tuple<std::uint32_t, Tick, double, double>>& later);
     // Violation and satisfaction that the last call caused: at the start, at a tick, and as runs.
-    [[nodiscard]] std::pair<double, double> causation_at_start() const;
+    [[nodiscard]] std::pair<double, double> causation_at_start();
     [[nodiscard]] std::optional<std::pair<double, double>>
     causation(std::size_t output, std::optional<Tick> tick) const;
     [[nodiscard]] Runs caused(std::size_t output) const;

@@ -121,8 +121,17 @@ TEST_CASE("samples make known what the definition says, in order or late") {
                 newest = std::max(newest, time);
                 if (!ordered) model.closed = std::max(model.closed, newest - lateness - 1);
             }
-            check_same(samples, engine, model);
             REQUIRE(samples.known(input, newest) == model.known(input, newest));
+            if (!ordered && samples.start() && random.chance(40)) { // nobody asks
+                std::vector<BoundsEngine::Observation> observations;
+                samples.collect_closed(observations);
+                REQUIRE(!engine.learn(observations, newest - *samples.start()));
+                for (const auto& each : observations)
+                    REQUIRE(each.r + *samples.start() <= model.closed);
+                samples.postpone();
+                continue;
+            }
+            check_same(samples, engine, model);
             samples.commit();
             if (random.chance(20)) {
                 rtamt::Snapshot written;
@@ -156,6 +165,17 @@ TEST_CASE("samples that are final are dropped") {
         samples.commit();
     }
     CHECK(samples.bytes() <= 200);
+}
+
+TEST_CASE("samples that nobody asks for are dropped once they are final") {
+    Samples samples({range}, 10);
+    for (Tick t = 0; t < 10'000; ++t) {
+        std::vector<BoundsEngine::Observation> observations;
+        samples.add(0, t ^ 3, Interval::of(1));
+        samples.collect_closed(observations);
+        samples.start() ? samples.postpone() : samples.commit();
+    }
+    CHECK(samples.bytes() <= 5'000);
 }
 
 TEST_CASE("times far from zero are taken, and too long traces are not") {

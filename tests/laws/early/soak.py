@@ -104,6 +104,10 @@ def read_seldom(rng: Random, _made: Implementation) -> None:
     engines.read_seldom(rng, case(rng, partial=rng.random() < 0.3, odd=rng.random() < 0.2))
 
 
+def dense_read_seldom(rng: Random, _made: Implementation) -> None:
+    engines.dense_read_seldom(rng, dense_case(rng, partial=rng.random() < 0.3))
+
+
 def dense_sound(rng: Random, made: Implementation) -> None:
     dense_laws.sound(dense_case(rng, unbounded=False), made)
 
@@ -217,6 +221,7 @@ LAWS: list[Law] = [
     dense_corrected,
     dense_fails_alike,
     dense_late_fails_alike,
+    dense_read_seldom,
     dense_tight,
     dense_eager,
     dense_causes,
@@ -240,6 +245,7 @@ COMPARISONS: list[Law] = [
     dense_corrected,
     dense_fails_alike,
     dense_late_fails_alike,
+    dense_read_seldom,
     dense_causation_as_defined,
     specification_bounds,
     specification_verdicts,
@@ -260,6 +266,7 @@ def laws_of(made: Implementation) -> list[Law]:
             reports_as_defined,
             engines_agree,
             read_seldom,
+            dense_read_seldom,
         ]
         if made is PYTHON
         else []
