@@ -88,6 +88,9 @@ BoundsAtStart::BoundsAtStart(std::vector<Item> items, const BoundsEngine& engine
             const auto r = static_cast<std::size_t>(reg);
             state.best[r] = up(items_[i], reg) ? -infinity : infinity;
             state.held[r] = -state.best[r];
+            const auto kind = items_[i].kind;
+            if (up(items_[i], reg) && (kind == Item::Kind::all || kind == Item::Kind::some))
+                state.value[r] = engine.runs(items_[i].a, reg).most(state.next, items_[i].last);
         }
     }
     read(engine);
@@ -256,7 +259,6 @@ double BoundsAtStart::seen(const BoundsEngine& engine, std::size_t index, int re
         return runs.at(state.next).value;
     }
     if (greatest) {
-        if (pieces.empty() && value == -infinity) return runs.most(state.next, item.last);
         double now = value;
         for (const Piece& piece : pieces) {
             if (piece.r >= item.tick && piece.l <= item.last) now = Real::join(now, piece.now);

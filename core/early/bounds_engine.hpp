@@ -267,6 +267,7 @@ class BoundsEngine {
     [[nodiscard]] std::optional<Failure> add_all(std::uint32_t index, Tick t);
 
     // kernels.cpp: all other nodes, a register at a time
+    void report(State& state, int reg, const Run& run, double now);
     void change(State& state, int reg, Runs::Place place, Run run, double now);
     void change(State& state, int reg, Run run, double now);
     void lift(State& state, int reg, Tick l, Tick r, double now);

@@ -6,12 +6,16 @@
 
 namespace rtamt::early {
 
+void BoundsEngine::report(State& state, int reg, const Run& run, double now) {
+    state.out[change_][static_cast<std::size_t>(reg)].push_back(
+        {run.begin, run.end, run.value, now});
+}
+
 void BoundsEngine::change(State& state, int reg, Runs::Place place, Run run, double now) {
     Runs& own = state.own[static_cast<std::size_t>(reg)];
     if (journaling_) journal_.push_back({&own, run.begin, run.end, run.value});
     own.set(place, run.begin, run.end, now);
-    state.out[change_][static_cast<std::size_t>(reg)].push_back(
-        {run.begin, run.end, run.value, now});
+    report(state, reg, run, now);
 }
 
 void BoundsEngine::change(State& state, int reg, Run run, double now) {
@@ -30,6 +34,10 @@ void BoundsEngine::lift(State& state, int reg, Tick l, Tick r, double now) {
         if (here.value < now) change(state, reg, place, {l, r, here.value}, now);
         return;
     }
+    if (!journaling_ &&
+        state.own[static_cast<std::size_t>(reg)].raise(
+            place, l, r, now, [&](const Run& run) { report(state, reg, run, now); }))
+        return;
     while (const auto run = own.first<Below>(l, r, now)) {
         change(state, reg, *run, now);
         if (run->end >= forever) return;
@@ -45,15 +53,12 @@ void BoundsEngine::append(State& state, int reg, Tick t, double now) {
     if (rest.begin != t || journaling_) return raise_end(state, reg, t, t, now);
     if (!(rest.value < now)) return;
     own.extend(now);
-    state.out[change_][static_cast<std::size_t>(reg)].push_back({t, t, rest.value, now});
+    report(state, reg, {t, t, rest.value}, now);
 }
 
 // Raises what is below where values never rise from one tick to the next.
 void BoundsEngine::raise_end(State& state, int reg, Tick l, Tick r, double now) {
-    const auto raised = [&](const Run& run) {
-        state.out[change_][static_cast<std::size_t>(reg)].push_back(
-            {run.begin, run.end, run.value, now});
-    };
+    const auto raised = [&](const Run& run) { report(state, reg, run, now); };
     if (journaling_ || !state.own[static_cast<std::size_t>(reg)].raise_end(l, r, now, raised)) {
         lift(state, reg, l, r, now);
     }
@@ -120,11 +125,20 @@ void BoundsEngine::combine(std::uint32_t index, int reg, bool up) {
     const Runs& a = runs(own.a, reg);
     const Runs& b = runs(own.b, reg);
     for (const std::uint32_t ref : {own.a, own.b}) {
-        for (const Piece& piece : new_data(ref, reg)) {
-            if (up) {
-                lift(state, reg, piece.l, piece.r, piece.now);
+        const auto& pieces = new_data(ref, reg);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            Piece piece = pieces[i];
+            if (up) { // ticks that rise to one value at once
+                for (; i + 1 < pieces.size() && pieces[i + 1].l == piece.r + 1 &&
+                       pieces[i + 1].now == piece.now;
+                     ++i)
+                    piece.r = pieces[i + 1].r;
+                piece.l == piece.r ? append(state, reg, piece.l, piece.now)
+                                   : lift(state, reg, piece.l, piece.r, piece.now);
                 continue;
             }
+            const Run rest = (ref == own.a ? b : a).last_run();
+            if (rest.begin <= piece.l && rest.value <= piece.old) continue; // the smaller is that
             // The smaller can rise only where it was this operand.
             Tick t = std::max(piece.l, state.from);
             const Tick last = std::min(piece.r, state.to);

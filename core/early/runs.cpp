@@ -49,6 +49,14 @@ const Runs::Summary& Runs::group_from(std::size_t chunk) const noexcept {
     return group;
 }
 
+std::size_t Runs::not_below(std::size_t chunk, std::size_t end, double value) const noexcept {
+    if (chunk % grouped == 0 && chunk + grouped <= end && group_from(chunk).least >= value)
+        return grouped;
+    const Entry& entry = directory_[chunk];
+    if (!entry.summary.valid) sum(entry);
+    return entry.summary.least >= value ? 1 : 0;
+}
+
 // From the end on, where most searches soon find what is enough.
 template <bool greatest>
 double Runs::extreme(Tick l, Tick r, double enough) const noexcept {
@@ -62,6 +70,7 @@ double Runs::extreme(Tick l, Tick r, double enough) const noexcept {
     };
     const Place to = find(r);
     const Chunk& last = *directory_[to.chunk].chunk;
+    if (take(last.value[to.index])) return result;
     if (directory_[to.chunk].first <= l || to.chunk == head_) {
         (void)within(last, find(l).index, to.index + 1);
         return result;

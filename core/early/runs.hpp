@@ -63,11 +63,20 @@ class Runs : public StepMap<double> {
     // that is raised lie in the last chunk, which has room.
     template <class Raised>
     [[nodiscard]] bool raise_end(Tick l, Tick r, double value, Raised&& raised);
+    // Raises all values in [l, r] that are below this one, in the order of time, and calls `raised`
+    // with each run as it was; `place` is that of l. Returns false, with nothing done, if only a
+    // part of a run would rise.
+    template <class Raised>
+    [[nodiscard]] bool raise(Place place, Tick l, Tick r, double value, Raised&& raised);
 
   private:
     void sum(const Entry& entry) const noexcept;
     // Of as many chunks as there are in a group, the first one's index a multiple of that.
     [[nodiscard]] const Summary& group_from(std::size_t chunk) const noexcept;
+    // How many chunks from one on, before an end, hold no value below this one: as many as are
+    // looked at together.
+    [[nodiscard]] std::size_t not_below(std::size_t chunk, std::size_t end,
+                                        double value) const noexcept;
     template <bool greatest>
     [[nodiscard]] double extreme(Tick l, Tick r, double enough) const noexcept;
 };
@@ -96,6 +105,59 @@ bool Runs::raise_end(Tick l, Tick r, double value, Raised&& raised) {
     }
     replace(chunk, place, right, begin, r, value, rest);
     changed(directory_.size() - 1);
+    return true;
+}
+
+template <class Raised>
+bool Runs::raise(Place place, Tick l, Tick r, double value, Raised&& raised) {
+    const Place last = find(r);
+    const auto rises_in_part = [&](Place p) {
+        const Run found = run(p);
+        return found.value < value && (found.begin < l || found.end > r);
+    };
+    if (rises_in_part(place) || rises_in_part(last)) return false;
+    const auto previous = before(place);
+    const auto next = after(last);
+    double left = previous ? value_at(*previous) : std::numeric_limits<double>::quiet_NaN();
+    bool emptied = false;                                       // a chunk
+    const auto shorten = [&](std::size_t c, int from, int to) { // drops the runs [from, to)
+        Chunk& chunk = *directory_[c].chunk;
+        for (; to < chunk.end; ++from, ++to) {
+            chunk.start[from] = chunk.start[to];
+            chunk.value[from] = chunk.value[to];
+        }
+        chunk.end = from;
+        emptied = emptied || chunk.begin == chunk.end;
+        directory_[c].first = chunk.start[chunk.begin];
+        changed(c);
+    };
+    for (std::size_t c = place.chunk; c <= last.chunk; ++c) {
+        Chunk& chunk = *directory_[c].chunk;
+        if (c > place.chunk && c < last.chunk && chunk.value[chunk.begin] != left) {
+            if (const std::size_t passed = not_below(c, last.chunk, value); passed > 0) {
+                c += passed - 1;
+                left = directory_[c].chunk->value[directory_[c].chunk->end - 1];
+                continue;
+            }
+        }
+        const int end = c < last.chunk ? chunk.end : last.index + 1;
+        int i = c > place.chunk ? chunk.begin : place.index;
+        int to = i;
+        for (; i < end; ++i) {
+            Run found = run({c, i});
+            if (found.value < value) {
+                raised(found);
+                found.value = value;
+            }
+            chunk.start[to] = found.begin;
+            chunk.value[to] = found.value;
+            to += found.value == left ? 0 : 1;
+            left = found.value;
+        }
+        shorten(c, to, end < chunk.end && chunk.value[end] == left ? end + 1 : end);
+    }
+    if (next && next->chunk > last.chunk && value_at(*next) == left) erase(*next);
+    if (emptied) drop_empty(place.chunk);
     return true;
 }
 

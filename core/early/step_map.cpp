@@ -124,6 +124,14 @@ void StepMap<Value>::erase(Place p) noexcept {
     }
 }
 
+template <class Value>
+void StepMap<Value>::drop_empty(std::size_t from) noexcept {
+    const auto is_empty = [](const Entry& entry) { return entry.chunk->begin == entry.chunk->end; };
+    const auto begin = directory_.begin() + static_cast<std::ptrdiff_t>(from);
+    directory_.erase(std::remove_if(begin, directory_.end(), is_empty), directory_.end());
+    moved(from);
+}
+
 // Fills the last chunk, which has room.
 template <class Value>
 void StepMap<Value>::append(Tick start, const Value& value) {

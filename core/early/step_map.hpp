@@ -120,17 +120,19 @@ class StepMap {
     // behind r. The chunk has room for two more.
     static void replace(Chunk& chunk, int place, int right, Tick l, Tick r, const Value& value,
                         const Value& rest) noexcept;
-
-  private:
-    [[nodiscard]] Tick end_of(Place p) const noexcept;
     [[nodiscard]] std::optional<Place> before(Place p) const noexcept;
     [[nodiscard]] std::optional<Place> after(Place p) const noexcept;
     [[nodiscard]] Value& value_at(Place p) noexcept {
         return directory_[p.chunk].chunk->value[p.index];
     }
+    void erase(Place p) noexcept;
+    // Drops the chunks without runs from an index on.
+    void drop_empty(std::size_t from) noexcept;
+
+  private:
+    [[nodiscard]] Tick end_of(Place p) const noexcept;
     void moved(std::size_t chunk);
     void move_start(Place p, Tick start) noexcept;
-    void erase(Place p) noexcept;
     Place insert_after(Place p, Tick start, const Value& value);
     void append(Tick start, const Value& value);
 };

@@ -51,6 +51,42 @@ void check_search(const Runs& runs, const Model& model, Tick l, Tick r, double v
     check_equal(runs.last<Search>(l, r, value), last);
 }
 
+// What raise() does of an array, or of runs where it does nothing.
+void check_raise(Runs& runs, Model& model, Tick front, Tick l, Tick r, double value) {
+    Tick next = l;
+    bool in_part = false;
+    for (const Tick t : {l, r}) {
+        const Run run = runs.at(t);
+        in_part = in_part || (run.value < value && (run.begin < l || run.end > r));
+    }
+    const bool done = runs.raise(runs.find(l), l, r, value, [&](const Run& run) {
+        const Run expected = model.run(run.begin);
+        REQUIRE(std::max(run.begin, front) == std::max(expected.begin, front));
+        REQUIRE(run.end == expected.end);
+        REQUIRE(run.value == expected.value);
+        REQUIRE(run.value < value);
+        for (; next < run.begin; ++next)
+            REQUIRE(model.at(next) >= value);
+        next = run.end + 1;
+    });
+    REQUIRE(done == !in_part);
+    if (!done) return;
+    for (; next <= r; ++next)
+        REQUIRE(model.at(next) >= value);
+    for (Tick t = l; t <= r; ++t) {
+        double& each = model.values[static_cast<std::size_t>(t)];
+        each = std::max(each, value);
+    }
+    for (Tick t = front; t < model.ticks; ++t) {
+        const Run found = runs.at(t);
+        const Run expected = model.run(t);
+        REQUIRE(found.value == expected.value);
+        REQUIRE(std::max(found.begin, front) == std::max(expected.begin, front));
+        REQUIRE(found.end == expected.end);
+        t = std::min(found.end, model.ticks);
+    }
+}
+
 void check_changes(std::uint32_t seed, Tick ticks, int values, int steps) {
     CAPTURE(seed);
     Random random(seed);
@@ -71,6 +107,16 @@ void check_changes(std::uint32_t seed, Tick ticks, int values, int steps) {
         runs.set(l, r, value);
         for (Tick k = l; k <= r; ++k)
             model.values[static_cast<std::size_t>(k)] = value;
+        if (random.chance(10)) { // a range of whole runs, or any
+            Tick begin = random.between(front, ticks - 1);
+            Tick end = std::min(ticks - 1, begin + random.between(0, ticks / 2));
+            if (random.chance(80)) {
+                begin = std::max(front, model.run(begin).begin);
+                end = std::min(ticks - 1, model.run(end).end);
+            }
+            check_raise(runs, model, front, begin, end,
+                        static_cast<double>(random.between(0, values)) / 2);
+        }
         if (random.chance(5)) {
             const Tick drop =
                 random.between(front, std::min<Tick>(front + 9 * ticks / 400, ticks / 2));
