@@ -29,6 +29,10 @@ _LARGEST = 2**31 - 1
 _STRUCTURED = lazy_pattern(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
+#: Characters that no XML document contains.
+_NO_XML = lazy_pattern(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
 @dataclass(frozen=True, slots=True)
 class Variable:
     """One variable of a unit. ``type``: real, integer, boolean or enumeration; ``causality``: input, output, parameter.
@@ -58,6 +62,11 @@ def variables_of(
     found: list[Variable] = []
 
     def add(name: str, kind: str, causality: str, start: float, description: str, unit: str) -> None:
+        if wrong := _NO_XML.search(name):
+            raise UsageError(
+                f"the {causality} {name!a} contains {wrong[0]!a}, which a model description cannot: rename it in "
+                f"the specification"
+            )
         other = next((v for v in found if v.name == name), None)
         if other is not None or name == "time":
             taken = "the time" if other is None else f"an {other.causality}"

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import fmpy
+import pytest
 
+import rtamt
+from rtamt import fmi
+from rtamt.errors import UsageError
 from tests.unit.fmi import BOTH
 
 
@@ -53,3 +57,20 @@ def test_booleans_and_enumerations_have_their_types(exported, version):
     assert found["mode"].declaredType.name == "Mode"
     (mode,) = described.typeDefinitions
     assert [(item.name, int(item.value)) for item in mode.items] == [("MANUAL", 0), ("AUTO", 4)]
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong"), [("a\x01b", r"'\x01'"), ("a\ufffe", r"'\ufffe'"), ("\x7fé", None)]
+)
+def test_names_that_xml_cannot_contain_are_rejected(tmp_path, name, wrong):
+    spec, path = rtamt.parse(f'"{name}" > 1', period=1), tmp_path / "unit.fmu"
+    if wrong is None:
+        fmi.export(spec, path)
+        assert fmpy.read_model_description(str(path)).modelVariables[0].name == name
+        return
+    with pytest.raises(UsageError) as refused:
+        fmi.export(spec, path)
+    assert str(refused.value) == (
+        f"the input {name!a} contains {wrong}, which a model description cannot: rename it in the specification"
+    )
+    assert not path.exists()
