@@ -24,9 +24,13 @@ early_outcomes    the same, reading a recording no further than the verdicts nee
 chunks            a recording that is read in chunks
 bag               check a bag, and write a copy with the results
 stdin_reader      JSON or CSV lines to samples
+stream_json       JSON lines to samples
+stream_csv        CSV lines to samples
+stream_times      the timestamps of those lines
 stream_members    the members of groups in JSON or CSV lines
 rounded           the note on integers in those lines that no double holds
 json_lines        a line of JSON to numbers and timestamps
+delayed_feeds     robustness one horizon later, as ``rtamt monitor`` prints it
 early_feeds       verdicts and bounds before the horizon, as ``rtamt monitor`` prints them
 held_feed         streams whose variables arrive at any time, sampled by ``sample ... hold``
 robustness_lines  the lines of ``rtamt monitor`` for the robustness of each instant

@@ -8,8 +8,8 @@ from rtamt.cli.json_lines import STDIN
 from rtamt.errors import TraceError
 
 if TYPE_CHECKING:
+    from rtamt.cli.delayed_feeds import EventFeed, SampleFeed
     from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
-    from rtamt.cli.monitor import EventFeed, SampleFeed
     from rtamt.signals.sampling import HeldSampler
 
 
