@@ -261,10 +261,10 @@ RTAMT_API const char* rtamt_fleet_output(const rtamt_fleet* fleet, uint32_t outp
 
 /* Takes a batch, keys in any order. A new key starts a trace. `results` receives the values of the
  * first `outputs` outputs, one sample after another: in the modes but delayed those at the start of
- * the trace. A sample that was later than the lateness allows is left out, and the outputs are those
- * before it: see rtamt_fleet_is_late. rtamt_fleet_rows has what became known of other instants.
- * After RTAMT_REFUSED and RTAMT_UNDEFINED, `rejected` is the index in the batch, or `count` if no
- * sample is wrong; it may be null. */
+ * the trace. A sample that was later than the lateness allows is left out, and the outputs are
+ * those before it: see rtamt_fleet_is_late. rtamt_fleet_rows has what became known of other
+ * instants. After RTAMT_REFUSED and RTAMT_UNDEFINED, `rejected` is the index in the batch, or
+ * `count` if no sample is wrong; it may be null. */
 RTAMT_API rtamt_status rtamt_fleet_take(rtamt_fleet* fleet, const rtamt_fleet_batch* batch,
                                         rtamt_fleet_value* results, size_t outputs,
                                         size_t* rejected);

@@ -171,7 +171,7 @@ TEST_CASE("samples that nobody asks for are dropped once they are final") {
     Samples samples({range}, 10);
     for (Tick t = 0; t < 10'000; ++t) {
         std::vector<BoundsEngine::Observation> observations;
-        samples.add(0, t ^ 3, Interval::of(1));
+        samples.add(0, t + 3 - (2 * (t % 4)), Interval::of(1));
         samples.collect_closed(observations);
         samples.start() ? samples.postpone() : samples.commit();
     }
