@@ -92,7 +92,8 @@ class Specification(OnlineSpecification):
         ``semantics``: as for :func:`parse`, by default that of the specification.
 
         A sample may be missing: ``None``, a null of Arrow or polars, ``pandas.NA`` or a masked value (NaN is an
-        error). Then, and with ``uncertainty``, the result has bounds: ``result.interval`` at the first instant,
+        error), or, in discrete time, a gap in a signal of a trace (in dense time, its last value holds). Then, and
+        with ``uncertainty``, the result has bounds: ``result.interval`` at the first instant,
         ``result.intervals`` at each. Where both are equal, the robustness is that number. ``uncertainty``: from
         a variable to the largest error of its samples, in either direction. ``ranges``: from a
         variable to its lowest and highest possible value, by default its declared range. They bound missing and

@@ -22,6 +22,7 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.signals.arrays import TIME, timestamps
+from rtamt.signals.data_errors import FILE_MENDS, missing_sample
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch
 from rtamt.signals.sampling_period import check_regular, infer_period
@@ -311,6 +312,13 @@ def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading)
             variable=error.variable,
         ) from None
     return mine
+
+
+def require_all_samples(data: Trace, names: Sequence[str]) -> None:
+    """Raise :class:`TraceError` if one of these variables lacks a sample of its table."""
+    for name in names:
+        if name != TIME and (gap := data.channel(name).first_gap) is not None:
+            raise missing_sample(name, gap, data.source, FILE_MENDS)
 
 
 def notes_on(data: Trace, spec: Specification, reading: Reading) -> tuple[str, ...]:

@@ -22,11 +22,13 @@ from rtamt.cli.outcome import (
 )
 from rtamt.cli.reading_options import (
     choice_for,
+    has_own_time_bases,
     how_to_mend,
     is_resampled,
     notes_on,
     on_time_base,
     read_for,
+    require_all_samples,
 )
 from rtamt.errors import BoundError, StlError, TraceError
 from rtamt.lazy.dataclasses import replace
@@ -160,6 +162,8 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
                 gaps=True,
             )
             whole = spec.binding.applied(trace_of(source, choice))
+        if not has_own_time_bases(spec, trace, reading):
+            require_all_samples(whole, spec.input_names)
         bound = members.bound(whole, spec.groups, spec.input_names, own_time_bases=True, source=shown(trace))
         over = spec.over(bound.members)
         rows = tuple(

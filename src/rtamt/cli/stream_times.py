@@ -16,7 +16,7 @@ from rtamt.readers.frames import field_of
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
 from rtamt.signals.arrays import TIME
-from rtamt.signals.data_errors import missing_sample
+from rtamt.signals.data_errors import STREAM_MENDS, missing_sample
 from rtamt.signals.time_columns import is_stamps
 from rtamt.signals.trace import in_seconds
 
@@ -62,7 +62,7 @@ class StreamTimestamps:
     def require(self, name: str, value: object, number: int) -> None:
         """Raise :class:`TraceError` where a sample of discrete time, in line ``number``, has no value."""
         if value is None or value == "":
-            raise line_error(number, str(missing_sample(name, self._samples, None)), name)
+            raise line_error(number, str(missing_sample(name, self._samples, None, STREAM_MENDS)), name)
 
     def select(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
         """Look for the timestamps among columns and what they hold, None where that is not known yet.

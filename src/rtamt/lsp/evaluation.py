@@ -55,11 +55,14 @@ def _rows(spec: Specification, trace: Trace) -> Iterator[dict[str, Any]]:
         try:
             one = replace(spec, document=document.select(requirement.name))
             result = one.evaluate(trace)
+            row["verdict"] = "satisfied" if result.satisfied else "violated"
         except StlError as error:
             yield row | {"verdict": "error", "reason": _sentence(error)}
             continue
-        verdict = "satisfied" if result.satisfied else "violated"
-        yield row | {"verdict": verdict, "robustness": repr(float(result.robustness))}
+        known = result.interval
+        if known.lower == known.upper:  # no samples are missing that decide the robustness
+            row["robustness"] = repr(float(known.lower))
+        yield row
 
 
 def _sentence(error: StlError) -> str:

@@ -15,7 +15,7 @@ from rtamt.readers.numbers import numbers_of, rounded
 from rtamt.readers.silence import Silences
 from rtamt.readers.timestamps import TimestampColumn, guess_field
 from rtamt.signals.arrays import TIME
-from rtamt.signals.data_errors import missing_sample
+from rtamt.signals.data_errors import FILE_MENDS, missing_sample
 from rtamt.signals.trace import LEFT_OUT, Channel, Trace, in_seconds
 
 if TYPE_CHECKING:
@@ -395,7 +395,7 @@ def _channels(
         if missing is not None and missing.any():
             row = before + int(missing.argmax())
             if not choice.gaps:
-                raise missing_sample(name, row, source.name)
+                raise missing_sample(name, row, source.name, FILE_MENDS)
             if times is None:
                 raise TraceError(
                     f"'{name}' is missing at sample {row} of {source.name}: fill the gap, or name the "

@@ -55,7 +55,8 @@ def read(
     up to the damage instead of raising an error; flight logs are always read that far.
 
     A missing value (an empty cell, null, pandas' NaN) is not a sample: the signal then has
-    its own time base. Any other NaN is kept, and an evaluation that reads it raises an error; for the signals
+    its own time base, and in discrete time ``evaluate`` bounds the robustness.
+    Any other NaN is kept, and an evaluation that reads it raises an error; for the signals
     in ``skip_nan`` it counts as missing, too. ``types``: the types of a specification (``spec.types``); text
     columns, and the value tables of MDF and ROS, are then read as the codes of its enumerations. ``hold_for``: how
     long, in seconds or as text such as ``"500ms"``, the previous value may replace missing samples; a longer gap is

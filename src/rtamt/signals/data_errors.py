@@ -52,20 +52,27 @@ def unknown_variable(name: str, names: Collection[str]) -> TraceError:
     )
 
 
-def missing_sample(name: str, index: int, source: str | None) -> TraceError:
+#: How to mend a missing sample: in a stream on the command line, in a file there, and in a trace in Python.
+STREAM_MENDS = "fill the gap, or use dense time (--time dense)"
+FILE_MENDS = (
+    "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put "
+    "all on one time base (--resample PERIOD)"
+)
+TRACE_MENDS = (
+    "fill the gap, hold the value before it (trace.hold(), or hold_for= of rtamt.read), use dense time (time='dense'), "
+    "put all on one time base (trace.resample(period=...)), or read the bounds of the robustness "
+    "(spec.evaluate(trace).interval)"
+)
+
+
+def missing_sample(name: str, index: int, source: str | None, mends: str) -> TraceError:
     """Return the error for a variable without a value at a sample of discrete time: every reader raises this one.
 
-    ``source``: where the samples are from; None for a stream, whose samples cannot be resampled.
+    ``source``: where the samples are from; None for a stream.
     """
     where = f"sample {index}" if source is None else f"sample {index} of {source}"
-    mend = (
-        "fill the gap, or use dense time (--time dense)"
-        if source is None
-        else "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put "
-        "all on one time base (--resample PERIOD)"
-    )
     return TraceError(
-        f"'{name}' is missing at {where}, but discrete time needs a value at every sample: {mend}",
+        f"'{name}' is missing at {where}, but discrete time needs a value at every sample: {mends}",
         variable=name,
         index=index,
     )

@@ -1,7 +1,9 @@
 """Partly known recordings: missing samples, measurement errors, declared ranges.
 
 ``None``, a null of Arrow or polars, ``pandas.NA`` and a masked value are missing samples; NaN is an error. A missing
-sample may have any value in the range of its variable, one with an uncertainty ε any value from v - ε to v + ε.
+sample may have any value in the range of its variable, one with an uncertainty ε any value from v - ε to v + ε. The
+same holds in discrete time for what a trace that was read lacks (an empty cell, a null, a NaN of pandas); in dense time
+such a signal has no sample there, and holds its value.
 """
 
 from __future__ import annotations
@@ -11,11 +13,12 @@ from math import inf, isnan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, did_you_mean, shown
-from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import np
 from rtamt.signals import dense_arrays
-from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping, number_of
+from rtamt.signals.arrays import TIME, is_mapping, number_of
 from rtamt.signals.time_columns import check_mapping
+from rtamt.signals.trace import Trace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,9 +117,12 @@ def range_of(name: str, value: Any) -> tuple[float, float]:
 
 
 def fill_gaps(data: Any, names: Sequence[str], *, own_time_bases: bool) -> tuple[Any, dict[str, Mask]]:
-    """Return the data with missing samples replaced by zeros, and masks of the variables with missing samples."""
-    if isinstance(data, WithTimeBases):
-        return data, {}  # readers handle gaps
+    """Return the data with missing samples replaced by zeros, and masks of the variables with missing samples.
+
+    In a trace that was read, a signal that lacks samples of its table has its own time base, which dense time uses.
+    """
+    if isinstance(data, Trace):
+        return (data, {}) if own_time_bases else _fill_gaps_of_trace(data, names)
     missing: dict[str, Mask] = {}
     if own_time_bases:
         filled: dict[str, Any] = {}
@@ -128,6 +134,22 @@ def fill_gaps(data: Any, names: Sequence[str], *, own_time_bases: bool) -> tuple
         check_mapping(data, TIME, names)
     kept = [key for key in keys if key == TIME or key in names or is_mapping(data)]
     return {key: _fill_gaps(data[key], key, missing) if key in names else data[key] for key in kept}, missing
+
+
+def _fill_gaps_of_trace(trace: Trace, names: Sequence[str]) -> tuple[Trace, dict[str, Mask]]:
+    """Return a trace in which each signal that lacks samples of its table has all of them."""
+    made, missing = {name: trace.channel(name) for name in trace}, {}
+    for name in names:
+        place = trace.aliases.get(name, name)
+        channel = made.get(place)
+        if channel is None or channel.times is None or channel.table is None:
+            continue
+        gaps = np.isin(channel.table, channel.times, assume_unique=True, invert=True)
+        values = np.zeros(len(gaps))
+        values[~gaps] = channel.values
+        made[place] = replace(channel, times=channel.table, values=values, first_gap=None, table=None)
+        missing[name] = gaps
+    return trace.with_channels(made), missing
 
 
 def _items(given: Any, what: str, example: str, names: Sequence[str]) -> list[tuple[str, Any]]:

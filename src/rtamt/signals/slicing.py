@@ -25,8 +25,12 @@ def sliced(name: str, channel: Channel, times: slice) -> Channel:
         raise TraceError(f"'{name}' has no timestamps, so that it has no times to slice", variable=name)
     low, high = (_bound(end, channel.times.dtype) for end in (times.start, times.stop))
     inside = _inside(channel.times, low, high)
+    kept, values = channel.times[inside], channel.values[inside]
     table = None if channel.table is None else channel.table[_inside(channel.table, low, high)]
-    return replace(channel, times=channel.times[inside], values=channel.values[inside], table=table)
+    if table is None or len(table) == len(kept):  # the gaps are outside
+        return replace(channel, times=kept, values=values, first_gap=None, table=None)
+    first_gap = int(np.isin(table, kept, assume_unique=True, invert=True).argmax())
+    return replace(channel, times=kept, values=values, first_gap=first_gap, table=table)
 
 
 def _inside(times: NDArray[Any], low: Any, high: Any) -> NDArray[np.bool_]:

@@ -18,7 +18,7 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
-from rtamt.signals.data_errors import missing_sample, possible_times
+from rtamt.signals.data_errors import TRACE_MENDS, missing_sample, possible_times
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal
@@ -71,7 +71,8 @@ class Trace(WithTimeBases):
 
     Made by :func:`rtamt.read`; ``Specification.evaluate`` and the monitors' ``update_many`` take it.
     In dense time every variable keeps its own time base. Discrete time needs a common time base:
-    that of the source, or one chosen explicitly with :meth:`resample` or :meth:`hold`.
+    that of the source, or one chosen explicitly with :meth:`resample` or :meth:`hold`. A sample that the source lacks
+    may have any value: ``evaluate`` bounds the robustness, and monitors need the sample.
 
     ``print(trace)`` shows the signals, and what was guessed.
 
@@ -281,7 +282,7 @@ class Trace(WithTimeBases):
         channels = {name: self.channel(name) for name in names if name != TIME}
         for name, channel in channels.items():
             if channel.first_gap is not None:
-                raise missing_sample(name, channel.first_gap, self._source)
+                raise missing_sample(name, channel.first_gap, self._source, TRACE_MENDS)
         chosen = channels or self._channels
         self._check_one_time_base(chosen)
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}

@@ -49,6 +49,19 @@ def test_in_dense_time_a_variable_has_no_sample_where_its_cell_is_empty(run, wri
     )
 
 
+def test_an_empty_cell_beside_members_of_groups_is_rejected_with_the_options_of_the_command(run, write):
+    write("cars.csv", "time,ego,car_1.x\n0,1,9\n1,,9\n2,1,\n")
+    write("cars.stl", 'group cars = "car_*"\nalways(forall v in cars: v.x - ego > 5)')
+    assert run("check", "cars.stl", "cars.csv") == (
+        2,
+        "",
+        "rtamt: 'ego' is missing at sample 1 of cars.csv, but discrete time needs a value at every sample: "
+        "fill the gap, hold the value before it (--hold-for DURATION), use dense time (--time dense), or put all on "
+        "one time base (--resample PERIOD)\n",
+    )
+    assert run("check", "cars.stl", "cars.csv", "--hold-for", "1s").code == 0
+
+
 @pytest.mark.parametrize(("header", "options"), [("t", ["--time-unit", "ns"]), ("t [ns]", [])])
 def test_integer_nanoseconds_are_exact(run, write, header, options):
     start = 1_700_000_000 * 10**9

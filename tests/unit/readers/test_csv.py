@@ -377,7 +377,7 @@ def test_a_file_of_20_000_columns_takes_time_in_proportion_to_its_size(tmp_path)
 MISSING = "'x' is missing at sample 1{}, but discrete time needs a value at every sample: fill the gap, {}"
 
 
-def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_entry_point(
+def test_an_empty_cell_in_discrete_time_is_rejected_wherever_a_number_is_needed(
     tmp_path, capsys, monkeypatch
 ):
     text = "time,x,y\n0,1,2\n1,,3\n2,4,5\n"
@@ -394,11 +394,15 @@ def test_an_empty_cell_in_discrete_time_is_rejected_by_one_sentence_at_every_ent
         assert answer.code == 2
         assert expected in answer.err
     spec = rtamt.parse("historically(x >= 0)")
+    expected = MISSING.format(
+        " of log.csv",
+        "hold the value before it (trace.hold(), or hold_for= of rtamt.read), use dense time (time='dense'), put all "
+        "on one time base (trace.resample(period=...)), or read the bounds of the robustness "
+        "(spec.evaluate(trace).interval)",
+    )
     entries = (
-        lambda: spec.evaluate(rtamt.read("log.csv")),
         lambda: spec.monitor().update_many(rtamt.read("log.csv")),
         lambda: rtamt.check_stream(spec, rtamt.scan("log.csv")),
-        lambda: rtamt.evaluate_batch(spec, [rtamt.read("log.csv")]),
         lambda: rtamt.evaluate_all([spec], rtamt.read("log.csv")),
     )
     for entry in entries:
