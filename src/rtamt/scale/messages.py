@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from datetime import datetime
 from fractions import Fraction
-from math import isfinite, isnan, nan
+from math import isfinite, isinf, isnan, nan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import UNITS, check_unit
 from rtamt.language.value_types import Enumeration
+from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.scale.shard import Sample, key_problem
@@ -71,7 +73,9 @@ def decode_json(value: bytes) -> Mapping[str, Any]:
     {'time': 0, 'x': 1.5}
     """
     try:
-        data = json.loads(value, parse_constant=_refuse_constant, object_pairs_hook=_unique)
+        data = json.loads(
+            value, parse_float=_float, parse_constant=_refuse_constant, object_pairs_hook=_unique
+        )
     except json.JSONDecodeError as error:
         raise TraceError(f"the message is not JSON: {error.msg} at column {error.colno}") from None
     except UnicodeDecodeError:
@@ -85,6 +89,17 @@ def decode_json(value: bytes) -> Mapping[str, Any]:
             f'the message is {_format_value(data)}, expected a JSON object, such as {{"time": 0, "x": 1}}'
         )
     return data
+
+
+class _TooLarge(float):
+    """A number of JSON beyond the range of a double; only infinities that are written as such are values."""
+
+    __slots__ = ()
+
+
+def _float(text: str) -> float:
+    value = float(text)
+    return _TooLarge(value) if isinf(value) else value
 
 
 def _refuse_constant(text: str) -> float:
@@ -196,21 +211,23 @@ class MessageReader:
     def _seconds(self, name: str, stamp: Any) -> float:
         if isinstance(stamp, str):
             stamp = date_in(stamp) if len(stamp) <= 64 else None
-        if stamp.__class__ is float or stamp.__class__ is int:
-            if isfinite(stamp) if stamp.__class__ is float else abs(stamp) < 2**63:
+        if isinstance(stamp, float) or stamp.__class__ is int:
+            if isfinite(stamp) if isinstance(stamp, float) else abs(stamp) < 2**63:
                 seconds = stamp if self._scale == 1 else Fraction(stamp) * self._scale
                 if not is_implausible(float(seconds)):
                     return float(seconds)
             raise TraceError(
                 f"'{name}' is {_format_value(stamp)}, which is no time in seconds; is its unit another one?"
             )
-        nanoseconds = None if stamp is None or isinstance(stamp, bool) else _nanoseconds(stamp)
+        nanoseconds = _nanoseconds(stamp)
         if nanoseconds is None:
             raise TraceError(f"'{name}' is not a time: expected a number, or a date such as {EXAMPLE}")
         return nanoseconds / 10**9
 
 
 def _nanoseconds(stamp: Any) -> int | None:
+    if not isinstance(stamp, datetime | np.datetime64):
+        return None
     if isinstance(stamp, datetime) and stamp.tzinfo is not None:
         stamp = stamp.replace(tzinfo=None) - (stamp.utcoffset() or stamp - stamp)
     return nanoseconds_of(stamp)
@@ -238,10 +255,11 @@ def _number(data: Mapping[str, Any], name: str, columns: tuple[str, ...], type_:
     if value.__class__ is float or value.__class__ is bool:
         return float(value)
     if isinstance(value, int):
-        try:
+        with suppress(OverflowError):
             return float(value)
-        except OverflowError:
-            raise TraceError(f"'{columns[0]}' is beyond the range of a double", variable=name) from None
+        value = _TooLarge("inf")
+    if isinstance(value, _TooLarge):
+        raise TraceError(f"'{columns[0]}' is beyond the range of a double", variable=name)
     if isinstance(value, str):
         code = type_.code(value) if isinstance(type_, Enumeration) else _INFINITIES.get(value)
         if code is not None:

@@ -42,6 +42,10 @@ def test_samples_in_json():
     assert read.read(b'{"stamp": 3, "speed": 1, "brake.value": 2}', b"a") == ("a", 3.0, (1.0, 2.0))
 
 
+def test_a_number_beyond_the_range_of_a_double_that_nothing_reads():
+    assert reader().read(message()[:-1] + b', "more": 1e999}', b"a").values == (1.0, 2.0)
+
+
 def test_names_units_and_members_of_the_specification():
     spec = rtamt.parse(
         'enum Mode { MANUAL, AUTO = 4 } Mode mode; float v = "vehicle.speed"; always(mode == AUTO -> v <= 30)'
@@ -91,6 +95,26 @@ def test_names_units_and_members_of_the_specification():
         (message(speed=None), "'speed' is null, expected a number"),
         (message(speed="3"), "'speed' is \"3\", expected a number"),
         (message(speed=10**400), "'speed' is beyond the range of a double"),
+        (
+            b'{"time": 0, "speed": 1e999, "brake": {"value": 2}}',
+            "'speed' is beyond the range of a double",
+        ),
+        (
+            b'{"time": 0, "speed": -1e999, "brake": {"value": 2}}',
+            "'speed' is beyond the range of a double",
+        ),
+        (
+            b'{"time": 1e999, "speed": 1, "brake": {"value": 2}}',
+            "'time' is inf, which is no time in seconds; is its unit another one?",
+        ),
+        (
+            message(time=[1]),
+            "'time' is not a time: expected a number, or a date such as 2026-05-01T12:00:00.5",
+        ),
+        (
+            message(time={"sec": 1}),
+            "'time' is not a time: expected a number, or a date such as 2026-05-01T12:00:00.5",
+        ),
         (message(speed={}), "'speed' is dict, expected a number"),
     ],
 )
