@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::size_t checksum_size = 4;
 
+// How many equal samples a runner takes at once, for which it needs columns of that length.
+constexpr std::size_t longest_hold = 4096;
+
 // Times lie between these, so that bounds can be added to them.
 constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
 
@@ -113,7 +116,7 @@ std::size_t Monitor::parameter_called(std::string_view name) const {
            (known.empty() ? "none" : known) + ".");
 }
 
-void Monitor::set_parameter(std::size_t index, double value) {
+void Monitor::check_parameter(std::size_t index, double value) const {
     const std::vector<Parameter>& parameters = metadata_.parameters;
     if (index >= parameters.size()) {
         refuse("There is no parameter " + std::to_string(index) + ": the program has " +
@@ -129,8 +132,12 @@ void Monitor::set_parameter(std::size_t index, double value) {
         refuse("The parameter '" + parameter.name +
                "' cannot change in the middle of a trace: set it before the first sample.");
     }
+}
+
+void Monitor::set_parameter(std::size_t index, double value) {
+    check_parameter(index, value);
     Program patched = program();
-    for (const std::uint32_t place : parameter.instructions)
+    for (const std::uint32_t place : metadata_.parameters[index].instructions)
         patched.instructions[place].x = value;
     runner_ = make_runner(std::move(patched), metadata_);
     broken_ = false;
@@ -147,7 +154,22 @@ void Monitor::hold(std::span<const double> row, std::size_t count, std::span<rta
     SampledRunner& runner = discrete();
     require_ready();
     check_row(row, known.size());
-    unbroken([&] { runner.hold(row, count, known); });
+    if (count <= longest_hold) return unbroken([&] { runner.hold(row, count, known); });
+    Snapshot before;
+    runner.transfer(before);
+    try {
+        for (std::size_t left = count; left != 0;) {
+            const std::size_t part = std::min(left, longest_hold);
+            runner.hold(row, part, known);
+            left -= part;
+        }
+    } catch (...) {
+        unbroken([&] {
+            Snapshot read(before.bytes());
+            runner.transfer(read);
+        });
+        throw;
+    }
 }
 
 // Refuses a sample that has the wrong number of values, or one among them that is NaN, outside its

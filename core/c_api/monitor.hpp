@@ -35,11 +35,14 @@ class Monitor {
     [[nodiscard]] double parameter(std::size_t index) const noexcept;
 
     void set_parameter(std::size_t index, double value);
+    // Throws std::invalid_argument if set_parameter would.
+    void check_parameter(std::size_t index, double value) const;
     // Its index; throws std::invalid_argument if there is none of this name.
     [[nodiscard]] std::size_t parameter_called(std::string_view name) const;
     void step(std::span<const double> row, std::span<rtamt_value> known);
 
-    // The same sample `count` times, all of them or none; what the last one made known.
+    // The same sample `count` times, all of them or none; what the last one made known. Memory does
+    // not grow with `count`.
     void hold(std::span<const double> row, std::size_t count, std::span<rtamt_value> known);
     void push(std::span<const rtamt_sample> samples);
     void finish();

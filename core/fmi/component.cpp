@@ -22,6 +22,9 @@ constexpr std::size_t checksum_size = 4;
 // How far, as a part of the period, a communication point may miss a sampling instant.
 constexpr double tolerance = 1e-6;
 
+// How many samples a step may take.
+constexpr std::int64_t longest_step = 100'000'000;
+
 // The variables of an Outcome, in this order.
 enum class Output : std::uint32_t { robustness, verdict, known, since, lower, upper };
 
@@ -117,6 +120,33 @@ Component::Now Component::fresh() const {
     return fresh;
 }
 
+// ---- lifecycle ----------------------------------------------------------------------------------
+
+void Component::require(Phase phase, const char* call, const char* when) const {
+    if (now_.phase != phase) refuse(std::string(call) + " is only possible " + when + ".");
+}
+
+void Component::begin(double time) {
+    require(Phase::created, "Setting the start time", "before the initialisation begins");
+    if (!std::isfinite(time)) refuse("The start time is " + shown(time) + ": it must be finite.");
+    now_.start = now_.reached = time;
+}
+
+void Component::initialise() {
+    require(Phase::created, "The beginning of the initialisation", "once, or after a reset");
+    now_.phase = Phase::initialising;
+}
+
+void Component::settle() {
+    require(Phase::initialising, "The end of the initialisation", "after its beginning");
+    now_.phase = Phase::stepping;
+}
+
+void Component::terminate() {
+    require(Phase::stepping, "The end of the simulation", "once, after the initialisation");
+    now_.phase = Phase::terminated;
+}
+
 void Component::reset() {
     monitor_ = std::make_unique<c_api::Monitor>(program_);
     now_ = fresh();
@@ -163,6 +193,11 @@ void Component::advance_discrete(double time, double end) {
     if (first != monitor_->samples()) {
         refuse("The step begins at " + shown(time) + " s, but the last one ended at " +
                shown(now_.reached) + " s.");
+    }
+    if (last - first > longest_step) {
+        refuse("The step from " + shown(time) + " s to " + shown(end) + " s takes " +
+               std::to_string(last - first) + " samples: make steps of at most " +
+               std::to_string(longest_step) + " samples.");
     }
     std::vector<rtamt_value> known(is_early() ? monitor_->program().outputs.size()
                                               : 2 * now_.outcomes.size());
@@ -268,6 +303,15 @@ std::int64_t Component::integer(std::uint32_t reference) const {
     return verdict > 0.0 ? 1 : verdict < 0.0 ? -1 : 0;
 }
 
+std::int32_t Component::integer32(std::uint32_t reference) const {
+    const std::int64_t value = integer(reference);
+    if (!std::in_range<std::int32_t>(value)) {
+        refuse("The variable with the reference " + std::to_string(reference) + " is " +
+               std::to_string(value) + ", which does not fit into 32 bits.");
+    }
+    return static_cast<std::int32_t>(value);
+}
+
 bool Component::boolean(std::uint32_t reference) const {
     if (is_settable(reference)) return real(reference) != 0.0;
     if (!is_output(reference) || output_of(reference - outputs(), is_early()) != Output::known) {
@@ -277,20 +321,29 @@ bool Component::boolean(std::uint32_t reference) const {
     return outcome(reference).known;
 }
 
-void Component::set(std::uint32_t reference, double value) {
-    if (reference < outputs()) {
-        now_.inputs[reference] = value; // NaN is refused when it becomes a sample
-        return;
+void Component::set(std::span<const std::uint32_t> references, std::span<const double> values) {
+    for (std::size_t i = 0; i < references.size(); ++i)
+        check_set(references[i], values[i]);
+    for (std::size_t i = 0; i < references.size(); ++i) {
+        if (references[i] < outputs()) {
+            now_.inputs[references[i]] = values[i];
+        } else {
+            monitor_->set_parameter(references[i] - parameters(), values[i]);
+        }
     }
+}
+
+void Component::check_set(std::uint32_t reference, double value) const {
+    if (reference < outputs()) return; // a wrong value is refused when it becomes a sample
     const std::uint32_t first = parameters();
     if (!is_settable(reference)) {
         refuse("The variable with the reference " + std::to_string(reference) + " cannot be set.");
     }
-    if (now_.phase != Phase::setting) {
+    if (now_.phase != Phase::created && now_.phase != Phase::initialising) {
         refuse("The parameter '" + monitor_->metadata().parameters[reference - first].name +
                "' can only be set before the end of the initialisation.");
     }
-    monitor_->set_parameter(reference - first, value);
+    monitor_->check_parameter(reference - first, value);
 }
 
 // ---- state --------------------------------------------------------------------------------------
@@ -298,7 +351,7 @@ void Component::set(std::uint32_t reference, double value) {
 void Component::Now::transfer(Snapshot& snapshot) {
     auto number = static_cast<std::uint8_t>(phase);
     snapshot.item(number);
-    snapshot.require(number <= static_cast<std::uint8_t>(Phase::terminated));
+    snapshot.require(number <= static_cast<std::uint8_t>(Phase::initialising));
     phase = static_cast<Phase>(number);
     for (double* value : {&start, &reached})
         snapshot.item(*value);

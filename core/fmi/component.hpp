@@ -32,10 +32,12 @@ class Component {
     // `folder` is where program.rtamt lies; the token must be that of the program.
     Component(const std::string& folder, const std::string& token);
 
-    // Initialisation: when the simulation starts, and that parameters are settled.
-    void begin(double time) noexcept { now_.start = now_.reached = time; }
-    void settle() noexcept { now_.phase = Phase::stepping; }
-    void terminate() noexcept { now_.phase = Phase::terminated; }
+    // The life of a unit, in this order; what comes at another time is refused. `begin`, which may
+    // be left out: when the simulation starts. `settle`: parameters are fixed, steps may come.
+    void begin(double time);
+    void initialise();
+    void settle();
+    void terminate();
     void reset();
 
     // From the communication point `time` to `time + length`.
@@ -44,9 +46,11 @@ class Component {
 
     [[nodiscard]] double real(std::uint32_t reference) const;
     [[nodiscard]] std::int64_t integer(std::uint32_t reference) const;
+    [[nodiscard]] std::int32_t integer32(std::uint32_t reference) const;
     [[nodiscard]] bool boolean(std::uint32_t reference) const;
-    // Of an input or a parameter, whatever its type: Booleans are 1 or 0, members are their codes.
-    void set(std::uint32_t reference, double value);
+    // Of inputs and parameters, whatever their types: Booleans are 1 or 0, members are their codes.
+    // All of them, or none if one is refused.
+    void set(std::span<const std::uint32_t> references, std::span<const double> values);
 
     [[nodiscard]] std::vector<std::uint8_t> save();
     void restore(std::span<const std::uint8_t> state);
@@ -57,7 +61,13 @@ class Component {
     }
 
   private:
-    enum class Phase : std::uint8_t { setting, stepping, terminated };
+    // The numbers are those of saved states.
+    enum class Phase : std::uint8_t {
+        created = 0,
+        stepping = 1,
+        terminated = 2,
+        initialising = 3,
+    };
 
     // What is known of one requirement, or of all together.
     struct Outcome {
@@ -70,7 +80,7 @@ class Component {
 
     // All that is not in the monitor.
     struct Now {
-        Phase phase = Phase::setting;
+        Phase phase = Phase::created;
         double start = 0.0;
         double reached = 0.0;
         std::vector<Outcome> outcomes; // the first is of all together
@@ -103,6 +113,8 @@ class Component {
     [[nodiscard]] const Outcome& outcome(std::uint32_t reference) const noexcept {
         return now_.outcomes[(reference - outputs()) / fields];
     }
+    void require(Phase phase, const char* call, const char* when) const;
+    void check_set(std::uint32_t reference, double value) const;
     void advance_discrete(double time, double end);
     void report_bounds(std::span<const rtamt_value> known) noexcept;
     [[nodiscard]] bool is_early() const noexcept { return !monitor_->metadata().early.empty(); }

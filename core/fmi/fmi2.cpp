@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,6 +61,18 @@ fmi2Status with(fmi2Component handle, fmi2Status refusal, Work&& work) noexcept 
             instance.log.say(status, sentence);
         });
     return status;
+}
+
+// Sets inputs and parameters of any type.
+template <class Value, class Number = std::identity>
+fmi2Status set(fmi2Component instance, const fmi2ValueReference references[], std::size_t count,
+               const Value values[], Number number = {}) noexcept {
+    return with(instance, fmi2Discard, [&](Component& component) {
+        std::vector<double> numbers(count);
+        for (std::size_t i = 0; i < count; ++i)
+            numbers[i] = static_cast<double>(number(values[i]));
+        component.set({references, count}, numbers);
+    });
 }
 
 fmi2Status refuse(fmi2Component handle, const char* sentence) noexcept {
@@ -126,7 +139,7 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component instance,
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
-    return with(instance, fmi2Error, [](Component&) {});
+    return with(instance, fmi2Error, [](Component& component) { component.initialise(); });
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
@@ -157,7 +170,7 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2GetInteger(fmi2Component instance,
                                             std::size_t count, fmi2Integer values[]) {
     return with(instance, fmi2Error, [&](Component& component) {
         for (std::size_t i = 0; i < count; ++i)
-            values[i] = static_cast<fmi2Integer>(component.integer(references[i]));
+            values[i] = component.integer32(references[i]);
     });
 }
 
@@ -178,28 +191,20 @@ RTAMT_FMI2_EXPORT fmi2Status fmi2GetString(fmi2Component instance, const fmi2Val
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component instance,
                                          const fmi2ValueReference references[], std::size_t count,
                                          const fmi2Real values[]) {
-    return with(instance, fmi2Discard, [&](Component& component) {
-        for (std::size_t i = 0; i < count; ++i)
-            component.set(references[i], values[i]);
-    });
+    return set(instance, references, count, values);
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetInteger(fmi2Component instance,
                                             const fmi2ValueReference references[],
                                             std::size_t count, const fmi2Integer values[]) {
-    return with(instance, fmi2Discard, [&](Component& component) {
-        for (std::size_t i = 0; i < count; ++i)
-            component.set(references[i], values[i]);
-    });
+    return set(instance, references, count, values);
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetBoolean(fmi2Component instance,
                                             const fmi2ValueReference references[],
                                             std::size_t count, const fmi2Boolean values[]) {
-    return with(instance, fmi2Discard, [&](Component& component) {
-        for (std::size_t i = 0; i < count; ++i)
-            component.set(references[i], values[i] != 0 ? 1.0 : 0.0);
-    });
+    return set(instance, references, count, values,
+               [](fmi2Boolean value) { return value != 0 ? 1.0 : 0.0; });
 }
 
 RTAMT_FMI2_EXPORT fmi2Status fmi2SetString(fmi2Component instance, const fmi2ValueReference[],

@@ -51,8 +51,10 @@ fmi3Status set(fmi3Instance instance, const fmi3ValueReference references[], std
                const Value values[], std::size_t room) noexcept {
     return with(instance, fmi3Discard, [&](Component& component) {
         require(count == room);
+        std::vector<double> numbers(count);
         for (std::size_t i = 0; i < count; ++i)
-            component.set(references[i], static_cast<double>(values[i]));
+            numbers[i] = static_cast<double>(values[i]);
+        component.set({references, count}, numbers);
     });
 }
 
@@ -97,7 +99,10 @@ RTAMT_FMI3_EXPORT void fmi3FreeInstance(fmi3Instance instance) {
 RTAMT_FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(
     fmi3Instance instance, fmi3Boolean /*tolerance_defined*/, fmi3Float64 /*tolerance*/,
     fmi3Float64 start, fmi3Boolean /*stop_defined*/, fmi3Float64 /*stop*/) {
-    return with(instance, fmi3Error, [&](Component& component) { component.begin(start); });
+    return with(instance, fmi3Error, [&](Component& component) {
+        component.begin(start);
+        component.initialise();
+    });
 }
 
 RTAMT_FMI3_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
@@ -131,7 +136,7 @@ RTAMT_FMI3_EXPORT fmi3Status fmi3GetInt32(fmi3Instance instance,
     return with(instance, fmi3Error, [&](Component& component) {
         require(count == room);
         for (std::size_t i = 0; i < count; ++i)
-            values[i] = static_cast<fmi3Int32>(component.integer(references[i]));
+            values[i] = component.integer32(references[i]);
     });
 }
 

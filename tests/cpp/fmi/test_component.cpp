@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 
 using rtamt::Domain;
 using rtamt::fmi::Component;
@@ -50,9 +51,19 @@ struct Folder {
     [[nodiscard]] Component component() const { return {path.string(), token}; }
 };
 
+void set(Component& component, Reference reference, double value) {
+    component.set(std::array{std::uint32_t{reference}}, std::array{value});
+}
+
 void set(Component& component, double first, double second) {
-    component.set(a, first);
-    component.set(b, second);
+    component.set(std::array{std::uint32_t{a}, std::uint32_t{b}}, std::array{first, second});
+}
+
+// Starts a simulation at this time.
+void start(Component& component, double time) {
+    component.begin(time);
+    component.initialise();
+    component.settle();
 }
 
 std::string refusal(Component& component, double from, double length) {
@@ -78,8 +89,9 @@ TEST_CASE("a step takes the samples in it") {
     const Folder folder(Domain::discrete);
     Component component = folder.component();
     component.begin(2.0);
+    component.initialise();
     CHECK(component.real(limit) == 1.5);
-    component.set(limit, 1.0);
+    set(component, limit, 1.0);
     component.settle();
     set(component, 6.0, 2.0);
     component.advance(2.0, 0.3);
@@ -101,8 +113,7 @@ TEST_CASE("what cannot be a step is refused and nothing has changed") {
     Component component = folder.component();
     CHECK(refusal(component, 0.0, 0.1) == "There is no step before the end of the initialisation, "
                                           "and none after the end of the simulation.");
-    component.begin(0.0);
-    component.settle();
+    start(component, 0.0);
     set(component, 3.0, 1.0);
     component.advance(0.0, 0.1);
     CHECK(refusal(component, 0.1, 0.15) ==
@@ -112,16 +123,16 @@ TEST_CASE("what cannot be a step is refused and nothing has changed") {
           "The step begins at 0.3 s, but the last one ended at 0.1 s.");
     CHECK(refusal(component, 0.1, -0.1) == "A step from 0.1 s of -0.1 s is none: both must be "
                                            "finite, and the length not negative.");
-    component.set(b, std::numeric_limits<double>::quiet_NaN());
+    set(component, b, std::numeric_limits<double>::quiet_NaN());
     CHECK(refusal(component, 0.1, 0.1) ==
           "'b' is NaN at sample 1, time 0.1 s: fill the gap or leave the sample out.");
     set(component, 0.0, 0.0);
     CHECK(refusal(component, 0.1, 0.5).starts_with("'a / b' has no value at sample 1, time 0.1 s"));
     set(component, 3.0, 1.0);
     CHECK(refusal(component, 0.1, 0.1) == "done");
-    CHECK(thrown<std::invalid_argument>([&] { component.set(limit, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { set(component, limit, 2.0); }) ==
           "The parameter 'limit' can only be set before the end of the initialisation.");
-    CHECK(thrown<std::invalid_argument>([&] { component.set(known, 2.0); }) ==
+    CHECK(thrown<std::invalid_argument>([&] { set(component, known, 2.0); }) ==
           "The variable with the reference 4 cannot be set.");
     CHECK(thrown<std::invalid_argument>([&] { (void)component.real(99); }) ==
           "There is no real variable with the reference 99.");
@@ -131,13 +142,101 @@ TEST_CASE("what cannot be a step is refused and nothing has changed") {
           "There is no Boolean variable with the reference 3.");
 }
 
+TEST_CASE("several variables are set, or none if one is refused") {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    const std::array<std::uint32_t, 3> references{a, limit, verdict};
+    const auto before = component.save();
+    CHECK(thrown<std::invalid_argument>([&] {
+              component.set(references, std::array{4.0, 2.0, 1.0});
+          }) == "The variable with the reference 3 cannot be set.");
+    CHECK(component.save() == before);
+    CHECK(thrown<std::invalid_argument>([&] {
+              component.set(std::span(references).first(2),
+                            std::array{4.0, std::numeric_limits<double>::quiet_NaN()});
+          }) == "The parameter 'limit' may not be NaN.");
+    CHECK(component.save() == before);
+    component.set(std::span(references).first(2), std::array{4.0, 2.0});
+    CHECK((component.real(a) == 4.0 && component.real(limit) == 2.0));
+}
+
+TEST_CASE("calls at the wrong time of a unit's life are refused and change nothing") {
+    const Folder folder(Domain::dense);
+    Component component = folder.component();
+    const auto said = [&](auto call) {
+        const auto before = component.save();
+        const std::string sentence = thrown<std::invalid_argument>(call);
+        CHECK(component.save() == before);
+        return sentence;
+    };
+    const auto begin = [&] { component.begin(1.0); };
+    const auto initialise = [&] { component.initialise(); };
+    const auto settle = [&] { component.settle(); };
+    const auto terminate = [&] { component.terminate(); };
+    const std::string late_start =
+        "Setting the start time is only possible before the initialisation begins.";
+    const std::string late_initialisation =
+        "The beginning of the initialisation is only possible once, or after a reset.";
+    const std::string no_settling =
+        "The end of the initialisation is only possible after its beginning.";
+    const std::string no_end =
+        "The end of the simulation is only possible once, after the initialisation.";
+    CHECK(said([&] { component.begin(std::numeric_limits<double>::quiet_NaN()); }) ==
+          "The start time is nan: it must be finite.");
+    CHECK((said(settle) == no_settling && said(terminate) == no_end));
+    component.initialise();
+    CHECK((said(begin) == late_start && said(initialise) == late_initialisation));
+    CHECK(said(terminate) == no_end);
+    component.settle();
+    CHECK((said(begin) == late_start && said(initialise) == late_initialisation));
+    CHECK(said(settle) == no_settling);
+    component.terminate();
+    CHECK((said(begin) == late_start && said(initialise) == late_initialisation));
+    CHECK((said(settle) == no_settling && said(terminate) == no_end));
+    component.reset();
+    start(component, 1.0);
+}
+
+TEST_CASE("a code that does not fit into 32 bits is refused") {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    set(component, limit, -2147483648.0);
+    CHECK(component.integer32(limit) == std::numeric_limits<std::int32_t>::min());
+    set(component, limit, 2147483648.0);
+    CHECK(component.integer(limit) == 2147483648);
+    CHECK(thrown<std::invalid_argument>([&] { (void)component.integer32(limit); }) ==
+          "The variable with the reference 6 is 2147483648, which does not fit into 32 bits.");
+}
+
+TEST_CASE("a long step is its samples one by one, and one of too many is refused") {
+    const Folder folder(Domain::discrete);
+    Component component = folder.component();
+    Component other = folder.component();
+    start(component, 0.0);
+    start(other, 0.0);
+    constexpr int count = 10'000;
+    set(component, 6.0, 2.0);
+    component.advance(0.0, 0.1 * count);
+    set(other, 6.0, 2.0);
+    for (int i = 0; i < count; ++i)
+        other.advance(0.1 * i, 0.1);
+    CHECK((component.real(robustness) == other.real(robustness)));
+    CHECK((component.real(since) == other.real(since) && component.boolean(known)));
+    set(component, 0.0, 0.0);
+    CHECK(refusal(component, 0.1 * count, 0.1 * count)
+              .starts_with("'a / b' has no value at sample 10000, time 1000 s"));
+    CHECK(refusal(component, 0.1 * count, 1e9) ==
+          "The step from 1000 s to 1000001000 s takes 10000000000 samples: make steps of at most "
+          "100000000 samples.");
+}
+
 TEST_CASE("inputs and parameters are numbers whatever their type") {
     const Folder folder(Domain::discrete);
     Component component = folder.component();
-    component.set(a, 1.0);
-    component.set(limit, 4.0);
+    set(component, a, 1.0);
+    set(component, limit, 4.0);
     CHECK((component.boolean(a) && component.integer(limit) == 4 && !component.boolean(b)));
-    component.set(a, 0.5);
+    set(component, a, 0.5);
     CHECK(thrown<std::invalid_argument>([&] { (void)component.integer(a); }) ==
           "There is no integer variable with the reference 0.");
 }
@@ -145,8 +244,7 @@ TEST_CASE("inputs and parameters are numbers whatever their type") {
 TEST_CASE("in dense time communication points are samples") {
     const Folder folder(Domain::dense);
     Component component = folder.component();
-    component.begin(0.0);
-    component.settle();
+    start(component, 0.0);
     set(component, 3.0, 1.0);
     component.advance(0.0, 0.25);
     CHECK(!component.boolean(known));
@@ -163,9 +261,8 @@ TEST_CASE("a state goes to another unit and a damaged one nowhere") {
     for (const Domain domain : {Domain::discrete, Domain::dense}) {
         const Folder folder(domain);
         Component component = folder.component();
-        component.begin(0.0);
-        component.set(limit, 0.5);
-        component.settle();
+        set(component, limit, 0.5);
+        start(component, 0.0);
         for (int i = 0; i < 7; ++i) {
             set(component, 3.0 + i % 3, 1.0 + i % 2);
             component.advance(0.1 * i, 0.1);
@@ -196,8 +293,7 @@ TEST_CASE("a forged state with a right checksum is refused or does no harm") {
     for (const Domain domain : {Domain::discrete, Domain::dense}) {
         const Folder folder(domain);
         Component component = folder.component();
-        component.begin(0.0);
-        component.settle();
+        start(component, 0.0);
         set(component, 3.0, 1.0);
         component.advance(0.0, 0.1);
         const auto state = component.save();

@@ -236,7 +236,7 @@ def test_a_program_that_was_changed_afterwards_is_refused(unit, exported, tmp_pa
     code = bytearray(program.read_bytes())
     code[60] ^= 1
     program.write_bytes(code)
-    there = unit("x >= 3", version)
+    there = unit("x >= 3", version).begin()
     there.folder = str(folder)
     with pytest.raises(Exception, match="instantiate"):
         there.make()
@@ -334,3 +334,68 @@ def test_windows_in_dense_time_are_exact_at_unix_times(unit, version):
         known = monitor.update(at, x=value)
         assert (there.get("robustness"), there.get("known_since")) == (known.values[-1], at)
         at = start + (k + 1) / 10
+
+
+@BOTH
+def test_variables_are_set_together_or_not_at_all(unit, version):
+    there = unit("parameter float limit = 1  historically(x >= limit)", version, period=PERIOD)
+    slave = there.slave
+    setter = slave.setReal if version == 2 else slave.setFloat64
+    references = [there.reference[name] for name in ("x", "limit", "robustness")]
+    with pytest.raises(FMICallException):
+        setter(references, [5.0, 3.0, 1.0])
+    assert [there.get(name) for name in ("x", "limit")] == [0.0, 1.0]
+    assert there.said[-1] == (2, f"The variable with the reference {references[2]} cannot be set.")
+    there.begin()
+
+
+@BOTH
+def test_calls_at_the_wrong_time_are_errors_that_change_nothing(unit, version):
+    there = unit("historically(x >= 1)", version, time="dense")
+    slave = there.slave
+
+    def start(time: float) -> None:
+        if version == 2:
+            slave.setupExperiment(startTime=time, tolerance=1e-6, stopTime=20.0)
+        else:
+            slave.enterInitializationMode(startTime=time, tolerance=1e-6, stopTime=20.0)
+
+    def refused(call: Any, sentence: str) -> None:
+        there.said.clear()
+        with pytest.raises(FMICallException):
+            call()
+        assert there.said == [(3, sentence)]  # error
+
+    late = "Setting the start time is only possible before the initialisation begins."
+    refused(lambda: start(float("nan")), "The start time is nan: it must be finite.")
+    refused(
+        slave.exitInitializationMode, "The end of the initialisation is only possible after its beginning."
+    )
+    there.begin(start=2.0)
+    refused(lambda: start(7.0), late)
+    there.set(x=3.0)
+    there.step(2.0)
+    assert there.get("robustness") == 2.0
+    slave.terminate()
+    refused(
+        slave.exitInitializationMode, "The end of the initialisation is only possible after its beginning."
+    )
+    assert there.refusal(2.1) == (
+        "There is no step before the end of the initialisation, and none after the end of the simulation."
+    )
+    slave.reset()
+    there.begin(start=7.0).set(x=4.0)
+    there.step(7.0)
+    assert (there.get("robustness"), there.get("known_since")) == (3.0, 7.0)
+
+
+@BOTH
+@pytest.mark.parametrize("verdict", ["delayed", "interval"])
+def test_a_step_over_very_many_periods_is_refused_and_the_unit_goes_on(unit, version, verdict):
+    there = unit("always[0:1s](x >= 1)", version, period=PERIOD, verdict=verdict).begin()
+    there.set(x=3.0)
+    assert there.refusal(0.0, 1e12) == (
+        "The step from 0 s to 1e+12 s takes 10000000000000 samples: make steps of at most 100000000 samples."
+    )
+    there.step(0.0, 1000.0)
+    assert there.get("robustness" if verdict == "delayed" else "lower") == 2.0
