@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 _COUNT = struct.Struct("<I")
 _STEP = struct.Struct("<qq")
 
+#: How many characters a message shows on each side of a wrong one.
+_AROUND = 20
+
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
@@ -93,7 +96,13 @@ def damaged(reason: str) -> UsageError:
 
 
 def _text(text: str) -> bytes:
-    encoded = text.encode()
+    try:
+        encoded = text.encode()
+    except UnicodeEncodeError as error:
+        around = text[max(error.start - _AROUND, 0) : error.start + _AROUND]
+        raise UsageError(
+            f"a program cannot contain {text[error.start]!a}, which UTF-8 lacks: correct the name in {around!a}"
+        ) from None
     return _COUNT.pack(len(encoded)) + encoded
 
 

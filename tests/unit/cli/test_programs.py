@@ -144,3 +144,13 @@ def test_what_only_fleets_or_only_monitors_have_is_an_error(run):
     for option in ("--dump", "--worst-case"):
         answer = run("compile", SPEC, "--period", "100ms", "--fleet", option, "-o", "x.rtamt")
         assert answer.err == f"rtamt: {option} is for programs of one monitor; leave it or --fleet out\n"
+
+
+@pytest.mark.parametrize("command", ["compile", "fmu"])
+def test_a_name_with_bytes_that_are_not_utf_8_is_rejected_as_such(run, command):
+    assert run(command, '"x\udcff" >= 3', "--period", "1s", "-o", "spec.out") == (
+        2,
+        "",
+        "rtamt: a program cannot contain '\\udcff', which UTF-8 lacks: correct the name in '\"x\\udcff\" >= 3'\n",
+    )
+    assert not Path("spec.out").exists()
