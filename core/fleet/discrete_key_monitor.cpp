@@ -48,6 +48,7 @@ class DiscreteEarly final : public KeyMonitor {
             forget_start();
             if (!learn(monitor_, seen_of(sample))) return at_start(true);
         } else {
+            if (comes_too_late(sample.time)) return at_start(true);
             keep(seen_of(sample));
             const double span = early_.back().time - early_.front().time;
             if (std::nearbyint(span / monitor_.period()) >=
@@ -208,6 +209,23 @@ class DiscreteEarly final : public KeyMonitor {
     // Whether a watermark excludes all samples before one.
     [[nodiscard]] bool is_first(double time, std::optional<double> mark) const noexcept {
         return mark && (*mark - time) / monitor_.period() + program_.tolerance >= -1;
+    }
+
+    // Whether a sample that came before the trace starts is too late for the newest one of them, or
+    // for the watermark.
+    [[nodiscard]] bool comes_too_late(double time) const {
+        const double period = monitor_.period();
+        const double last = early_.empty() ? time : early_.back().time;
+        double closed = early_.empty() ? -infinity : -static_cast<double>(*program_.lateness) - 1;
+        if (mark_) {
+            closed = std::max(closed, std::floor((*mark_ - last) / period + program_.tolerance));
+        }
+        const double steps = std::nearbyint((time - last) / period);
+        if (steps > closed) return false;
+        if (std::fabs(time - last - steps * period) > program_.tolerance * period) {
+            off_grid(time, last);
+        }
+        return true;
     }
 
     // Whether a sample did not come too late, and was taken.

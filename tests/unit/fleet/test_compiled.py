@@ -87,6 +87,27 @@ def test_booleans_and_ranges_are_checked() -> None:
             in_c.update([7], [0], columns)
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_first_samples_that_are_too_late_are_left_out(time: str) -> None:
+    spec = rtamt.parse("once[0:2](x >= 3)", time=time, period="1s")
+    fleet = rtamt.Fleet(spec, 5, verdict="interval", lateness=3)
+    in_c = CFleet(fleet.compile(), 5)
+    batch = [7] * 5, [10, 6, 7, 6, 8], {"x": [1.0, 9.0, 2.0, 9.0, 4.0]}
+    update, report = fleet.update_many(*batch), in_c.update(*batch)
+    assert update.late.tolist() == report.late == [False, True, False, True, False]
+    assert [list(row) for row in zip(update.lower, update.upper, strict=True)] == [
+        list(row) for row in report.values
+    ]
+    assert fleet.late == in_c.late == 2
+    # The watermark counts before the trace starts, too.
+    for each in (fleet.update_many, in_c.update):
+        each([8], [20], {"x": [1.0]})
+    assert fleet.watermark(18) is not None
+    assert in_c.watermark(18) is not None
+    batch = [8, 8], [18, 19], {"x": [4.0, 5.0]}
+    assert fleet.update_many(*batch).late.tolist() == in_c.update(*batch).late == [True, False]
+
+
 PYTHON_ALONE: dict[str, tuple[dict[str, Any], str]] = {
     "unit": (
         {"verdict": "eager", "time_unit": "ms"},

@@ -164,6 +164,7 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                         self._check_late(seconds)
                         self._learn(seconds, known)
                     else:
+                        self._check_first(seconds)
                         self._begin(seconds, known)
         except self._refused:
             raise in_use() from None
@@ -253,13 +254,32 @@ class DiscreteIntervalMonitor(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if place is None:
             raise irregular(self.samples, time, last, self._step, self._tolerance)
         if place <= backend.closed:
-            raise LateSampleError(
-                f"sample {self.samples}, at {time:.15g} s, is later than the lateness of "
-                f"{format_duration(self._lateness)} allows: everything up to {backend.time(backend.closed):.15g} s "
-                f"is final; leave it out, or allow for more lateness",
-                variable=arrays.TIME,
-                index=self.samples,
-            )
+            raise self._too_late(self.samples, time, backend.time(backend.closed))
+
+    def _check_first(self, time: float) -> None:
+        """Raise the error for a first sample that is too late for the newest one of them, or for the watermark."""
+        assert self._late is not None
+        newest = max((then for then, _ in self._early), default=None)
+        last, closed = (time, -inf) if newest is None else (newest, -self._late - 1)
+        period = float(self._step)
+        if self._mark is not None:
+            closed = max(closed, floor((self._mark - last) / period + self._tolerance))
+        steps = round((time - last) / period)
+        if steps > closed:
+            return
+        if abs(time - last - steps * period) > self._tolerance * period:
+            raise irregular(self._count, time, last, self._step, self._tolerance)
+        raise self._too_late(self._count, time, last + closed * period)
+
+    def _too_late(self, index: int, time: float, closed: float) -> LateSampleError:
+        """Return the error for a sample; ``closed``: the last time at which none can arrive any more."""
+        return LateSampleError(
+            f"sample {index}, at {time:.15g} s, is later than the lateness of "
+            f"{format_duration(self._lateness)} allows: everything up to {closed:.15g} s "
+            f"is final; leave it out, or allow for more lateness",
+            variable=arrays.TIME,
+            index=index,
+        )
 
     def _format_time(self, time: float) -> str:
         """Return a time in the form of the back end for a message."""
