@@ -40,6 +40,8 @@ class Bounds(NamedTuple):
 class Reports(ABC):
     """One output and its monitor: samples in, records out. ``satisfied``: the last verdict; None: open."""
 
+    _monitor: Any
+
     def __init__(self, output: Output) -> None:
         self.output = output
         self.topic = output.topic
@@ -49,14 +51,15 @@ class Reports(ABC):
     def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
         """Take numbers of one instant; return the records."""
 
-    @abstractmethod
     def reset(self) -> None:
         """Forget all samples."""
+        self._monitor.reset()
+        self.satisfied = None
 
     @property
-    @abstractmethod
     def samples(self) -> int:
         """The number of samples since the beginning or the last reset."""
+        return int(self._monitor.samples)
 
     @property
     def text(self) -> str:
@@ -93,13 +96,8 @@ class _AtStart(Reports):
         return [Bounds(self.output, stamp, known.lower, known.upper, self.satisfied, decided, start, start)]
 
     def reset(self) -> None:
-        self._monitor.reset()
+        super().reset()
         self._firsts.clear()
-        self.satisfied = None
-
-    @property
-    def samples(self) -> int:
-        return self._monitor.samples
 
     @property
     def text(self) -> str:
@@ -122,7 +120,7 @@ class _Decided(Reports):
     def __init__(self, output: Output, domain: TimeDomain) -> None:
         super().__init__(output)
         settings: dict[str, Any] = {"verdict": "eager", "time": domain, "time_unit": "ns"}
-        self._monitor: Any = output.specification.monitor(**settings)
+        self._monitor = output.specification.monitor(**settings)
 
     def take(self, stamp: int, values: Mapping[str, float]) -> list[Bounds]:
         records = []
@@ -134,14 +132,6 @@ class _Decided(Reports):
             records.append(Bounds(self.output, stamp, lower, upper, verdict.satisfied, *times))
             self.satisfied = verdict.satisfied
         return records
-
-    def reset(self) -> None:
-        self._monitor.reset()
-        self.satisfied = None
-
-    @property
-    def samples(self) -> int:
-        return int(self._monitor.samples)
 
 
 class _Changes(Reports):
@@ -166,14 +156,6 @@ class _Changes(Reports):
             ):  # the instants after the last verdict are open for as long as the horizon
                 self.satisfied = satisfied
         return records
-
-    def reset(self) -> None:
-        self._monitor.reset()
-        self.satisfied = None
-
-    @property
-    def samples(self) -> int:
-        return self._monitor.samples
 
 
 def reports_of(output: Output, domain: TimeDomain) -> Reports:

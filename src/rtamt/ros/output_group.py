@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.dense.monitor import points_of
 from rtamt.errors import SpecificationError
 from rtamt.language.contents import variables
 from rtamt.rewrite.check import always_has_a_value
 from rtamt.rewrite.horizon import horizon
-from rtamt.ros.group import MessageGroup, Robustness, SampledGroup, Verdict
+from rtamt.ros.group import Group, MessageGroup, Robustness, SampledGroup, Verdict
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
@@ -99,7 +99,25 @@ def _together(outputs: Sequence[Output], formulas: Sequence[Outputs]) -> tuple[S
     return outputs[0].specification.with_formula(every[0]), every
 
 
-class DiscreteGroup(SampledGroup):
+class _Reported(Group):
+    """Outputs whose robustness one monitor computes."""
+
+    _monitor: Any
+    standings: tuple[Standing, ...]
+
+    @property
+    def samples(self) -> int:
+        """The number of samples (in dense time, of numbers) since the beginning or the last reset."""
+        return int(self._monitor.samples)
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        self._monitor.reset()
+        for standing in self.standings:
+            standing.forget()
+
+
+class DiscreteGroup(_Reported, SampledGroup):
     """Outputs whose robustness is reported with every sample, from one program with shared sub-formulas."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Discrete) -> None:
@@ -107,20 +125,9 @@ class DiscreteGroup(SampledGroup):
         assert period is not None
         super().__init__(outputs, topic_of, period)
         self.formulas = tuple(_past(output, period) for output in outputs)
-        self.standings: tuple[Standing, ...] = tuple(Standing(output, domain) for output in outputs)
+        self.standings = tuple(Standing(output, domain) for output in outputs)
         spec, every = _together(outputs, self.formulas)
         self._monitor = spec.monitor(time=domain, semantics="standard", watch=every)
-
-    @property
-    def samples(self) -> int:
-        """The number of samples since the beginning or the last reset."""
-        return self._monitor.samples
-
-    def reset(self) -> None:
-        """Forget all samples."""
-        self._monitor.reset()
-        for standing in self.standings:
-            standing.forget()
 
     def take(
         self, stamp: int, values: Mapping[str, float], wanted: Container[str] | None = None
@@ -156,13 +163,13 @@ class DiscreteGroup(SampledGroup):
             standing.satisfied = self._held(standing, truth)
 
 
-class DenseGroup(MessageGroup):
+class DenseGroup(_Reported, MessageGroup):
     """Samples at the times in the messages' headers, each topic on its own time base."""
 
     def __init__(self, outputs: Sequence[Output], topic_of: Mapping[str, str], domain: Dense) -> None:
         super().__init__(outputs, topic_of)
         formulas = tuple(_past(output, None) for output in outputs)
-        self.standings: tuple[Standing, ...] = tuple(Standing(output, domain) for output in outputs)
+        self.standings = tuple(Standing(output, domain) for output in outputs)
         # Timestamps and ticks are both integer nanoseconds: results need no conversion.
         spec, every = _together(outputs, formulas)
         self._monitor = spec.monitor(time=domain, semantics="standard", watch=every, time_unit="ns")
@@ -232,16 +239,9 @@ class DenseGroup(MessageGroup):
             standing.latest = self._points[robustness][-1][1]
             standing.satisfied = self._is_satisfied(standing, *self._points[truth][-1])
 
-    @property
-    def samples(self) -> int:
-        """The number of numbers since the beginning or the last reset."""
-        return self._monitor.samples
-
     def reset(self) -> None:
         """Forget all samples."""
-        self._monitor.reset()
-        for standing in self.standings:
-            standing.forget()
+        super().reset()
         self._held.clear()
         self._points = []
         self._start = None
