@@ -28,6 +28,7 @@ stream_json       JSON lines to samples
 stream_csv        CSV lines to samples
 stream_times      the timestamps of those lines
 stream_members    the members of groups in JSON or CSV lines
+inexact           missing samples and bounds in those lines
 rounded           the note on integers in those lines that no double holds
 json_lines        a line of JSON to numbers and timestamps
 delayed_feeds     robustness one horizon later, as ``rtamt monitor`` prints it

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rtamt.cli.live_view import Live
+    from rtamt.language.value_types import ValueType
     from rtamt.signals.coding import Types
     from rtamt.signals.outcomes import Causation, Cause, Change, Verdict
     from rtamt.verdicts.early.at_start import StartMonitor
@@ -79,10 +80,9 @@ class EagerFeed:
     def _value(self, cause: Cause) -> str:
         """Return a value as input may have it: the name of a member, true or false, or a number."""
         type_ = self._types.get(cause.variable)
-        text = value_text(cause.value, type_)
-        if text is None:
-            return json.dumps(json_number(cause.value))
-        return text if type_ is BOOLEAN else json.dumps(text)
+        if isinstance(cause.value, tuple):
+            return f"[{', '.join(_written(end, type_) for end in cause.value)}]"
+        return _written(cause.value, type_)
 
 
 class StartFeed:
@@ -91,7 +91,8 @@ class StartFeed:
     On a terminal the live view replaces the lines; into a pipe or a file, both are written.
     """
 
-    def __init__(self, start: StartMonitor, live: Live | None = None) -> None:
+    def __init__(self, start: StartMonitor, live: Live | None = None, *, late: bool = False) -> None:
+        self._late = late
         self.start = start
         self._live = live
         self.monitor = start.bounds
@@ -100,7 +101,7 @@ class StartFeed:
     def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
-            time = _time(self.monitor, timestamp)
+            time = _time(self.monitor, timestamp, late=self._late)
             self.start.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
@@ -139,7 +140,14 @@ class StartFeed:
 class IntervalFeed:
     """Prints the bounds of every instant whenever they change; the live view is that of :class:`StartFeed`."""
 
-    def __init__(self, monitor: IntervalMonitor | MemberIntervalMonitor, live: Live | None = None) -> None:
+    def __init__(
+        self,
+        monitor: IntervalMonitor | MemberIntervalMonitor,
+        live: Live | None = None,
+        *,
+        late: bool = False,
+    ) -> None:
+        self._late = late
         self.monitor = monitor
         self._live = live
         #: The bounds at the drawn samples, in the order of arrival.
@@ -148,7 +156,7 @@ class IntervalFeed:
     def take(self, timestamp: Any, values: dict[str, float], line: int) -> str:
         """Take a sample and print what it changes; return what is wrong with it, if anything is."""
         try:
-            time = _time(self.monitor, timestamp)
+            time = _time(self.monitor, timestamp, late=self._late)
             self.monitor.update(time, **values)
         except StlError as error:
             return f"{STDIN}, line {line}: {error}"
@@ -166,9 +174,10 @@ class IntervalFeed:
                 return
         for change in changes:
             until = f', "until": {_json(change.end)}' if change.end != change.begin else ""
+            retracted = ', "retracted": true' if change.retracted else ""
             say(
                 f'{{"time": {_json(change.begin)}{until}, {_ends(change.interval)}, '
-                f'"final": {json.dumps(change.final)}}}',
+                f'"final": {json.dumps(change.final)}{retracted}}}',
                 flush=True,
             )
 
@@ -212,13 +221,25 @@ class CausationFeed:
             say(f'{{{_caused(caused)}, "final": true}}', flush=True)
 
 
-def _time(monitor: EarlyMonitor | MemberIntervalMonitor, timestamp: Any) -> Any:
-    """Return the time of a sample; without timestamps, samples are one period apart."""
+def _time(monitor: EarlyMonitor | MemberIntervalMonitor, timestamp: Any, *, late: bool = False) -> Any:
+    """Return the time of a sample; without timestamps, samples are one period apart, and none is ``late``."""
     if timestamp is not None:
         return timestamp
+    if late:
+        raise TraceError(
+            "a sample that may be late needs its time: name the column of timestamps, or leave out --lateness and "
+            "--on-correction"
+        )
     if not isinstance(monitor, _DISCRETE):
         raise TraceError("in dense time every sample needs its time")
     return monitor.samples * float(monitor.period)
+
+
+def _written(value: float, type_: ValueType | None) -> str:
+    text = value_text(value, type_)
+    if text is None:
+        return json.dumps(json_number(value))
+    return text if type_ is BOOLEAN else json.dumps(text)
 
 
 def _json(time: Any) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from math import isinf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 #: What messages call the input.
 STDIN = "stdin"
+
+#: A number, bounds of one, or None where a sample is missing.
+Known: TypeAlias = "float | tuple[float, float] | None"
+
+#: The same in messages.
+KNOWN = "a number, bounds [lower, upper], or null if it is missing"
 
 _INFINITIES = ("inf", "-inf")
 
@@ -109,6 +115,33 @@ def number_of(value: Any, name: str, number: int, type_: ValueType | None = None
     raise line_error(number, f"'{name}' is {format_value(value)}, expected a number", name)
 
 
+def known_of(value: Any, name: str, number: int, type_: ValueType | None) -> Known:
+    """Return what a value of the object is known to be: a number, bounds of it, or None where it is missing."""
+    if value is None:
+        return None
+    if not isinstance(value, list):
+        if isinstance(value, dict) or (isinstance(value, str) and not _is_number(value, type_)):
+            raise line_error(number, f"'{name}' is {format_value(value)}, expected {KNOWN}", name)
+        return number_of(value, name, number, type_)
+    if len(value) != 2 or not all(_is_number(end, type_) for end in value):
+        raise line_error(number, f"'{name}' is {format_value(value)}, expected {KNOWN}", name)
+    lower, upper = (number_of(end, name, number, type_) for end in value)
+    if not lower <= upper:
+        problem = (
+            "reversed: give the lower bound first"
+            if upper < lower
+            else "with a bound that is NaN: give numbers, or null if it is missing"
+        )
+        raise line_error(number, f"'{name}' is {format_value(value)}, {problem}", name)
+    return lower, upper
+
+
+def _is_number(value: Any, type_: ValueType | None) -> bool:
+    """Return whether :func:`number_of` takes a value, or rejects it for more than its kind."""
+    named = isinstance(value, str) and isinstance(type_, Enumeration)
+    return named or isinstance(value, (bool, int, float, _TooLarge)) or value in _INFINITIES
+
+
 def code_of(text: str, name: str, type_: Enumeration, number: int) -> float:
     """Return the code of a member, which is given by its name."""
     code = type_.code(text)
@@ -136,6 +169,15 @@ def has_value(data: dict[str, Any], name: str) -> bool:
         return _member(data, name) is not None
     except KeyError:
         return False
+
+
+def has_key(data: dict[str, Any], name: str) -> bool:
+    """Return whether the object has a value or null under a name."""
+    try:
+        _member(data, name)
+    except KeyError:
+        return False
+    return True
 
 
 def _member(data: dict[str, Any], name: str) -> Any:

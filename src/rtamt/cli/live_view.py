@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from typing import TextIO
 
+    from rtamt.cli.json_lines import Known
     from rtamt.signals.coding import Types
     from rtamt.signals.outcomes import Interval
 
@@ -66,7 +67,7 @@ class Live:
         self._values: deque[float] = deque(maxlen=self.MOST)
         self._bounds: deque[Interval] = deque(maxlen=self.MOST)
         self._status: tuple[str, bool | None] = ("", None)
-        self._latest: dict[str, float] = {}
+        self._latest: dict[str, float | tuple[float, float]] = {}
         self._known: Any = None
         self._lowest: tuple[float, Any] = (inf, None)
         self._samples = 0
@@ -79,7 +80,7 @@ class Live:
     def __exit__(self, *_: object) -> None:
         self._live.stop()
 
-    def sample(self, values: Mapping[str, float | None], *, whole: bool = False) -> None:
+    def sample(self, values: Mapping[str, Known], *, whole: bool = False) -> None:
         """Take a sample that the monitor has taken; ``whole``: what it leaves out has no value any more."""
         self._samples += 1
         if whole:
@@ -111,7 +112,7 @@ class Live:
         yield self._line(self._title, "bold")
         yield from self._band(options.max_width) if self._bounds else self._robustness(options.max_width)
         values = "  ".join(
-            f"{name} = {value_text(value, self._types.get(name)) or short(value)} {self.units.get(name, '')}".rstrip()
+            f"{name} = {self._shown(name, value)} {self.units.get(name, '')}".rstrip()
             for name, value in self._latest.items()
         )
         yield self._line(f"{self._samples} sample{'s' if self._samples != 1 else ''}  {values}")
@@ -135,6 +136,11 @@ class Live:
         drawn = blocks([*ends[0], *ends[1]])
         for name, part in zip(_BAND, (drawn[: len(known)], drawn[len(known) :]), strict=True):
             yield self._text.assemble((name, "dim"), (part, style))
+
+    def _shown(self, name: str, value: float | tuple[float, float]) -> str:
+        if isinstance(value, tuple):
+            return f"{self._shown(name, value[0])} to {self._shown(name, value[1])}"
+        return value_text(value, self._types.get(name)) or short(value)
 
     def _line(self, text: str, style: str = "") -> Any:
         return self._text(escaped(text).replace("\n", " "), style, no_wrap=True, overflow="ellipsis")

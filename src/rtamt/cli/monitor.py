@@ -20,6 +20,7 @@ from rtamt.cli.command import (
 from rtamt.cli.delayed_feeds import EventFeed, SampleFeed
 from rtamt.cli.early_feeds import CausationFeed, EagerFeed, IntervalFeed, StartFeed
 from rtamt.cli.held_feed import HeldFeed
+from rtamt.cli.inexact import Inexact, rejected
 from rtamt.cli.json_lines import STDIN, line_error
 from rtamt.cli.live_view import Live
 from rtamt.cli.parser import ERROR, OK, complain
@@ -35,6 +36,7 @@ from rtamt.signals.sampling import HeldSampler
 from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.verdicts.early.at_start import StartMonitor
 from rtamt.verdicts.early.causation import CausationMonitor
+from rtamt.verdicts.early.interval import CORRECTIONS
 from rtamt.verdicts.modes import DELAYED, MODES
 
 if TYPE_CHECKING:
@@ -79,6 +81,13 @@ with "final": true. A formula with unbounded future is monitored at the start of
 {"time": 12.3, "lower": "-inf", "upper": -1.0, "status": "violated since 12.3 s"}; the other states are "open" and
 "can no longer be violated".
 
+With --verdict eager and interval, also without --verdict where the future is unbounded, samples may be inexact: in JSON
+{"time": 0, "x": [4.8, 5.0]} was measured with an error, and in discrete time null, in CSV an empty cell, is a missing
+sample. In dense time null and an empty cell are no sample, as in files: the variable holds its value. If it is
+unknown from then on, give its bounds, such as ["-inf", "inf"]. With --lateness samples may arrive in any order, with
+some of the variables; with --on-correction replay, a line of bounds that a correction contradicts has
+"retracted": true.
+
 An invalid line ends the monitor with exit code 2. With --keep-going it is reported and skipped, and the exit
 code at the end is 2. A skipped sample leaves a gap, which --tolerance inf allows: the next sample then takes its
 place.
@@ -114,6 +123,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="; ".join(f"{mode.name}: {mode.doc}" for mode in MODES.values()) + f" (default: {DELAYED})",
     )
     parser.add_argument(
+        "--lateness",
+        metavar="DURATION",
+        help="with --verdict interval, how late a sample may arrive, such as 2s (default: samples are in order)",
+    )
+    parser.add_argument(
+        "--on-correction",
+        choices=CORRECTIONS,
+        help="with --verdict interval, what becomes of a sample that contradicts an earlier one: reject it, or replay "
+        f"the trace with it and report retracted bounds (default: {CORRECTIONS[0]})",
+    )
+    parser.add_argument(
         "--explain",
         action="store_true",
         help="with --verdict eager, print the samples that decided each verdict",
@@ -138,6 +158,7 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
     spec = read_specification(args, args.time)
     if spec.groups:
         _check_quantified(spec, args)
+    late = bool(_lateness(args))
     own_times = spec.domain.own_time_bases
     if own_times and args.tolerance is not None:
         raise CommandError("dense time has no sampling period: leave out --tolerance, or --time dense")
@@ -161,6 +182,8 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
         watched = _watch(spec, args.tolerance, output, names)
     rule = spec.domain.sampling(spec.sampling)
     held = rule is not None and rule.hold
+    if held and late:
+        raise CommandError(f"'{rule}' samples the stream in order: leave out --lateness and --on-correction")
     if rule is not None and held:
         sampler = HeldSampler(watched.monitor.input_names, rule, spec.period or rule.period)
         watched = HeldFeed(watched, sampler)
@@ -173,6 +196,7 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
         types=spec.types,
         skip_nan=held and rule is not None and rule.skip_nan,
         members=StreamMembers(spec.groups) if spec.groups else None,
+        inexact=Inexact() if held or spec.groups else _inexact(early, late=late),
     )
     if sys.stdin is None:
         raise CommandError(f"{STDIN} is closed: give one JSON object per line, or CSV with a header row")
@@ -180,7 +204,9 @@ def _run(args: argparse.Namespace, metrics: Metrics | None) -> int:
         complain("reading samples from the terminal, one JSON object per line; Ctrl-D ends")
     with nullcontext() if live is None else live:
         assumed = assumes_period(spec, args.time_column)
-        return _follow(watched, samples, live, metrics, assumed=assumed, keep_going=args.keep_going)
+        return _follow(
+            watched, samples, live, metrics, assumed=assumed, late=late, keep_going=args.keep_going
+        )
 
 
 def _follow(
@@ -190,13 +216,15 @@ def _follow(
     metrics: Metrics | None,
     *,
     assumed: bool,
+    late: bool,
     keep_going: bool,
 ) -> int:
     """Feed the monitor from stdin until the end of input; return the exit code.
 
-    ``assumed``: whether nothing determines the period of samples without timestamps, and it matters.
+    ``assumed``: whether nothing determines the period of samples without timestamps, and it matters. ``late``: whether
+    the monitor may hold back the first samples until no earlier one can arrive.
     """
-    code, noted = OK, False
+    code, noted, taken = OK, False, 0
     for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
         try:
             sample = samples.read(line, number)
@@ -213,6 +241,7 @@ def _follow(
                     complain(f"note: {STDIN}: the samples have no timestamps and are taken to be 1 s apart")
                     noted = True
             problem = watched.take(*sample, number) if sample is not None else ""
+            taken += sample is not None and not problem
             if live is not None and sample is not None and not problem:
                 live.units.update(samples.units)
                 live.sample(sample[1], whole=samples.members is not None)
@@ -224,7 +253,7 @@ def _follow(
             if not keep_going:
                 return code
     problem = watched.finish() if isinstance(watched, HeldFeed) else ""
-    if not watched.monitor.samples and not problem:
+    if not (watched.monitor.samples or (late and taken)) and not problem:
         raise CommandError(f"{STDIN} has no samples: give one JSON object per line, or CSV with a header row")
     if problem:
         complain(problem)
@@ -241,12 +270,26 @@ def _check_quantified(spec: Specification, args: argparse.Namespace) -> None:
     unfit = (
         [f"--verdict {args.verdict}"] if early and spec.domain.part(f"members_{args.verdict}") is None else []
     )
+    unfit += [f"--{name.replace('_', '-')}" for name in _lateness(args)]
     unfit += [f"'{rule}'"] if rule is not None and rule.hold else []
     for what in unfit:
         raise CommandError(
             f"the formula quantifies over '{next(iter(spec.groups))}', whose members come and go, and 'rtamt monitor' "
             f"does not support {what} for it: leave that out, or check recordings with 'rtamt check'"
         )
+
+
+def _lateness(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the options for samples out of order that were given, as settings of the monitor."""
+    given = {"lateness": args.lateness, "on_correction": args.on_correction}
+    return {name: setting for name, setting in given.items() if setting is not None}
+
+
+def _inexact(early: EarlyFeed | None, *, late: bool) -> Inexact:
+    """Return what becomes of missing samples and bounds."""
+    if early is None or isinstance(early, CausationFeed):
+        return rejected()
+    return Inexact(taken=True, late=late)
 
 
 def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> EarlyFeed | None:
@@ -257,21 +300,31 @@ def _early(spec: Specification, args: argparse.Namespace, live: Live | None) -> 
     has_bounds = not spec.groups or spec.domain.part("members_interval") is not None
     unbounded = unbounded_future(spec.formula) is not None
     at_start = verdict in {None, "interval"} and unbounded and has_bounds
+    lateness = _lateness(args)
+    for name in lateness:
+        if args.live:
+            raise CommandError(f"--live draws samples in order: leave it out, or --{name.replace('_', '-')}")
+        if not at_start and verdict != "interval":
+            raise CommandError(
+                f"--{name.replace('_', '-')} is for bounds, which late samples change: use --verdict interval, or "
+                f"leave it out"
+            )
     if not at_start and verdict in {None, DELAYED}:
         return None
     if at_start:
-        return StartFeed(StartMonitor(spec, tolerance=args.tolerance), live)
+        return StartFeed(StartMonitor(spec, tolerance=args.tolerance, **lateness), live, late=bool(lateness))
     if args.live and verdict != "interval":
         raise CommandError(
             f"--live draws the robustness; leave it out, or use --verdict {DELAYED} or --verdict interval"
         )
     settings: dict[str, Any] = {"explain": True} if args.explain else {}
     settings |= {"worst_case": True} if args.worst_case else {}
+    settings |= lateness
     monitor: Any = spec.monitor(verdict=verdict, tolerance=args.tolerance, **settings)
     if isinstance(monitor, CausationMonitor):
         return CausationFeed(monitor)
     if verdict == "interval":
-        return IntervalFeed(monitor, live)
+        return IntervalFeed(monitor, live, late=bool(lateness))
     return EagerFeed(monitor, spec.types, explain=args.explain)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from rtamt.cli.inexact import Inexact
 from rtamt.cli.json_lines import STDIN, line_error
 from rtamt.cli.rounded import Rounded
 from rtamt.cli.stream_csv import CsvSamples
@@ -32,7 +33,7 @@ class Samples:
     hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
     that :func:`rtamt.read` would take. ``unit``: of timestamps that are numbers. ``binding``: under which names the
     variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN. ``members``:
-    finds the members of groups, which may be absent.
+    finds the members of groups, which may be absent. ``inexact``: what becomes of missing samples and bounds.
     """
 
     def __init__(
@@ -46,7 +47,9 @@ class Samples:
         types: Types = NO_TYPES,
         skip_nan: bool = False,
         members: StreamMembers | None = None,
+        inexact: Inexact | None = None,
     ) -> None:
+        self._inexact = Inexact() if inexact is None else inexact
         self._types = types
         self.members = members
         self._skip_nan = skip_nan
@@ -97,6 +100,7 @@ class Samples:
                     self._rounded,
                     self._types,
                     self.members,
+                    inexact=self._inexact,
                 )
                 sample = reader.read(text, number)
                 self._read = reader.read
@@ -112,6 +116,7 @@ class Samples:
                 self._types,
                 skip_nan=self._skip_nan,
                 members=self.members,
+                inexact=self._inexact,
             )
             self.units = rows.units
             self._rows = rows

@@ -27,6 +27,7 @@ from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from rtamt.cli.inexact import Inexact
     from rtamt.cli.stream_members import StreamMembers
     from rtamt.cli.stream_times import Sample, StreamTimestamps
     from rtamt.signals.coding import Types
@@ -48,8 +49,10 @@ class CsvSamples:
         *,
         skip_nan: bool,
         members: StreamMembers | None = None,
+        inexact: Inexact,
     ) -> None:
         self._dense = dense
+        self._inexact = inexact
         self._rounded = rounded
         self._timestamps = timestamps
         self._header, _ = read_header(iter([text]), STDIN, number - 1)
@@ -102,10 +105,11 @@ class CsvSamples:
         if self._timestamps.column is None:
             self._timestamps.select(zip(header.names, (cell.strip() or None for cell in row), strict=True))
         empty = [c for c in self._columns if not row[c.position].strip()]
-        absent = [c for c in empty if c.name in self._may_be_absent]
+        may_lack = self._inexact.taken and not self._dense
+        absent = [c for c in empty if may_lack or c.name in self._may_be_absent]
         given = [c for c in self._columns if c not in (empty if self._dense else absent)]
         for column in given:
-            self._timestamps.require(column.name, row[column.position].strip(), number)
+            self._timestamps.require(column.name, row[column.position].strip(), number, self._inexact.missing)
         members = {c.name: self._member(c, row, number) for c in given if c.name in self._types}
         codes = {name: code for name, code in members.items() if code is not None}
         given = [c for c in given if c.name not in codes]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rtamt.readers.source import Field, Raw
     from rtamt.readers.timestamps import TimestampColumn
 
-#: The time (None if there are no timestamps) and the values: numbers, or None where a member has no sample.
+#: The time (None if there are no timestamps) and the values: numbers, bounds, or None where a sample is missing.
 Sample = tuple[Any, dict[str, Any]]
 
 
@@ -59,10 +59,11 @@ class StreamTimestamps:
         """Take further columns for signals."""
         self._names = tuple(dict.fromkeys((*self._names, *names)))
 
-    def require(self, name: str, value: object, number: int) -> None:
+    def require(self, name: str, value: object, number: int, advice: str = "") -> None:
         """Raise :class:`TraceError` where a sample of discrete time, in line ``number``, has no value."""
         if value is None or value == "":
-            raise line_error(number, str(missing_sample(name, self._samples, None, STREAM_MENDS)), name)
+            problem = str(missing_sample(name, self._samples, None, STREAM_MENDS))
+            raise line_error(number, f"{problem}; {advice}" if advice else problem, name)
 
     def select(self, columns: Iterable[tuple[str, Any]], *, all_named: bool = True) -> Selection | None:
         """Look for the timestamps among columns and what they hold, None where that is not known yet.

@@ -30,6 +30,8 @@ class Mode:
     settings: tuple[str, ...] = ()
     #: Whether predicates are true or false, and not a distance.
     boolean: bool = False
+    #: Whether samples may be missing, or known as bounds only.
+    inexact: bool = False
 
 
 MODES: Mapping[str, Mode] = MappingProxyType(
@@ -46,11 +48,13 @@ MODES: Mapping[str, Mode] = MappingProxyType(
                 "whether the formula holds at each sample, as soon as no later sample can change it",
                 settings=("ranges", "explain"),
                 boolean=True,
+                inexact=True,
             ),
             Mode(
                 "interval",
                 "bounds of the robustness, from what is known by now",
                 settings=("at", "ranges", "lateness", "on_correction"),
+                inexact=True,
             ),
             Mode(
                 "causation",

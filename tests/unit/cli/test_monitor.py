@@ -183,7 +183,8 @@ def test_dense_cells_may_be_empty(run):
     assert (answer.code, answer.err) == (
         2,
         "rtamt: stdin, line 2: 'y' is missing at sample 0, but discrete time needs a value at every sample: "
-        "fill the gap, or use dense time (--time dense)\n",
+        "fill the gap, or use dense time (--time dense); --verdict eager and --verdict interval take missing "
+        "samples\n",
     )
 
 
