@@ -21,7 +21,7 @@ colors      semantic tokens
 lenses      the verdicts above requirements
 evaluation  the process that reads recordings
 recording   the server's handle of that process: a request, a time limit
-messages    answers to messages that are wrong (pygls)
+messages    answers to messages that are wrong, and reports of errors (pygls)
 session     what the server keeps between requests (pygls)
 server      the requests of the protocol (pygls)
 ==========  =====================================================================

@@ -1,13 +1,16 @@
-"""Malformed messages: each gets an error response, and the server continues. Needs pygls."""
+"""Malformed messages and errors: the client learns of each by the protocol, and the server continues. Needs pygls."""
 
 from __future__ import annotations
 
+import logging
+import traceback
 from typing import Any
 
 from pygls.exceptions import (
     FeatureNotificationError,
     FeatureRequestError,
     JsonRpcException,
+    JsonRpcInternalError,
     JsonRpcInvalidParams,
     JsonRpcInvalidRequest,
     JsonRpcParseError,
@@ -54,3 +57,19 @@ def report(protocol: Protocol, error: Exception, source: Any) -> bool:
     if not isinstance(error, AnsweredError):
         protocol.refuse(error)
     return False
+
+
+def details_of(error: Exception) -> str | None:
+    """Return an error with its traceback; None for a refusal, whose message says it all."""
+    if isinstance(error, JsonRpcInternalError) and isinstance(error.data, dict):
+        return "".join((*error.data.get("traceback", ()), str(error.message)))
+    if isinstance(error, JsonRpcException):
+        return None
+    return "".join(traceback.format_exception(error)).rstrip()
+
+
+def silence_logs() -> None:
+    """Keep what pygls logs off stderr: a client that does not read it would block the server once the pipe is full."""
+    logger = logging.getLogger("pygls")
+    logger.addHandler(logging.NullHandler())
+    logger.propagate = False

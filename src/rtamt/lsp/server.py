@@ -19,6 +19,7 @@ from rtamt.lsp.completion import completions
 from rtamt.lsp.hover import hover
 from rtamt.lsp.imported import place_of
 from rtamt.lsp.lenses import lenses
+from rtamt.lsp.messages import silence_logs
 from rtamt.lsp.places import Lines
 from rtamt.lsp.problems import fix_all, repairs
 from rtamt.lsp.rename import rename, renameable_at
@@ -275,6 +276,7 @@ def _add_edits(server: Server) -> None:
 
 def serve() -> None:
     """Serve on the standard streams until the client exits."""
+    silence_logs()
     # A separate stream, which pygls closes at the end.
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:
         make_server().start_io(stdout=answers)

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcInvalidParams
+from pygls.exceptions import FeatureNotificationError, JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 
@@ -15,7 +15,7 @@ import rtamt
 from rtamt.language.formula import Span
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lsp.document import Analysis
-from rtamt.lsp.messages import Protocol, report
+from rtamt.lsp.messages import Protocol, details_of, report
 from rtamt.lsp.places import Lines, Place
 from rtamt.lsp.problems import problems
 from rtamt.lsp.recording import ask, state_of
@@ -80,10 +80,14 @@ class Server(LanguageServer):
         self.state = State()
 
     def report_server_error(self, error: Exception, source: ServerErrors) -> None:
-        """Answer messages that are wrong; show what else goes wrong without a request."""
+        """Answer messages that are wrong; log errors of the server, and show those without a request."""
         assert isinstance(self.protocol, Protocol)
-        if report(self.protocol, error, source):
-            super().report_server_error(error, source)
+        if not report(self.protocol, error, source):
+            return
+        details = details_of(error)
+        if details is not None:
+            self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Error, details))
+        super().report_server_error(error, source)
 
     def analysis(self, uri: str) -> Analysis:
         """Return the analysis of the present version of a text that is open."""
@@ -169,7 +173,14 @@ class Server(LanguageServer):
         if self.checking(uri) is not None and self.analysis(uri).spec is not None:
             task = asyncio.ensure_future(run())
             self.state.tasks.add(task)
-            task.add_done_callback(self.state.tasks.discard)
+            task.add_done_callback(self._ended)
+
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        """Report the error of a background task."""
+        self.state.tasks.discard(task)
+        error = None if task.cancelled() else task.exception()
+        if isinstance(error, Exception):
+            self.report_server_error(error, FeatureNotificationError)
 
     def publish(self, uri: str) -> None:
         """Send the errors and findings of a text."""

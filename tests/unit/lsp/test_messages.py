@@ -1,10 +1,15 @@
-"""Messages that are not those of the protocol, as bytes: each is answered, and the server goes on."""
+"""Messages that are not those of the protocol, as bytes, and errors: each is answered, and the server goes on."""
 
+import asyncio
 import json
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
+from pygls.exceptions import FeatureNotificationError, FeatureRequestError, JsonRpcInternalError
+
+from rtamt.lsp.server import make_server
 
 URI = "file:///project/raw.stl"
 NOT_ITS_PARAMETERS = "the parameters of 'textDocument/hover' are not those of the protocol"
@@ -13,12 +18,12 @@ NOT_ITS_PARAMETERS = "the parameters of 'textDocument/hover' are not those of th
 class Client:
     """A client that sends bytes."""
 
-    def __init__(self):
+    def __init__(self, stderr):
         self.process = subprocess.Popen(
             [sys.executable, "-m", "rtamt", "lsp"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=stderr,
         )
         self.number = 0
 
@@ -48,8 +53,14 @@ class Client:
 
 
 @pytest.fixture(scope="module")
-def client():
-    made = Client()
+def stderr(tmp_path_factory):
+    return tmp_path_factory.mktemp("server") / "stderr.txt"
+
+
+@pytest.fixture(scope="module")
+def client(stderr):
+    with stderr.open("wb") as file:
+        made = Client(file)
     with made.process:
         made.ask("initialize", {"processId": None, "rootUri": None, "capabilities": {}})
         made.notify("initialized", {})
@@ -125,3 +136,81 @@ def test_positions_beyond_the_text_and_unknown_answers_do_no_harm(client):
     found = client.ask("textDocument/documentSymbol", {"textDocument": {"uri": URI}})
     assert [each.get("error") for each in found] == [None] * len(found)
     assert next(each for each in found if each.get("id") == "asked")["result"] is None
+
+
+def test_refusals_leave_stderr_empty(client, stderr):
+    # A client that does not read stderr would block the server once the pipe is full.
+    place = {"textDocument": {"uri": URI}, "position": {"line": 1, "character": 0}}
+    refused = client.ask("textDocument/prepareRename", place)
+    assert [each["error"]["message"] for each in refused] == ["there is no name here that can be renamed"]
+    client.ask("no/such", {})
+    client.ask("textDocument/hover", 3)
+    client.notify("no/such", {})
+    client.notify("$/cancelRequest", {"id": 12345})
+    client.send(b"{nonsense")
+    client.ask("textDocument/documentSymbol", {"textDocument": {"uri": URI}})
+    assert stderr.read_text(encoding="utf-8") == ""
+
+
+class Sent(list):
+    """The messages of a server in this process."""
+
+    def write(self, data):
+        self.append(json.loads(data))
+
+    def close(self):
+        pass
+
+
+@pytest.fixture
+def server():
+    made = make_server()
+    made.protocol.set_writer(Sent(), include_headers=False)
+    yield made
+    made.shutdown()
+
+
+def logged(server):
+    return [
+        each["params"]["message"]
+        for each in server.protocol.writer
+        if each["method"] == "window/logMessage" and each["params"]["type"] == 1
+    ]
+
+
+def shown(server):
+    return [
+        each["params"]["message"] for each in server.protocol.writer if each["method"] == "window/showMessage"
+    ]
+
+
+def test_an_error_of_the_server_is_logged_with_its_traceback(server):
+    try:
+        raise ValueError("wrong")
+    except ValueError as error:
+        server.report_server_error(JsonRpcInternalError.of(sys.exc_info()), FeatureRequestError)
+        server.report_server_error(error, FeatureNotificationError)
+    answered, unasked = logged(server)
+    for each in (answered, unasked):
+        assert 'raise ValueError("wrong")' in each
+        assert each.endswith("ValueError: wrong")
+    assert shown(server) == ["Error in server: wrong"]
+
+
+def test_an_error_of_a_check_in_the_background_is_shown(server, monkeypatch):
+    async def check(uri):
+        raise OSError(f"no check of {uri}")
+
+    async def open_text():
+        server.check_later(URI)
+        (task,) = server.state.tasks
+        await asyncio.wait([task])
+
+    monkeypatch.setattr(server, "check", check)
+    monkeypatch.setattr(server, "checking", lambda uri: (uri,))
+    monkeypatch.setattr(server, "analysis", lambda uri: SimpleNamespace(spec=uri))
+    asyncio.run(open_text())
+    (found,) = logged(server)
+    assert found.endswith(f"OSError: no check of {URI}")
+    assert shown(server) == [f"Error in server: no check of {URI}"]
+    assert server.state.tasks == set()
