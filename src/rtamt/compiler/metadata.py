@@ -95,15 +95,20 @@ def damaged(reason: str) -> UsageError:
     return UsageError(f"this is not a program that can be read: {reason}")
 
 
-def _text(text: str) -> bytes:
+def encoded(text: str) -> bytes:
+    """Return a text of a program in UTF-8; raise :class:`UsageError` where it has a character that UTF-8 lacks."""
     try:
-        encoded = text.encode()
+        return text.encode()
     except UnicodeEncodeError as error:
         around = text[max(error.start - _AROUND, 0) : error.start + _AROUND]
         raise UsageError(
             f"a program cannot contain {text[error.start]!a}, which UTF-8 lacks: correct the name in {around!a}"
         ) from None
-    return _COUNT.pack(len(encoded)) + encoded
+
+
+def _text(text: str) -> bytes:
+    data = encoded(text)
+    return _COUNT.pack(len(data)) + data
 
 
 class _Reader:

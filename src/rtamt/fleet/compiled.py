@@ -12,7 +12,7 @@ import zlib
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rtamt.compiler.metadata import Metadata
+from rtamt.compiler.metadata import Metadata, encoded
 from rtamt.engine.backend import CompiledSession
 from rtamt.engine.early import EarlyProgram
 from rtamt.errors import UsageError
@@ -189,4 +189,4 @@ def _data(content: bytes) -> bytes:
 
 
 def _text(text: str) -> bytes:
-    return _data(text.encode())
+    return _data(encoded(text))

@@ -154,3 +154,15 @@ def test_a_name_with_bytes_that_are_not_utf_8_is_rejected_as_such(run, command):
         "rtamt: a program cannot contain '\\udcff', which UTF-8 lacks: correct the name in '\"x\\udcff\" >= 3'\n",
     )
     assert not Path("spec.out").exists()
+
+
+@pytest.mark.parametrize("mode", ["delayed", "eager", "interval"])
+def test_programs_of_fleets_reject_such_a_name_by_the_same_sentence(run, mode):
+    assert run(
+        "compile", '"x\udcff" >= 3', "--period", "1s", "--fleet", "--verdict", mode, "-o", "spec.out"
+    ) == (
+        2,
+        "",
+        "rtamt: a program cannot contain '\\udcff', which UTF-8 lacks: correct the name in 'x\\udcff'\n",
+    )
+    assert not Path("spec.out").exists()

@@ -419,3 +419,9 @@ def test_keys_expire_before_a_date(settings: Any) -> None:
     fleet.update_many([7, 8], [1767225600.0, 1767225660.0], {"x": [5.0, 4.0]})
     assert fleet.expire(before=dt.datetime(2026, 1, 1, 0, 0, 30, tzinfo=dt.timezone.utc)) == 1
     assert fleet.keys() == [8]
+
+
+def test_a_name_that_utf_8_lacks_is_rejected_before_the_core_takes_it():
+    message = r"^a program cannot contain '\\udcff', which UTF-8 lacks: correct the name in 'x\\udcff'$"
+    with pytest.raises(rtamt.UsageError, match=message):
+        rtamt.Fleet(rtamt.parse('"x\udcff" >= 3', period="1s"), 4)

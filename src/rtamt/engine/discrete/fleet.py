@@ -8,6 +8,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from rtamt.compiler.metadata import encoded
 from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.discrete.reorder_buffer import ReorderBuffer
 from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
@@ -71,6 +72,8 @@ class DiscreteFleet:
         made_of = float(monitor.period), monitor._tolerance, restart, capacity
         try:
             self._names = [identities.get(name, name) for name in program.inputs]
+            for name in self._names:
+                encoded(name)  # the core takes UTF-8
             self._core = core().Fleet(program.code(), self._names, *made_of, state)
             if state is not None:
                 self._core.keys()  # decodes texts
