@@ -225,7 +225,7 @@ def _follow(
     the monitor may hold back the first samples until no earlier one can arrive.
     """
     code, noted, taken = OK, False, 0
-    for number, line in enumerate(lines_of(sys.stdin.buffer), 1):
+    for number, line in lines_of(sys.stdin.buffer):
         try:
             sample = samples.read(line, number)
         except TraceError as error:

@@ -75,15 +75,18 @@ class Samples:
     def read(self, line: bytes, number: int) -> Sample | None:
         """Return the sample in line ``number`` (from 1); None for an empty line, a comment, the CSV header.
 
+        Under a header of one column, an empty line is a missing sample, as in files.
         Raises :class:`TraceError`, with the line number; the next line can be read all the same.
         """
         try:
             text = line.decode("utf-8-sig" if self._read is None else "utf-8").strip("\r\n")
         except UnicodeDecodeError:
             raise line_error(number, "not UTF-8 text") from None
-        if not text.strip() or (
-            text.startswith("#") and (self._rows is None or self._rows.is_comment(text, number))
-        ):
+        if not text.strip():
+            if self._rows is None or not self._rows.has_one_column:
+                return None
+            text = '""'
+        if text.startswith("#") and (self._rows is None or self._rows.is_comment(text, number)):
             return None
         if number == 1 and separator(text) is not None:
             return None
@@ -155,7 +158,21 @@ class Samples:
         return read
 
 
-def lines_of(stream: Iterable[bytes]) -> Iterator[bytes]:
-    """Yield the lines of a stream as they arrive; they end with LF, CR LF or CR, as in files."""
-    for line in stream:
-        yield from line.splitlines()
+def lines_of(stream: Iterable[bytes]) -> Iterator[tuple[int, bytes]]:
+    r"""Yield the lines of a stream as they arrive, with their numbers; they end with LF, CR LF or CR, as in files.
+
+    An empty line arrives with the next line that is neither empty nor a comment, since it may be a missing sample:
+    without such a line, it is at the end, and is left out.
+
+    >>> list(lines_of([b"x\n", b"1\n", b"\n", b"# note\n", b"2\n", b"\n"]))
+    [(1, b'x'), (2, b'1'), (4, b'# note'), (3, b''), (5, b'2')]
+    """
+    empty: list[int] = []
+    for number, line in enumerate((each for part in stream for each in part.splitlines()), 1):
+        if not line.decode("utf-8", "replace").strip():
+            empty.append(number)
+            continue
+        if not line.startswith(b"#"):
+            yield from ((each, b"") for each in empty)
+            empty.clear()
+        yield number, line

@@ -83,6 +83,11 @@ class CsvSamples:
         self.units = {name: field.unit for name, field in selection.signals if field.unit}
         self._boolean: dict[str, bool] = {}
 
+    @property
+    def has_one_column(self) -> bool:
+        """Whether an empty line is the one cell of a row."""
+        return len(self._header.names) == 1
+
     def is_comment(self, text: str, number: int) -> bool:
         """Return whether one line is a comment; raise :class:`TraceError` if it may be a sample as well."""
         return is_comment(self._cells(text, number), self._header, number)
