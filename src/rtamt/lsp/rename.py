@@ -34,6 +34,7 @@ _ONE_WORD = {
     "enumeration": "an enumeration",
 }
 _RESERVED = frozenset((*DECLARING, *QUANTIFYING, *TYPES, "then", "else", "inf", "in", "nan"))
+_HAS_AN_ERROR = "the text has an error; correct it before a name is changed"
 #: The files of a folder that are searched for imports of the one that is changed.
 _MOST_FILES, _MOST_BYTES = 500, 2**20
 
@@ -52,16 +53,19 @@ def renameable_at(analysis: Analysis, offset: int, path: str | None = None) -> t
         elsewhere = place_of(analysis, name)
         if elsewhere is not None:
             raise UsageError(f"'{name}' is defined in '{elsewhere.called}'; rename it there")
+        if analysis.document is None:
+            raise UsageError(_HAS_AN_ERROR)
+        declared = name if NAME.fullmatch(name) else quoted(name)
         raise UsageError(
             f"'{name}' is not declared, so that it is the name of a recorded signal; declare it, such as "
-            f"float {name}, to give it another name"
+            f"float {declared}, to give it another name"
         )
     span, symbol = found
     if symbol.kind == "class":
         raise UsageError(f"'{symbol.name}' is a class of messages, whose name is that of its module")
     document = analysis.document
     if document is None:
-        raise UsageError("the text has an error; correct it before a name is changed")
+        raise UsageError(_HAS_AN_ERROR)
     classes = {each.name for each in document.imports}
     if any(each.name == symbol.name and each.type in classes for each in document.declarations):
         raise UsageError(f"'{symbol.name}' is a message, whose fields are recorded under this name")

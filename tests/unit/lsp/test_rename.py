@@ -195,6 +195,21 @@ REFUSED = [
         "another name",
     ),
     (
+        'always("wheel speed" > 2)',
+        "always",
+        "wheel speed",
+        "y",
+        "'wheel speed' is not declared, so that it is the name of a recorded signal; declare it, such as "
+        'float "wheel speed", to give it another name',
+    ),
+    (
+        "always(x > )",
+        "always",
+        "x",
+        "y",
+        "the text has an error; correct it before a name is changed",
+    ),
+    (
         "float x\nalways(x > )",
         "float",
         "x",
