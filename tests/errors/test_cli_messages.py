@@ -170,7 +170,8 @@ def test_messages(run, args, message):
         (
             "time,x\n0,\n",
             "stdin, line 2: 'x' is missing at sample 0, but discrete time needs a value at "
-            "every sample: fill the gap, or use dense time (--time dense)",
+            "every sample: fill the gap, or use dense time (--time dense); --verdict eager and "
+            "--verdict interval take missing samples",
         ),
         ('time,x\n0,"' + "1" * 200_000, "stdin, line 2: field larger than field limit (131072)"),
         ('{"x": 1\n', "stdin, line 1: not JSON: Expecting ',' delimiter at column 8"),
@@ -182,7 +183,8 @@ def test_messages(run, args, message):
         (
             '{"x": null}\n',
             "stdin, line 1: 'x' is missing at sample 0, but discrete time needs a value at "
-            "every sample: fill the gap, or use dense time (--time dense)",
+            "every sample: fill the gap, or use dense time (--time dense); --verdict eager and "
+            "--verdict interval take missing samples",
         ),
         ('{"x": "abc"}\n', "stdin, line 1: 'x' is \"abc\", expected a number"),
         (

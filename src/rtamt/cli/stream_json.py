@@ -92,7 +92,7 @@ class JsonSamples:
         if self._inexact.taken:
             return known_of(value, column, number, type_)
         self._timestamps.require(column, value, number, self._inexact.missing)
-        if isinstance(value, list) and self._inexact.bounds:
+        if isinstance(value, list) and len(value) == 2 and self._inexact.bounds:
             problem = f"expected a number; {self._inexact.bounds}"
             raise line_error(number, f"'{column}' is {format_value(value)}, {problem}", column)
         return number_of(value, column, number, type_)

@@ -412,7 +412,10 @@ def test_an_empty_cell_in_discrete_time_is_rejected_wherever_a_number_is_needed(
     lines = ['{"time": 0, "x": 1}', '{"time": 1, "x": null}']
     for stdin, line in ((text, 3), ("\n".join(lines), 2)):
         answer = invoke(capsys, monkeypatch, ["monitor", "x.stl"], stdin)
-        told = MISSING.format("", "or use dense time (--time dense)")
+        told = MISSING.format(
+            "",
+            "or use dense time (--time dense); --verdict eager and --verdict interval take missing samples",
+        )
         assert (answer.code, answer.err) == (2, f"rtamt: stdin, line {line}: {told}\n")
     # Nothing is missing of what is read, nor in dense time, nor on a clock that was chosen.
     assert rtamt.parse("y >= 0").evaluate(rtamt.read("log.csv")).robustness == 2
