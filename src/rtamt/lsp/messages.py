@@ -6,6 +6,7 @@ import logging
 import traceback
 from typing import Any
 
+from lsprotocol import types as lsp
 from pygls.exceptions import (
     FeatureNotificationError,
     FeatureRequestError,
@@ -14,6 +15,7 @@ from pygls.exceptions import (
     JsonRpcInvalidParams,
     JsonRpcInvalidRequest,
     JsonRpcParseError,
+    JsonRpcServerNotInitialized,
 )
 from pygls.protocol import LanguageServerProtocol
 
@@ -40,7 +42,21 @@ class Protocol(LanguageServerProtocol):
         """Answer a request, or handle a notification."""
         if not hasattr(message, "jsonrpc"):
             raise JsonRpcInvalidRequest("a message is one object of JSON-RPC 2.0")
-        super().handle_message(message)
+        refusal = self._refusal_of(message) if hasattr(message, "method") and hasattr(message, "id") else None
+        if refusal is None:
+            super().handle_message(message)
+        else:
+            self._send_response(message.id, error=refusal.to_response_error())
+
+    def _refusal_of(self, request: Any) -> JsonRpcException | None:
+        """Return why a request is refused whatever its method is; pygls leaves two of these without an answer."""
+        if request.jsonrpc != self.VERSION:
+            return JsonRpcInvalidRequest("a message is one object of JSON-RPC 2.0")
+        if self._shutdown:
+            return JsonRpcInvalidRequest("the server is shut down")
+        if self._workspace is None and request.method != lsp.INITIALIZE:
+            return JsonRpcServerNotInitialized(f"'{request.method}' comes before 'initialize'")
+        return None
 
     def refuse(self, error: Exception) -> None:
         """Answer a message that could not be read: the answer has no ID, as the ID is not known."""

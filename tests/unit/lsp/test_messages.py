@@ -152,6 +152,28 @@ def test_refusals_leave_stderr_empty(client, stderr):
     assert stderr.read_text(encoding="utf-8") == ""
 
 
+def test_requests_of_another_version_before_initialize_and_after_shutdown_have_an_answer():
+    def refusal(messages):
+        return [(each["error"]["code"], each["error"]["message"]) for each in messages]
+
+    place = {"textDocument": {"uri": URI}, "position": {"line": 0, "character": 0}}
+    made = Client(subprocess.DEVNULL)
+    with made.process:
+        early = made.ask("textDocument/hover", place)
+        assert refusal(early) == [(-32002, "'textDocument/hover' comes before 'initialize'")]
+        made.ask("initialize", {"processId": None, "rootUri": None, "capabilities": {}})
+        made.send(hover().replace(b'"2.0"', b'"1.0"'))
+        # With a version that it ignores, the server would answer the next request only.
+        other, _answer = made.ask("shutdown", None)
+        assert refusal([other]) == [(-32600, "a message is one object of JSON-RPC 2.0")]
+        assert other["id"] == "asked"
+        made.send(hover())
+        made.notify("exit", None)
+        late = made.receive()
+        assert refusal([late]) == [(-32600, "the server is shut down")]
+        assert made.process.wait(60) == 0
+
+
 class Sent(list):
     """The messages of a server in this process."""
 
