@@ -45,6 +45,27 @@ constexpr std::int64_t farthest = 4'611'686'018'427'387'904; // 2^62
     return value == 0.0 || value == 1.0;
 }
 
+[[nodiscard]] bool has_member(const Enumeration& enumeration, double value) {
+    return std::ranges::any_of(enumeration.members, [&](const Enumeration::Member& member) {
+        return static_cast<double>(member.code) == value;
+    });
+}
+
+// The codes of an enumeration with the names of the members, for a message.
+[[nodiscard]] std::string codes_of(const Enumeration& enumeration) {
+    constexpr std::size_t most = 12;
+    const auto& members = enumeration.members;
+    const std::size_t shown = std::min(members.size(), most);
+    std::string list;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const bool last = i + 1 == members.size();
+        list += i == 0 ? "" : last ? " or " : ", ";
+        list += std::to_string(members[i].code) + " (" + members[i].name + ")";
+    }
+    if (shown == members.size()) return list;
+    return list + " or one of " + std::to_string(members.size() - shown) + " more";
+}
+
 [[nodiscard]] Domain domain_of(std::span<const std::uint8_t> program) noexcept {
     constexpr std::size_t place = 10;
     return program.size() > place && program[place] == 1 ? Domain::dense : Domain::discrete;
@@ -127,6 +148,11 @@ void Monitor::check_parameter(std::size_t index, double value) const {
     if (parameter.boolean && !is_truth(value)) {
         refuse("The parameter '" + parameter.name + "' is " + shown(value) +
                ", and declared as bool: give 1 or 0.");
+    }
+    const Enumeration& type = parameter.enumeration;
+    if (!type.members.empty() && !has_member(type, value)) {
+        refuse("The parameter '" + parameter.name + "' is " + shown(value) + ", and declared as " +
+               type.name + ": give " + codes_of(type) + ".");
     }
     if (runner_->begun()) {
         refuse("The parameter '" + parameter.name +

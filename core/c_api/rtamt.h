@@ -122,7 +122,7 @@ RTAMT_API rtamt_status rtamt_parameter_value(const rtamt_monitor* monitor, uint3
                                              double* value);
 
 /* Only before the first sample, or after rtamt_reset. A Boolean is 1 or 0, a member of an
- * enumeration its code; other values of a Boolean are refused. */
+ * enumeration its code; other values of the two are refused. */
 RTAMT_API rtamt_status rtamt_set_parameter(rtamt_monitor* monitor, uint32_t parameter,
                                            double value);
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace rtamt {
 
@@ -56,13 +57,18 @@ class NoteReader {
         return texts;
     }
 
-    [[nodiscard]] std::uint32_t instruction() {
+    // The index of one of `count` things.
+    [[nodiscard]] std::uint32_t index(std::size_t count, const char* what) {
         const auto index = number<std::uint32_t>();
-        if (index >= program_.instructions.size()) {
-            refuse("its metadata names instruction " + std::to_string(index) + " of " +
-                   std::to_string(program_.instructions.size()));
+        if (index >= count) {
+            refuse("its metadata names " + std::string(what) + " " + std::to_string(index) +
+                   " of " + std::to_string(count));
         }
         return index;
+    }
+
+    [[nodiscard]] std::uint32_t instruction() {
+        return index(program_.instructions.size(), "instruction");
     }
 
     [[nodiscard]] Parameter parameter() {
@@ -84,14 +90,33 @@ class NoteReader {
     // Indices of things of which there are `count`.
     [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t count, const char* what) {
         std::vector<std::uint32_t> indices(this->count());
-        for (std::uint32_t& index : indices) {
-            index = number<std::uint32_t>();
-            if (index >= count) {
-                refuse("its metadata names " + std::string(what) + " " + std::to_string(index) +
-                       " of " + std::to_string(count));
-            }
-        }
+        for (std::uint32_t& each : indices)
+            each = index(count, what);
         return indices;
+    }
+
+    [[nodiscard]] Enumeration enumeration() {
+        Enumeration enumeration;
+        enumeration.name = text();
+        const auto members = count();
+        for (std::uint32_t i = 0; i < members; ++i) {
+            std::string name = text();
+            const auto code = std::bit_cast<std::int64_t>(number<std::uint64_t>());
+            enumeration.members.push_back({std::move(name), code});
+        }
+        if (members == 0) refuse("its enumeration '" + enumeration.name + "' has no members");
+        return enumeration;
+    }
+
+    // The types of parameters that are enumerated.
+    void enumerations(std::vector<Parameter>& parameters) {
+        const auto enumerated = count();
+        for (std::uint32_t i = 0; i < enumerated; ++i) {
+            Parameter& parameter = parameters[index(parameters.size(), "parameter")];
+            if (parameter.boolean || !parameter.enumeration.members.empty())
+                refuse("its parameter '" + parameter.name + "' has two types");
+            parameter.enumeration = enumeration();
+        }
     }
 
     [[nodiscard]] bool left() const noexcept { return reader_.left() != 0; }
@@ -138,6 +163,7 @@ Metadata Metadata::parse(const Program& program) {
         metadata.booleans = note.indices(metadata.inputs.size(), "input");
         for (const std::uint32_t index : note.indices(metadata.parameters.size(), "parameter"))
             metadata.parameters[index].boolean = true;
+        if (note.left()) note.enumerations(metadata.parameters);
     }
     note.end();
     return metadata;

@@ -15,8 +15,11 @@
 //                (../c_api/early_runner.hpp), or none
 //     u32        number of Boolean inputs, and the u32 index of each
 //     u32        number of Boolean parameters, and the u32 index of each
+//     u32        number of enumerated parameters; of each: u32 index, text name of the enumeration,
+//                u32 number of members, at least 1; of each: text name, i64 code
 //
-// Notes without Boolean inputs and parameters end before the last two fields.
+// Notes without enumerated parameters end before the last field, and those without Boolean inputs
+// and parameters, too, before the last three.
 #pragma once
 
 #include "program.hpp"
@@ -28,10 +31,21 @@
 
 namespace rtamt {
 
+struct Enumeration {
+    struct Member {
+        std::string name;
+        std::int64_t code = 0;
+    };
+
+    std::string name;
+    std::vector<Member> members; // none: no enumeration
+};
+
 struct Parameter {
     std::string name;
     std::vector<std::uint32_t> instructions; // at least one
     bool boolean = false;                    // its value is 1 or 0
+    Enumeration enumeration = {};            // if it has members, its value is the code of one
 };
 
 struct Metadata {

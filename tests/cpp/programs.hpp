@@ -147,14 +147,29 @@ inline std::string note_of(const rtamt::Metadata& metadata) {
     }
     put_text(bytes, metadata.early);
     std::vector<std::uint32_t> parameters; // Boolean ones
+    std::vector<std::uint32_t> enumerated;
     for (std::uint32_t i = 0; i < metadata.parameters.size(); ++i) {
         if (metadata.parameters[i].boolean) parameters.push_back(i);
+        if (!metadata.parameters[i].enumeration.name.empty()) enumerated.push_back(i);
     }
-    if (metadata.booleans.empty() && parameters.empty()) return {bytes.begin(), bytes.end()};
+    if (metadata.booleans.empty() && parameters.empty() && enumerated.empty())
+        return {bytes.begin(), bytes.end()};
     for (const std::vector<std::uint32_t>& indices : {metadata.booleans, parameters}) {
         put(bytes, static_cast<std::uint32_t>(indices.size()));
         for (const std::uint32_t index : indices)
             put(bytes, index);
+    }
+    if (enumerated.empty()) return {bytes.begin(), bytes.end()};
+    put(bytes, static_cast<std::uint32_t>(enumerated.size()));
+    for (const std::uint32_t index : enumerated) {
+        const rtamt::Enumeration& enumeration = metadata.parameters[index].enumeration;
+        put(bytes, index);
+        put_text(bytes, enumeration.name);
+        put(bytes, static_cast<std::uint32_t>(enumeration.members.size()));
+        for (const auto& [name, code] : enumeration.members) {
+            put_text(bytes, name);
+            put(bytes, static_cast<std::uint64_t>(code));
+        }
     }
     return {bytes.begin(), bytes.end()};
 }

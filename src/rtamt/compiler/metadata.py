@@ -10,13 +10,14 @@ from fractions import Fraction
 from types import MappingProxyType
 
 from rtamt.errors import UsageError
+from rtamt.language.value_types import Enumeration
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_COUNT = struct.Struct("<I")
+_COUNT, _CODE = struct.Struct("<I"), struct.Struct("<q")
 _STEP = struct.Struct("<qq")
 
 #: How many characters a message shows on each side of a wrong one.
@@ -30,7 +31,7 @@ class Metadata:
     ``formula`` is its text. ``outputs`` are their names. ``parameters`` maps a parameter or named constant to the
     instructions that hold its value. ``meanings`` maps an instruction to the formula it computes. ``early``: of a
     program of bounds its graph, as the core reads it (core/c_api/early_runner.hpp). ``booleans``: the inputs and
-    parameters that are declared as bool.
+    parameters that are declared as bool. ``enumerations``: the types of the parameters that have members as values.
     """
 
     name: str = ""
@@ -40,6 +41,7 @@ class Metadata:
     meanings: Mapping[int, str] = field(default_factory=lambda: MappingProxyType({}))
     early: bytes = b""
     booleans: frozenset[str] = frozenset()
+    enumerations: Mapping[str, Enumeration] = field(default_factory=lambda: MappingProxyType({}))
 
     def to_bytes(self, inputs: tuple[str, ...], period: Fraction) -> bytes:
         """Serialise the metadata together with the program's inputs and period."""
@@ -55,10 +57,15 @@ class Metadata:
         for place, text in self.meanings.items():
             parts += [_COUNT.pack(place), _text(text)]
         parts += [_COUNT.pack(len(self.early)), self.early]
-        if self.booleans:
+        if self.booleans or self.enumerations:
             for names in (inputs, tuple(self.parameters)):
                 truths = [i for i, name in enumerate(names) if name in self.booleans]
                 parts.append(struct.pack(f"<{len(truths) + 1}I", len(truths), *truths))
+        if self.enumerations:
+            parts.append(_COUNT.pack(len(self.enumerations)))
+        for i, name in enumerate(self.parameters):
+            if name in self.enumerations:
+                parts += [_COUNT.pack(i), _enumeration(self.enumerations[name])]
         return b"".join(parts)
 
     @staticmethod
@@ -77,6 +84,12 @@ class Metadata:
         booleans: set[str] = set()
         if reader.left():
             booleans.update(reader.items(names, "input"), reader.items(tuple(parameters), "parameter"))
+        enumerations: dict[str, Enumeration] = {}
+        for _ in range(reader.number() if reader.left() else 0):
+            parameter = reader.item(tuple(parameters), "parameter")
+            if parameter in enumerations or parameter in booleans:
+                raise damaged(f"its parameter '{parameter}' has two types")
+            enumerations[parameter] = reader.enumeration()
         reader.end()
         metadata = Metadata(
             name,
@@ -86,6 +99,7 @@ class Metadata:
             MappingProxyType(meanings),
             early,
             frozenset(booleans),
+            MappingProxyType(enumerations),
         )
         return metadata, names, Fraction(numerator, denominator)
 
@@ -109,6 +123,13 @@ def encoded(text: str) -> bytes:
 def _text(text: str) -> bytes:
     data = encoded(text)
     return _COUNT.pack(len(data)) + data
+
+
+def _enumeration(enumeration: Enumeration) -> bytes:
+    parts = [_text(enumeration.name), _COUNT.pack(len(enumeration.members))]
+    for member, code in enumeration.members:
+        parts += [_text(member), _CODE.pack(code)]
+    return b"".join(parts)
 
 
 class _Reader:
@@ -135,11 +156,21 @@ class _Reader:
 
     def items(self, names: tuple[str, ...], what: str) -> list[str]:
         """Return the names that listed indices stand for."""
-        indices = self.numbers()
-        for index in indices:
-            if index >= len(names):
-                raise damaged(f"its metadata names {what} {index} of {len(names)}")
-        return [names[index] for index in indices]
+        return [self.item(names, what) for _ in range(self.number())]
+
+    def item(self, names: tuple[str, ...], what: str) -> str:
+        """Return the name that an index stands for."""
+        index = self.number()
+        if index >= len(names):
+            raise damaged(f"its metadata names {what} {index} of {len(names)}")
+        return names[index]
+
+    def enumeration(self) -> Enumeration:
+        name = self.text()
+        members = tuple((self.text(), self.take(_CODE)[0]) for _ in range(self.number()))
+        if not members:
+            raise damaged(f"its enumeration '{name}' has no members")
+        return Enumeration(name, members)
 
     def left(self) -> bool:
         return self._at < len(self._note)

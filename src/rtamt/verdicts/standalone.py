@@ -81,6 +81,7 @@ def carried_program(
         _places(constants, 0),
         MappingProxyType(_meanings(program, [_with_parameters(each, structural) for each in grounded])),
         booleans=_booleans(formula, constants),
+        enumerations=_enumerations(constants),
     )
     return replace(program, metadata=metadata)
 
@@ -155,6 +156,7 @@ def bounds_program(
         ),
         early=b"".join(parts),
         booleans=_booleans(formula, graph.origins),
+        enumerations=_enumerations(graph.origins),
     )
     last = (len(instructions) - 1,) * len(BOUNDS)
     return Program(records_of(instructions), inputs, last, period, metadata=metadata)
@@ -199,6 +201,17 @@ def _booleans(formula: Formula, origins: Sequence[Formula | None]) -> frozenset[
     inputs = [name for name, type_ in types_of(formula).items() if type_ is BOOLEAN]
     given = [each.name for each in origins if isinstance(each, Parameter) and each.type is BOOLEAN]
     return frozenset([*inputs, *given])
+
+
+def _enumerations(origins: Sequence[Formula | None]) -> Mapping[str, Enumeration]:
+    """Return the types of the parameters among ``origins`` that have members as values."""
+    return MappingProxyType(
+        {
+            each.name: each.type
+            for each in origins
+            if isinstance(each, Parameter) and isinstance(each.type, Enumeration)
+        }
+    )
 
 
 def _places(origins: Sequence[Formula | None], first: int) -> Mapping[str, tuple[int, ...]]:

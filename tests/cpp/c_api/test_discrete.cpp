@@ -246,6 +246,39 @@ TEST_CASE("parameters are set before the first sample") {
     CHECK(rtamt_set_parameter(monitor.get(), 0, 1.0) == RTAMT_OK);
 }
 
+TEST_CASE("an enumerated parameter is set to the code of a member") {
+    programs::Program program = programs::carried();
+    rtamt::Metadata metadata = rtamt::Metadata::parse(program);
+    rtamt::Enumeration& mode = metadata.parameters[0].enumeration;
+    mode = {"Mode", {{"MANUAL", 0}, {"HOLD", 2}, {"AUTO", 4}}};
+    const auto answer = [&](double value) {
+        program.note = programs::note_of(metadata);
+        const Handle monitor = create(program);
+        if (rtamt_set_parameter(monitor.get(), 0, value) == RTAMT_OK) {
+            CHECK(parameter(monitor) == value);
+            return std::string();
+        }
+        CHECK(parameter(monitor) == 1.5);
+        return std::string(rtamt_message(monitor.get()));
+    };
+    for (const double code : {0.0, 2.0, 4.0})
+        CHECK(answer(code).empty());
+    CHECK(answer(7.0) == "The parameter 'limit' is 7, and declared as Mode: give 0 (MANUAL), "
+                         "2 (HOLD) or 4 (AUTO).");
+    CHECK(answer(0.5).starts_with("The parameter 'limit' is 0.5, and declared as Mode: "));
+    CHECK(answer(std::numeric_limits<double>::infinity())
+              .starts_with("The parameter 'limit' is inf, and declared as Mode: "));
+    CHECK(answer(not_a_number) == "The parameter 'limit' may not be NaN.");
+    mode.members = {{"ONLY", -3}};
+    CHECK(answer(-3.0).empty());
+    CHECK(answer(3.0) == "The parameter 'limit' is 3, and declared as Mode: give -3 (ONLY).");
+    mode.members.clear();
+    for (int code = 0; code < 14; ++code)
+        mode.members.push_back({"m" + std::to_string(code), code});
+    CHECK(answer(13.0).empty());
+    CHECK(answer(14.0).ends_with(", 10 (m10), 11 (m11) or one of 2 more."));
+}
+
 TEST_CASE("parameters are set by name") {
     const Handle monitor = example();
     CHECK(rtamt_set_parameter_by_name(monitor.get(), "limit", 2.0) == RTAMT_OK);

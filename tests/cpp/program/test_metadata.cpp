@@ -50,6 +50,8 @@ TEST_CASE("no truncation is read") {
     program.note = note + "x";
     CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
     program.note = note + std::string(8, '\0') + "x";
+    CHECK(refusal(program) == refused("its metadata is shorter than it should be"));
+    program.note = note + std::string(12, '\0') + "x";
     CHECK(refusal(program) == refused("its metadata is longer than it should be"));
 }
 
@@ -67,10 +69,60 @@ TEST_CASE("Boolean inputs and parameters are read") {
     CHECK(refusal_of(metadata) == refused("its metadata names input 2 of 2"));
 }
 
+// A program whose parameter is enumerated.
+static Metadata enumerated() {
+    Metadata metadata = good();
+    metadata.parameters[0].enumeration = {"Mode", {{"MANUAL", 0}, {"AUTO", -4}}};
+    return metadata;
+}
+
+TEST_CASE("enumerated parameters are read") {
+    CHECK(good().parameters[0].enumeration.members.empty());
+    Program program = programs::carried();
+    program.note = programs::note_of(enumerated());
+    const rtamt::Enumeration read = Metadata::parse(program).parameters[0].enumeration;
+    CHECK((read.name == "Mode" && read.members.size() == 2));
+    CHECK((read.members[0].name == "MANUAL" && read.members[0].code == 0));
+    CHECK((read.members[1].name == "AUTO" && read.members[1].code == -4));
+    CHECK(Metadata::parse(program).booleans.empty());
+}
+
+TEST_CASE("enumerated parameters that make no sense are refused") {
+    const std::size_t plain = programs::note_of(good()).size();
+    Program program = programs::carried();
+    const std::string note = programs::note_of(enumerated());
+    program.note = note + "x";
+    CHECK(refusal(program) == refused("its metadata is longer than it should be"));
+    for (std::size_t size = plain + 1; size < note.size(); ++size) {
+        program.note = note.substr(0, size);
+        const bool whole = size == plain + 8; // as of a program without enumerations
+        CHECK(refusal(program) ==
+              (whole ? "no exception" : refused("its metadata is shorter than it should be")));
+    }
+    Metadata metadata = enumerated();
+    metadata.parameters[0].boolean = true;
+    CHECK(refusal_of(metadata) == refused("its parameter 'limit' has two types"));
+    metadata = enumerated();
+    metadata.parameters[0].enumeration.members.clear();
+    CHECK(refusal_of(metadata) == refused("its enumeration 'Mode' has no members"));
+    metadata = enumerated();
+    metadata.parameters[0].enumeration.members[1].name = std::string("a\0b", 3);
+    CHECK(refusal_of(metadata) == refused("a name in it has a zero byte"));
+    const std::size_t index = plain + 12; // after three numbers of items
+    program.note = note;
+    program.note[index] = 1;
+    CHECK(refusal(program) == refused("its metadata names parameter 1 of 1"));
+    const std::string type = note.substr(index);
+    program.note = note + type;
+    program.note[plain + 8] = 2;
+    CHECK(refusal(program) == refused("its parameter 'limit' has two types"));
+}
+
 TEST_CASE("lengths that promise the world are refused") {
-    const std::string note = programs::carried().note;
+    const std::string note = programs::note_of(enumerated());
     for (std::size_t place = 16; place + 4 <= note.size(); ++place) {
         Program program = programs::carried();
+        program.note = note;
         program.note.replace(place, 4, "\xFF\xFF\xFF\xFF");
         const std::string answer = refusal(program);
         CHECK_MESSAGE((answer == "no exception" || answer.starts_with(refused("").substr(0, 43))),

@@ -311,6 +311,34 @@ def test_a_unit_takes_booleans_and_members_as_the_monitor_does(exported, tmp_pat
 
 
 @BOTH
+def test_a_code_that_no_member_has_is_no_value_of_a_parameter(exported, tmp_path, version):
+    text = """enum Mode { MANUAL, AUTO = 4 }  input Mode mode  parameter Mode wanted = AUTO
+        historically(mode == wanted)"""
+    there = Unit(exported(text, version, period=PERIOD), tmp_path / "unit")
+    slave, wanted = there.slave, [there.reference["wanted"]]
+    set_member = slave.setInteger if version == 2 else slave.setInt64
+    get_member = slave.getInteger if version == 2 else slave.getInt64
+    there.begin()
+    slave.reset()
+    there.said.clear()
+    with pytest.raises(FMICallException):
+        set_member(wanted, [7])
+    assert [sentence for _, sentence in there.said] == [
+        "The parameter 'wanted' is 7, and declared as Mode: give 0 (MANUAL) or 4 (AUTO)."
+    ]
+    assert list(get_member(wanted)) == [4]
+    if version == 2:
+        slave.setupExperiment()
+    slave.enterInitializationMode()
+    set_member(wanted, [0])
+    slave.exitInitializationMode()
+    set_member([there.reference["mode"]], [0])
+    there.step(0.0)
+    assert (list(get_member(wanted)), there.get("robustness")) == ([0], np.inf)
+    there.close()
+
+
+@BOTH
 def test_a_number_in_place_of_a_boolean_is_a_rejected_step(exported, tmp_path, version):
     there = Unit(exported("input bool p  historically(p)", version, period=PERIOD), tmp_path / "unit").begin()
     there.set(p=1.0)

@@ -85,6 +85,36 @@ def test_a_number_in_place_of_a_boolean_is_refused_as_in_python():
             give(monitor, 1.0)
 
 
+ENUMERATED = (
+    "enum Mode { MANUAL, AUTO = 4 }  parameter Mode wanted = AUTO  input Mode mode  once(mode == wanted)"
+)
+
+
+def test_a_code_that_no_member_has_is_refused_as_a_parameter_as_in_python():
+    spec = rtamt.parse(ENUMERATED, period="1s")
+    programs = (
+        spec.compile(),
+        spec.compile(verdict="interval"),
+        rtamt.parse(ENUMERATED, time="dense", resolution="1s").compile(),
+    )
+    for program in programs:
+        assert Program.from_bytes(program.to_bytes()).metadata == program.metadata
+        monitor = c_api.Monitor(program.to_bytes())
+        before = monitor.save()
+        for value in (7.0, 0.5, -4.0, float("inf")):
+            with pytest.raises(rtamt.UsageError, match="which is no member of Mode"):
+                spec.with_parameters(wanted=value)
+            with pytest.raises(c_api.RefusedError) as refused:
+                monitor.set_parameter(0, value)
+            assert refused.value.args == (
+                c_api.REFUSED,
+                f"The parameter 'wanted' is {value:.15g}, and declared as Mode: give 0 (MANUAL) or 4 (AUTO).",
+            )
+            assert monitor.save() == before
+        for value in (0.0, 4.0):
+            monitor.set_parameter(0, value)
+
+
 @pytest.mark.parametrize("mode", ["delayed", "eager", "interval"])
 def test_a_number_in_place_of_a_boolean_is_refused_by_fleets(mode):
     spec = rtamt.parse("input bool p  input float x  historically[0:2](p or x > 0)", period="1s")
