@@ -165,7 +165,7 @@ TEST_CASE("calls at the wrong time of a unit's life are refused and change nothi
     Component component = folder.component();
     const auto said = [&](auto call) {
         const auto before = component.save();
-        const std::string sentence = thrown<std::invalid_argument>(call);
+        std::string sentence = thrown<std::invalid_argument>(call);
         CHECK(component.save() == before);
         return sentence;
     };
