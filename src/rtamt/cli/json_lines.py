@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from math import isinf
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rtamt.errors import TraceError
 from rtamt.language.value_types import Enumeration
 from rtamt.readers.dates import EXAMPLE, is_date
+from rtamt.readers.json_values import RepeatedKeyError, TooLarge, loads
 from rtamt.readers.source import printable
 from rtamt.signals.binding import missing
 from rtamt.signals.data_errors import missing_variable
@@ -30,23 +31,13 @@ KNOWN = "a number, bounds [lower, upper], or null if it is missing"
 _INFINITIES = ("inf", "-inf")
 
 
-class _TooLarge(str):
-    """The text of a number beyond the range of a double."""
-
-    __slots__ = ()
-
-
-class _RepeatedKeyError(ValueError):
-    pass
-
-
 def object_in(text: str, number: int) -> dict[str, Any]:
     """Return the JSON object in a line."""
     try:
-        data = json.loads(text, parse_float=_float, object_pairs_hook=_unique)
+        data = loads(text)
     except json.JSONDecodeError as error:
         raise line_error(number, f"not JSON: {error.msg} at column {error.colno}") from None
-    except _RepeatedKeyError as error:
+    except RepeatedKeyError as error:
         raise line_error(number, f"the key {format_value(str(error))} is given twice; give it once") from None
     except (ValueError, RecursionError):
         raise line_error(number, "not JSON to read: a number is too long, or nesting too deep") from None
@@ -54,19 +45,6 @@ def object_in(text: str, number: int) -> dict[str, Any]:
         raise line_error(
             number, f'expected a JSON object, such as {{"time": 0, "x": 1}}, got {format_value(data)}'
         )
-    return data
-
-
-def _float(text: str) -> float | _TooLarge:
-    value = float(text)
-    return _TooLarge(text) if isinf(value) else value
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        keys = [key for key, _ in pairs]
-        raise _RepeatedKeyError(next(key for key in keys if keys.count(key) > 1))
     return data
 
 
@@ -84,7 +62,7 @@ def flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def stamp_in(data: dict[str, Any], name: str, number: int) -> str:
     """Return a timestamp as it would be written in a cell: a number, or a date."""
     value = value_in(data, name, number)
-    if isinstance(value, str) and not isinstance(value, _TooLarge) and value not in _INFINITIES:
+    if isinstance(value, str) and value not in _INFINITIES:
         if not is_date(value):
             problem = f"expected a number, or a date such as {EXAMPLE}"
             raise line_error(number, f"'{name}' is {format_value(value)}, {problem}")
@@ -103,13 +81,10 @@ def number_of(value: Any, name: str, number: int, type_: ValueType | None = None
     if isinstance(value, str) and isinstance(type_, Enumeration):
         return code_of(value, name, type_, number)
     if isinstance(value, (bool, int, float)):
-        try:
-            return float(value)
-        except OverflowError:
-            value = _TooLarge(json.dumps(value))
-    if isinstance(value, _TooLarge):
-        text = value if len(value) <= 40 else f"{value[:40]}..."
-        raise line_error(number, f"'{name}' is {text}, beyond the range of a double", name)
+        with suppress(OverflowError):
+            if not isinstance(value, TooLarge):
+                return float(value)
+        raise line_error(number, f"'{name}' is {format_value(value)}, beyond the range of a double", name)
     if value in _INFINITIES:
         return float(value)
     raise line_error(number, f"'{name}' is {format_value(value)}, expected a number", name)
@@ -139,7 +114,7 @@ def known_of(value: Any, name: str, number: int, type_: ValueType | None) -> Kno
 def _is_number(value: Any, type_: ValueType | None) -> bool:
     """Return whether :func:`number_of` takes a value, or rejects it for more than its kind."""
     named = isinstance(value, str) and isinstance(type_, Enumeration)
-    return named or isinstance(value, (bool, int, float, _TooLarge)) or value in _INFINITIES
+    return named or isinstance(value, (bool, int, float)) or value in _INFINITIES
 
 
 def code_of(text: str, name: str, type_: Enumeration, number: int) -> float:
@@ -194,7 +169,7 @@ def _member(data: dict[str, Any], name: str) -> Any:
 
 def format_value(value: object) -> str:
     """Return a value as a message shows it."""
-    text = json.dumps(value)
+    text = value.text if isinstance(value, TooLarge) else json.dumps(value)
     return text if len(text) <= 40 else f"{text[:40]}..."
 
 

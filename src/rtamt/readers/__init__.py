@@ -16,6 +16,7 @@ gaps          missing samples: skipped or held
 silence       signals that end long before the recording does
 rows          rows of Python objects to columns
 frames        pandas, polars, xarray, arrow and numpy objects
+json_values   values of JSON lines and messages
 csv           CSV files
 csv_cells     text columns of CSV files to numbers and dates
 csv_source    CSV files as a source

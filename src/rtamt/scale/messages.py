@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import datetime
 from fractions import Fraction
-from math import isfinite, isinf, isnan, nan
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, UsageError, choices
@@ -20,6 +20,7 @@ from rtamt.language.units.durations import UNITS, check_unit
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, date_in
+from rtamt.readers.json_values import RepeatedKeyError, TooLarge, loads
 from rtamt.scale.inputs import inputs_of, is_dense
 from rtamt.scale.shard import Sample, key_problem
 from rtamt.signals.counting import is_implausible
@@ -73,16 +74,16 @@ def decode_json(value: bytes) -> Mapping[str, Any]:
     {'time': 0, 'x': 1.5}
     """
     try:
-        data = json.loads(
-            value, parse_float=_float, parse_constant=_refuse_constant, object_pairs_hook=_unique
-        )
+        data = loads(value, _refuse_constant)
     except json.JSONDecodeError as error:
         raise TraceError(f"the message is not JSON: {error.msg} at column {error.colno}") from None
     except UnicodeDecodeError:
         raise TraceError("the message is not JSON: it is not UTF-8 text") from None
     except RecursionError:
         raise TraceError("the message is not JSON to read: it is nested too deeply") from None
-    except ValueError as error:  # of the functions below, or a number of too many digits
+    except RepeatedKeyError:
+        raise TraceError("the message is not JSON to read: a key is given twice") from None
+    except ValueError as error:  # a constant, or a number of too many digits
         raise TraceError(f"the message is not JSON to read: {str(error).partition(';')[0]}") from None
     if not isinstance(data, dict):
         raise TraceError(
@@ -91,26 +92,8 @@ def decode_json(value: bytes) -> Mapping[str, Any]:
     return data
 
 
-class _TooLarge(float):
-    """A number of JSON beyond the range of a double; only infinities that are written as such are values."""
-
-    __slots__ = ()
-
-
-def _float(text: str) -> float:
-    value = float(text)
-    return _TooLarge(value) if isinf(value) else value
-
-
 def _refuse_constant(text: str) -> float:
     raise ValueError(f"JSON has no number {text}")
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        raise ValueError("a key is given twice")
-    return data
 
 
 def framed(value: bytes) -> tuple[int, bytes]:
@@ -257,8 +240,7 @@ def _number(data: Mapping[str, Any], name: str, columns: tuple[str, ...], type_:
     if isinstance(value, int):
         with suppress(OverflowError):
             return float(value)
-        value = _TooLarge("inf")
-    if isinstance(value, _TooLarge):
+    if isinstance(value, int | TooLarge):
         raise TraceError(f"'{columns[0]}' is beyond the range of a double", variable=name)
     if isinstance(value, str):
         code = type_.code(value) if isinstance(type_, Enumeration) else _INFINITIES.get(value)
