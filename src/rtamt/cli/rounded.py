@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-#: Doubles hold all integers up to this one.
-_EXACT = 2**53
+from rtamt.readers.numbers import EXACT, is_rounded
 
 
 def may_be_rounded(value: object) -> bool:
@@ -14,7 +13,7 @@ def may_be_rounded(value: object) -> bool:
     >>> may_be_rounded(2.0**53), may_be_rounded(3.0)
     (True, False)
     """
-    return isinstance(value, float) and not -_EXACT < value < _EXACT
+    return isinstance(value, float) and not -EXACT < value < EXACT
 
 
 class Rounded:
@@ -29,7 +28,7 @@ class Rounded:
         if name in self._names:
             return
         text = str(value).strip()
-        if text.lstrip("+-").isdecimal() and int(float(text)) != int(text):
+        if text.lstrip("+-").isdecimal() and is_rounded(int(text)):
             self._names.add(name)
             self._notes.append(
                 f"rounded to doubles: integers of {name} beyond 2^53, the first in line {line}"

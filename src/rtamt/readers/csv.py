@@ -153,16 +153,17 @@ def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[in
     try:
         for row in reader:
             line = before + reader.line_num
-            blank = not any(map(str.strip, taken))
+            blank = len(row) <= 1 and not any(map(str.strip, taken))
             if len(taken) > 1:
                 _check_quotes(taken, header, line)
             taken.clear()
             if blank and len(header.names) == 1:
                 empty.append(line)
-            if blank or is_comment(row, header, line):
+            if blank or (row[0][:1] == "#" and is_comment(row, header, line)):
                 continue
-            yield from ((each, [""]) for each in empty)
-            empty.clear()
+            if empty:
+                yield from ((each, [""]) for each in empty)
+                empty.clear()
             yield line, row
     except csv.Error as error:
         raise header.error(before + reader.line_num, str(error)) from None

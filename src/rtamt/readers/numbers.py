@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 #: Doubles hold all integers up to this one.
-_EXACT = 2**53
+EXACT = 2**53
 
 
 def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bool = True) -> tuple[Any, Any]:
@@ -51,6 +51,15 @@ def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bo
     return values, missing
 
 
+def is_rounded(value: int) -> bool:
+    """Return whether no double holds an integer, which is in the range of doubles.
+
+    >>> is_rounded(2**53), is_rounded(2**53 + 1), is_rounded(2**54)
+    (False, True, False)
+    """
+    return not -EXACT <= value <= EXACT and int(float(value)) != value
+
+
 def rounded(raw: Raw) -> Any:
     """Return which values are integers that no double holds, a mask; None: none.
 
@@ -61,11 +70,11 @@ def rounded(raw: Raw) -> Any:
     if not len(plain):
         return None
     if plain.dtype.kind == "O":
-        large = [type(value) is int and abs(value) > _EXACT and int(float(value)) != value for value in plain]
+        large = [type(value) is int and is_rounded(value) for value in plain]
         return np.array(large, dtype=bool) if any(large) else None
     if plain.dtype.kind not in "iu" or plain.dtype.itemsize < 8:
         return None
-    if int(plain.min()) >= -_EXACT and int(plain.max()) <= _EXACT:
+    if int(plain.min()) >= -EXACT and int(plain.max()) <= EXACT:
         return None
     numbers = plain.astype(np.float64)
     # The greatest integers are rounded to one that this type does not hold.
