@@ -74,7 +74,7 @@ def test_a_number_is_returned_where_the_samples_determine_it():
         "read result.interval or result.intervals"
     )
     with pytest.raises(EvaluationError, match=f"^{re.escape(message)}$"):
-        result.signal.values  # noqa: B018 - it raises
+        _ = result.signal.values
 
 
 def test_a_verdict_that_the_samples_do_not_decide_is_an_error():
@@ -84,7 +84,7 @@ def test_a_verdict_that_the_samples_do_not_decide_is_an_error():
         "read result.interval"
     )
     with pytest.raises(EvaluationError, match=f"^{re.escape(message)}$"):
-        result.satisfied  # noqa: B018 - it raises
+        _ = result.satisfied
     assert rtamt.parse("always(x >= 3)").evaluate({"x": [1, None]}).satisfied is False
 
 
