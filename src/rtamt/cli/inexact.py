@@ -20,7 +20,7 @@ class Inexact:
 
 
 def rejected() -> Inexact:
-    """Return what becomes of such samples in the modes that take none: an error that names those that do.
+    """Return the handling of such samples in the modes that take none: an error that names those that do.
 
     >>> rejected().bounds
     '--verdict eager and --verdict interval take bounds'

@@ -130,7 +130,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--on-correction",
         choices=CORRECTIONS,
-        help="with --verdict interval, what becomes of a sample that contradicts an earlier one: reject it, or replay "
+        help="with --verdict interval, how a sample that contradicts an earlier one is handled: reject it, or replay "
         f"the trace with it and report retracted bounds (default: {CORRECTIONS[0]})",
     )
     parser.add_argument(
@@ -286,7 +286,7 @@ def _lateness(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def _inexact(early: EarlyFeed | None, *, late: bool) -> Inexact:
-    """Return what becomes of missing samples and bounds."""
+    """Return how missing samples and bounds are handled."""
     if early is None or isinstance(early, CausationFeed):
         return rejected()
     return Inexact(taken=True, late=late)

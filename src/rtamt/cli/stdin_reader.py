@@ -33,7 +33,7 @@ class Samples:
     hold some of the values only. ``time_name``: the column of timestamps, "" for none, by default the one
     that :func:`rtamt.read` would take. ``unit``: of timestamps that are numbers. ``binding``: under which names the
     variables are recorded, and in which units they are declared. ``skip_nan``: whether a value may be NaN. ``members``:
-    finds the members of groups, which may be absent. ``inexact``: what becomes of missing samples and bounds.
+    finds the members of groups, which may be absent. ``inexact``: how missing samples and bounds are handled.
     """
 
     def __init__(
@@ -167,12 +167,13 @@ def lines_of(stream: Iterable[bytes]) -> Iterator[tuple[int, bytes]]:
     >>> list(lines_of([b"x\n", b"1\n", b"\n", b"# note\n", b"2\n", b"\n"]))
     [(1, b'x'), (2, b'1'), (4, b'# note'), (3, b''), (5, b'2')]
     """
-    empty: list[int] = []
+    empty: list[range] = []  # their numbers: a stream that is idle may send any number of empty lines
     for number, line in enumerate((each for part in stream for each in part.splitlines()), 1):
         if not line.decode("utf-8", "replace").strip():
-            empty.append(number)
+            begin = empty.pop().start if empty and empty[-1].stop == number else number
+            empty.append(range(begin, number + 1))
             continue
         if not line.startswith(b"#"):
-            yield from ((each, b"") for each in empty)
+            yield from ((each, b"") for lines in empty for each in lines)
             empty.clear()
         yield number, line

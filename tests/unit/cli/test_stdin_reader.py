@@ -1,6 +1,8 @@
 """Lines of a stream: when they arrive, and which empty ones are samples."""
 
 import json
+import tracemalloc
+from itertools import chain, repeat
 
 import pytest
 
@@ -36,6 +38,17 @@ def test_a_line_arrives_before_the_next_one_is_read():
         (5, b"2", 5),
         (6, b"3", 5),
     ]
+
+
+def test_a_stream_that_is_idle_needs_no_memory():
+    lines = lines_of(chain([b"x\n"], repeat(b"\n", 20_000), [b"1\n"]))
+    tracemalloc.start()
+    try:
+        assert [next(lines), *(next(lines) for _ in range(2))] == [(1, b"x"), (2, b""), (3, b"")]
+        assert tracemalloc.get_traced_memory()[1] < 20_000
+    finally:
+        tracemalloc.stop()
+    assert sum(1 for _ in lines) == 19_999
 
 
 @pytest.mark.parametrize("gap", ["", "  ", "\xa0", '""', "\n# note", "# note\n"])
