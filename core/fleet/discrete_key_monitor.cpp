@@ -1,5 +1,6 @@
 // Monitors of keys in discrete time: verdicts, bounds and causation before the horizon.
 #include "key_monitor.hpp"
+#include "start_report.hpp"
 
 #include "../early/discrete_monitor.hpp"
 
@@ -45,7 +46,7 @@ class DiscreteEarly final : public KeyMonitor {
         if (!monitor_.late()) {
             take_next(sample);
         } else if (monitor_.newest() >= 0) {
-            forget_start();
+            began_.forget();
             if (!learn(monitor_, seen_of(sample))) return at_start(true);
         } else {
             if (comes_too_late(sample.time)) return at_start(true);
@@ -63,7 +64,7 @@ class DiscreteEarly final : public KeyMonitor {
     AtStart watermark(double time, std::size_t index, std::vector<Row>& rows) override {
         if (!interval()) return KeyMonitor::watermark(time, index, rows);
         check_time(time);
-        forget_start();
+        began_.forget();
         if (!early_.empty() && is_first(early_.front().time, time)) begin();
         if (const auto failure = monitor_.watermark(time)) {
             fail(*failure, monitor_.newest(), monitor_.last_time());
@@ -88,12 +89,7 @@ class DiscreteEarly final : public KeyMonitor {
             state.put(std::uint8_t{mark_.has_value()});
             if (mark_) state.put(*mark_);
             state.put(std::int64_t{0}); // nothing was filled in
-            put_noted(state);
-            state.put_count(moments_.size());
-            for (const auto& [sample, time] : moments_) {
-                state.put(sample);
-                state.put(time);
-            }
+            began_.put(state);
         }
         monitor_.settle();
         state.put_snapshot([&](Snapshot& snapshot) { monitor_.transfer(snapshot); });
@@ -110,15 +106,12 @@ class DiscreteEarly final : public KeyMonitor {
             mark_.reset();
             if (state.flag()) mark_ = finite(state);
             state.nothing(sizeof(std::uint64_t));
-            take_noted(state);
-            take_moments(state);
+            began_.take(state, monitor_.outputs());
         }
         state.take_snapshot([&](Snapshot& snapshot) {
             monitor_.transfer(snapshot);
             snapshot.require(!monitor_.finished());
-            if (!noted_) return;
-            for (const early::BoundChange& run : *noted_)
-                snapshot.require(0 <= run.l && run.l <= run.r && run.r <= monitor_.newest());
+            began_.require(snapshot, monitor_.newest());
         });
     }
 
@@ -141,9 +134,7 @@ class DiscreteEarly final : public KeyMonitor {
     std::vector<Seen> early_;    // that came before it is known where the trace starts, in order
     std::optional<early::DiscreteMonitor> rehearsal_; // which has taken them
     bool begins_anywhere_ = false;                    // whether it takes earlier ones
-    // What these changed when the trace started, until the next sample.
-    std::optional<std::vector<early::BoundChange>> noted_;
-    std::vector<std::pair<Tick, double>> moments_; // the first samples and their times, likewise
+    StartReport began_;                               // what these changed, until the next sample
 
     [[nodiscard]] bool interval() const noexcept {
         return program_.mode == MonitorProgram::Mode::interval;
@@ -290,58 +281,20 @@ class DiscreteEarly final : public KeyMonitor {
         }
     }
 
-    void forget_start() noexcept {
-        noted_.reset();
-        moments_.clear();
-    }
-
-    // The time of a sample that is reported.
-    [[nodiscard]] double time_of(Tick sample) const noexcept {
-        const auto after = std::ranges::upper_bound(
-            moments_, sample, {},
-            [](const std::pair<Tick, double>& moment) { return moment.first; });
-        if (after == moments_.begin()) return monitor_.time(sample);
-        const auto& [earlier, time] = *std::prev(after);
-        if (earlier == sample) return time;
-        return time + static_cast<double>(sample - earlier) * monitor_.period();
-    }
-
-    void take_moments(StateReader& state) {
-        moments_.clear();
-        const std::size_t count = state.take_count();
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto sample = state.take<Tick>();
-            if (sample < 0 || (i > 0 && sample <= moments_.back().first)) {
-                refuse("its times are not in order");
-            }
-            moments_.emplace_back(sample, finite(state));
-        }
-    }
-
     // Takes the samples that were kept, in order, so that none is too late; all that they change
     // counts as changed by the last of them.
     void begin() {
-        std::vector<early::BoundChange> noted;
         for (const Seen& seen : early_) {
             const Tick before = monitor_.newest();
             (void)learn(monitor_, seen);
-            if (monitor_.newest() > before) moments_.emplace_back(monitor_.newest(), seen.time);
-            if (monitor_.outputs() == 0) continue;
-            const auto changes = monitor_.changes(0);
-            noted.insert(noted.end(), changes.begin(), changes.end());
+            if (monitor_.newest() > before) began_.add(monitor_.newest(), seen.time);
+            if (monitor_.outputs() != 0) began_.add(monitor_.changes(0));
         }
         early_.clear();
         rehearsal_.reset();
-        if (monitor_.outputs() != 0) noted_ = std::move(noted);
     }
 
     // ---- what monitors of Python remember of that
-
-    [[nodiscard]] static double finite(StateReader& state) {
-        const auto time = state.take<double>();
-        if (!std::isfinite(time)) refuse("it has no time where one belongs");
-        return time;
-    }
 
     void put_early(StateWriter& state) const {
         state.put_count(early_.size());
@@ -382,39 +335,6 @@ class DiscreteEarly final : public KeyMonitor {
         return static_cast<std::uint32_t>(found - program_.inputs.begin());
     }
 
-    void put_noted(StateWriter& state) const {
-        state.put_count(noted_ ? 1 : 0);
-        if (!noted_) return;
-        state.put(std::int64_t{0});
-        state.put_count(noted_->size());
-        for (const early::BoundChange& run : *noted_) {
-            state.put(run.l);
-            state.put(run.r);
-            state.put(run.bounds.lower);
-            state.put(run.bounds.upper);
-        }
-    }
-
-    void take_noted(StateReader& state) {
-        noted_.reset();
-        const std::size_t outputs = state.take_count();
-        if (outputs == 0) return;
-        if (outputs > 1 || state.take<std::int64_t>() != 0 || monitor_.outputs() != 1) {
-            refuse("it has another output");
-        }
-        noted_.emplace();
-        const std::size_t count = state.take_count();
-        for (std::size_t i = 0; i < count; ++i) {
-            early::BoundChange run{};
-            run.l = state.take<Tick>();
-            run.r = state.take<Tick>();
-            run.bounds.lower = state.take<double>();
-            run.bounds.upper = state.take<double>();
-            if (!(run.bounds.lower <= run.bounds.upper)) refuse("it has bounds that are reversed");
-            noted_->push_back(run);
-        }
-    }
-
     // ---- results
 
     [[nodiscard]] AtStart at_start(bool late = false) const {
@@ -425,14 +345,6 @@ class DiscreteEarly final : public KeyMonitor {
         if (program_.mode != MonitorProgram::Mode::causation) return {};
         const Bounds caused = monitor_.caused_at_start();
         return {{caused.upper + 0.0, caused.lower + 0.0}};
-    }
-
-    [[nodiscard]] std::vector<early::BoundChange> changes() const {
-        auto now = monitor_.changes(0);
-        if (!noted_ || noted_->empty()) return now;
-        std::vector<early::BoundChange> all = *noted_;
-        all.insert(all.end(), now.begin(), now.end());
-        return early::latest(all);
     }
 
     [[nodiscard]] AtStart report(std::size_t index, std::vector<Row>& rows) const {
@@ -447,11 +359,10 @@ class DiscreteEarly final : public KeyMonitor {
             }
         }
         if (interval() && monitor_.outputs() != 0) {
-            const bool noted = noted_ && !noted_->empty();
-            for (const early::BoundChange& run : changes()) {
+            for (const early::BoundChange& run : began_.with(monitor_.changes(0))) {
                 rows.push_back({.index = index,
-                                .begin = noted ? time_of(run.l) : monitor_.time(run.l),
-                                .end = noted ? time_of(run.r) : monitor_.time(run.r),
+                                .begin = began_.time(monitor_, run.l),
+                                .end = began_.time(monitor_, run.r),
                                 .bounds = run.bounds,
                                 .is_final = monitor_.is_final(0, run)});
             }
