@@ -14,6 +14,7 @@ discrete_eager      eager verdicts in discrete time
 dense_eager         eager verdicts in dense time
 interval            bounds of the robustness: late samples and corrections
 discrete_interval   the monitor of bounds in discrete time
+discrete_samples    the samples that it takes: missing and late ones, and the first of a trace
 rehearsal           the first samples of a trace, before it is known where it starts
 dense_interval      the monitor of bounds in dense time
 member_bounds       bounds in discrete time of quantifiers over members that come and go
