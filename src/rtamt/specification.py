@@ -168,7 +168,7 @@ class Specification(OnlineSpecification):
             # Signals with separate time bases need conversion even if they are plain; this is detected once.
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
-        if len(self.requirements) > 1:
+        if len(self.requirements) > 1:  # a single one has been read with all that it needs
             from rtamt.specification_data import require_period
 
             require_period(self, query, data)

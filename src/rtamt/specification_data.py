@@ -34,8 +34,8 @@ def over_data(spec: Specification, query: Query, data: Any) -> tuple[Specificati
 
 
 def require_period(spec: Specification, query: Query, data: Any) -> None:
-    """Raise :class:`TraceError` if one of several requirements needs a period that nothing gives."""
-    if len(spec.requirements) > 1 and query.domain.sampled and query.domain.period is None:
+    """Raise :class:`TraceError` if one of the requirements needs a period that nothing gives."""
+    if query.domain.sampled and query.domain.period is None:
         from rtamt.signals.assumed_period import require_times_of_each  # monitors do not wait for it
 
         require_times_of_each(data, [one.input_names for one in spec.requirements.values()])
