@@ -8,6 +8,7 @@ import shutil
 import pytest
 
 from tests.support.brokers import broker
+from tests.unit.scale.recorded import write_csv
 
 #: The marks of a module that uses Spark.
 SPARK = [
@@ -45,3 +46,12 @@ def session(tmp_path_factory):
 def brokers():
     with broker() as address:
         yield address
+
+
+@pytest.fixture
+def folder(tmp_path):
+    logs = tmp_path / "logs"
+    logs.mkdir()
+    for i in range(6):
+        write_csv(logs / f"{i}.csv", i)
+    return logs

@@ -60,3 +60,8 @@ class DeadlyJob(Job):
 
 def deadly_job() -> DeadlyJob:
     return DeadlyJob(suite())
+
+
+def rows(tables):
+    """Return the rows of tables, one after another."""
+    return [row for table in tables for row in table]
