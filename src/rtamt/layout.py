@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, StlError
 from rtamt.language.parsing.imports import Library
-from rtamt.language.parsing.lexer import comments, is_name, is_numeral, is_quoted, tokenize
+from rtamt.language.parsing.lexer import LINE_END, comments, is_name, is_numeral, is_quoted, tokenize
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from rtamt.language.operators import Language
 
 _INDENT = "    "
-_LINE_END = lazy_pattern(r"\r\n|\n|\r")
 _ID = lazy_pattern(r"\w(?:[\w.-]*\w)?")
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 #: Words that no operand precedes or follows on their line, besides operators.
@@ -148,7 +147,7 @@ class _Layout:
         last: _Piece | None = None  # the piece before
         number = 0
         for piece in self.pieces:
-            breaks = len(_LINE_END.findall(piece.gap))
+            breaks = len(LINE_END.findall(piece.gap))
             after = self.words[number] if number < len(self.words) else None
             begins = depth == 0 and self._begins(before, after, number)
             if (
@@ -162,7 +161,7 @@ class _Layout:
             elif breaks:
                 yield self.end * min(breaks, 2)
                 if self.careful:
-                    yield _LINE_END.split(piece.gap)[-1]
+                    yield LINE_END.split(piece.gap)[-1]
                 else:
                     closes = after is not None and after.text in _CLOSING
                     broken = broken or (depth == 0 and not begins and after is not None)

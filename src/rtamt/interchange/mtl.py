@@ -13,6 +13,7 @@ from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_new, require_period, specification_text
 from rtamt.language.formula import Apply, Interval, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity
+from rtamt.language.parsing.lexer import LINE_END
 from rtamt.language.units.durations import decimal
 from rtamt.language.unwritten import TRUTH
 from rtamt.language.value_types import BOOLEAN
@@ -98,7 +99,7 @@ def read_mtl(text: str, period: Fraction | None = None) -> Conversion:
     """
     written: list[ReadRequirement] = []
     rejected: list[Rejection] = []
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(LINE_END.split(text), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         match = _LABEL.fullmatch(line)

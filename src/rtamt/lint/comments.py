@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Span
-from rtamt.language.parsing.lexer import comments
+from rtamt.language.parsing.lexer import LINE_END, comments
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.patterns import lazy_pattern
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 #: What a text contains that may have such a comment: most have none.
 MARK = "lint:"
 _IGNORE = lazy_pattern(r"lint:\s*ignore\[([^\]]*)\]")
-_LINE_END = lazy_pattern(r"\r\n|\r|\n")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +50,7 @@ def silenced(text: str, language: Language) -> Iterator[Silenced]:
 
 def _where(text: str, comment: Span, every: list[Span]) -> Span:
     """Return the line of a comment; of one that is alone on its line, the next one with more than comments."""
-    ends = [match.end() for match in _LINE_END.finditer(text)]
+    ends = [match.end() for match in LINE_END.finditer(text)]
     starts = [0, *ends]
     lines = [Span(start, end) for start, end in zip(starts, [*ends, len(text)], strict=True)]
     at = max(k for k, line in enumerate(lines) if line.start <= comment.start)

@@ -5,16 +5,13 @@ from __future__ import annotations
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from rtamt.lazy.patterns import lazy_pattern
+from rtamt.language.parsing.lexer import LINE_END
 from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rtamt.language.formula import Span
-
-#: The ends of lines in the protocol, which are those of `//` comments, too.
-LINE_END = lazy_pattern(r"\r\n|\n|\r")
 
 #: How many units a character takes, by the encoding that client and server agree on.
 _UNITS: dict[str, Callable[[str], int]] = {

@@ -13,7 +13,7 @@ from rtamt.errors import TraceError, shown
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, is_date
-from rtamt.signals.time_columns import unit_called
+from rtamt.signals.time_columns import column_name, unit_called
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -74,10 +74,10 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
         cells = next(reader)
     except csv.Error as error:
         raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {error}") from None
-    header = Header(file, tuple(cell.strip() for cell in cells), delimiter, count - 1 + reader.line_num)
+    header = Header(file, tuple(map(column_name, cells)), delimiter, count - 1 + reader.line_num)
     if not all(is_value(cell) for cell in header.names if cell):
         return header, lines
-    names = tuple(cell.strip() for cell in comment.split(delimiter))
+    names = tuple(map(column_name, comment.split(delimiter)))
     if len(names) == len(cells) and all(names):
         return Header(file, names, delimiter, count - 1), chain([first], lines)
     raise header.error(

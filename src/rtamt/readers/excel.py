@@ -12,7 +12,7 @@ from rtamt.errors import TraceError, choices
 from rtamt.readers.dates import is_date
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import Source, library
-from rtamt.signals.time_columns import is_stamps, may_be_stamps, split_unit
+from rtamt.signals.time_columns import column_name, is_stamps, may_be_stamps, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -56,7 +56,7 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
             raise TraceError(
                 f"{path}: expected a row of column names, such as time, x; the first row is {header}"
             )
-        columns = ["" if cell is None else str(cell).strip() for cell in header]
+        columns = ["" if cell is None else column_name(str(cell)) for cell in header]
         first = next(rows, None)
         if first is not None:
             rows = chain([first], rows)

@@ -32,7 +32,11 @@ _UNIT_OF = {spelling: unit for unit, spellings in SPELLINGS.items() for spelling
 #: Units at the end of a name: t_min may be a minimum, and t_h anything.
 _SUFFIXES = [spelling for spelling, unit in _UNIT_OF.items() if unit not in ("h", "min")]
 _STAMPS = lazy_pattern(rf"(?:{'|'.join(NAMES)})(?:[ _](?:{'|'.join(_SUFFIXES)}))?")
-_BRACKETS = lazy_pattern(r"(?P<name>.*\S)\s*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL)
+#: What surrounds a name without being part of it; `str.strip` removes more, such as U+2028 and U+3000.
+_BLANKS = " \t\r\n\xa0"
+_BRACKETS = lazy_pattern(
+    rf"(?P<name>.*[^{_BLANKS}])[{_BLANKS}]*[\[(]\s*(?P<unit>[^\[\]()]+?)\s*[\])]", re.DOTALL
+)
 
 #: Words in the names of columns that may hold timestamps, but need not.
 _HINTS = frozenset({*NAMES, "ts", "date", "clock", "epoch", "elapsed"} - {"t"})
@@ -41,6 +45,15 @@ _UNITS = frozenset(spelling for spelling in _SUFFIXES if len(spelling) > 2)
 #: The beginning of the text of a date.
 _DATED = lazy_pattern(r"\s*\d{4}-\d{2}-\d{2}(?!\d)")
 _WORDS = lazy_pattern(r"[A-Z]?[a-zµμ]+|[A-Z]+(?![a-z])")
+
+
+def column_name(text: str) -> str:
+    r"""Return the name in a cell of a header: without spaces, tabs and line ends around it.
+
+    >>> column_name(" x\xa0"), column_name("x\u2028")
+    ('x', 'x\u2028')
+    """
+    return text.strip(_BLANKS)
 
 
 def split_unit(column: str) -> tuple[str, str]:

@@ -85,3 +85,16 @@ def test_modes_that_take_no_missing_samples_reject_the_empty_line(run):
 def test_an_empty_line_under_a_column_of_timestamps_has_no_time(run):
     code, _, err = run("monitor", "time >= 0", "--time", "dense", stdin="time\n0\n\n1\n")
     assert (code, err) == (2, "rtamt: stdin, line 3: the time column 'time' is empty at sample 1\n")
+
+
+@pytest.mark.parametrize("character", ["\u2028", "\u3000", "\x85", "\x1c"])
+def test_a_name_in_the_header_keeps_what_is_no_space_tab_or_line_end_as_in_a_file(run, write, character):
+    header = f"y,x{character}"
+    log = write("log.csv", f"{header}\n1,1\n")
+    printed = character.encode("unicode_escape").decode() if character != "\u3000" else character
+    for code, _, err in (
+        run("monitor", "x + y >= 0", stdin=f"{header}\n1,1\n"),
+        run("check", "x + y >= 0", log),
+    ):
+        assert code == 2
+        assert f" has no column 'x'; did you mean 'x{printed}'? (columns: x{printed}, y)" in err

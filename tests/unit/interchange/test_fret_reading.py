@@ -169,3 +169,11 @@ def test_any_text_is_converted_or_rejected_in_a_sentence(sentence: str) -> None:
         return
     if found.converted:
         rtamt.parse(found.text)
+
+
+@pytest.mark.parametrize("character", ["\u2028", "\x85", "\f"])
+def test_only_line_ends_end_a_sentence(character: str) -> None:
+    found = read_fret(
+        f"R1: the pump shall{character}always satisfy x > 3\rR2: the pump shall always satisfy x > 4"
+    )
+    assert (found.converted, found.rejected) == (("R1", "R2"), ())

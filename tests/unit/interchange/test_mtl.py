@@ -35,3 +35,9 @@ def test_an_error_names_the_operators_of_py_metric_temporal_logic() -> None:
 )
 def test_windows_and_weak_until_of_py_metric_temporal_logic_have_notes(formula: str, notes: int) -> None:
     assert len(read_mtl(formula).notes) == notes
+
+
+@pytest.mark.parametrize("character", ["\u2028", "\x85", "\f"])
+def test_only_line_ends_end_a_formula(character: str) -> None:
+    found = read_mtl(f"R1: a &{character}b\rR2: b")
+    assert (found.converted, found.rejected) == (("R1", "R2"), ())

@@ -216,6 +216,13 @@ def test_message_for_a_field_too_long_for_a_csv_file(write):
     assert str(error.value) == "log.csv, line 2: field larger than field limit (131072)"
 
 
+@pytest.mark.parametrize("character", ["\u2028", "\u2029", "\x85", "\x1c", "\x1f", "\u3000"])
+@pytest.mark.parametrize("header", ["time, x{}\xa0\n", "time,\tx{} [V]\n", "# time,x{} \n"])
+def test_names_lose_spaces_tabs_and_line_ends_around_them_and_nothing_else(write, character, header):
+    trace = rtamt.read(write(f"{header.format(character)}0,1\n"))
+    assert trace.names == (f"x{character}",)
+
+
 def test_message_names_the_variable(write):
     with pytest.raises(TraceError) as error:
         read(write("time,req\n0,abc\n"), ["req"])

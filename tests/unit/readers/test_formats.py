@@ -39,6 +39,12 @@ def test_excel(tmp_path):
     assert trace.notes == ("time is 'Time [s]', by its name", "left out, not numbers: note")
 
 
+@pytest.mark.parametrize("character", ["\u2028", "\x85", "\u3000"])
+def test_names_in_excel_lose_spaces_tabs_and_line_ends_around_them_and_nothing_else(tmp_path, character):
+    rows = [["time\xa0\n", f" x{character}\t"], [0, 5], [1, 6]]
+    assert rtamt.read(workbook(tmp_path / "a.xlsx", log=rows)).names == (f"x{character}",)
+
+
 def test_excel_dates_and_sheets(tmp_path):
     dates = [dt.datetime(2024, 5, 1, 10, 0, second) for second in (0, 1)]
     path = workbook(tmp_path / "a.xlsx", readme=[], log=[["when", "x"], [dates[0], 1], [dates[1], 2]])

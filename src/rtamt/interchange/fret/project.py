@@ -15,6 +15,7 @@ from rtamt.interchange.fret.lower import Lowering, Types
 from rtamt.interchange.fret.sentence import Duration, Sentence, parse_sentence
 from rtamt.interchange.written import Names, ReadRequirement, specification_text
 from rtamt.language.formula import Apply, postorder
+from rtamt.language.parsing.lexer import LINE_END
 from rtamt.language.units.durations import decimal
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.patterns import lazy_pattern
@@ -117,7 +118,7 @@ def _content(text: str) -> tuple[list[FretRequirement], list[FretVariable]]:
     if text.lstrip()[:1] in ("[", "{"):
         return _project(text)
     found: list[FretRequirement] = []
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(LINE_END.split(text), 1):
         if not line.strip() or line.lstrip().startswith(("//", "#")):
             continue
         match = _LABEL.fullmatch(line)

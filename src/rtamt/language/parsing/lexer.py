@@ -37,6 +37,8 @@ PUNCTUATION = [*"( ) [ ] , : ; = @ %".split(), NO_ARROW]
 
 _WORD = r"[^\W\d][\w$]*|\$[\w$]*"
 _NAME = rf"(?:{_WORD})(?:\.(?:{_WORD}))*"
+#: The ends of lines, and of `//` comments; `str.splitlines` knows more, such as U+2028 and form feeds.
+LINE_END = lazy_pattern(r"\r\n|\n|\r")
 _COMMENT = r"//[^\n\r]*|/\*[\s\S]*?\*/"
 _QUOTED = r'"(?:[^"]|"")*"'
 
