@@ -64,7 +64,7 @@ def variables_of(
     def add(name: str, kind: str, causality: str, start: float, description: str, unit: str) -> None:
         if wrong := _NO_XML.search(name):
             raise UsageError(
-                f"the {causality} {name!a} contains {wrong[0]!a}, which a model description cannot: rename it in "
+                f"the {causality} {name!a} contains {wrong[0]!a}, which XML cannot represent: rename it in "
                 f"the specification"
             )
         other = next((v for v in found if v.name == name), None)

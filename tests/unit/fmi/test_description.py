@@ -71,6 +71,6 @@ def test_names_that_xml_cannot_contain_are_rejected(tmp_path, name, wrong):
     with pytest.raises(UsageError) as refused:
         fmi.export(spec, path)
     assert str(refused.value) == (
-        f"the input {name!a} contains {wrong}, which a model description cannot: rename it in the specification"
+        f"the input {name!a} contains {wrong}, which XML cannot represent: rename it in the specification"
     )
     assert not path.exists()
