@@ -133,7 +133,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         if time <= last:
             raise not_increasing(self.samples, time, last)
         place = backend.place(time)
-        if place is None or (place != backend.newest + 1 and place - 1 > backend.closed):
+        if place is None or not backend.newest < place <= max(backend.newest, backend.closed) + 1:
             raise irregular(self.samples, time, last, self._step, self._tolerance)
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:

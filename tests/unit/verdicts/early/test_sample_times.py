@@ -73,3 +73,19 @@ def test_corrections_that_are_replayed_keep_the_times_of_samples(backend):
         monitor.update(k / 10, x=k)
     monitor.update(0.6, x=-1)
     assert [(each.begin, each.end) for each in monitor.changes()] == [(0.4, 0.4), (0.5, 0.5), (0.6, 0.6)]
+
+
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    "settings", [{"verdict": "eager"}, {"verdict": "interval"}, {"verdict": "causation"}]
+)
+@pytest.mark.parametrize("time", [1.05, 1.1])
+def test_second_sample_of_an_instant_is_irregular(backend, settings, time):
+    monitor = rtamt.parse("eventually[0:3](x >= 3)", period=1, backend=backend).monitor(**settings)
+    monitor.update(0, x=5)
+    monitor.update(1, x=5)
+    with pytest.raises(
+        rtamt.TraceError, match=rf"^sample 2 at {time} s is {time - 1:.2g} s after the one before"
+    ):
+        monitor.update(time, x=4)
+    monitor.update(2, x=5)
