@@ -42,7 +42,8 @@ class QuantifiedText(RecordedSpecification):
         if self.resolved is not None:
             return MappingProxyType({})
         if not self.document.replaced:
-            return self.document.quantified_groups
+            # Without a declared group there is no quantifier to look for.
+            return self.document.quantified_groups if self.document.groups else MappingProxyType({})
         return groups_in(*self._all_formulas)
 
     @property

@@ -1,27 +1,34 @@
-"""The instructions of a program so far: value numbering, lags, and the delays that align operands."""
+"""The instructions of a program so far: value numbering, inputs and constants, lags, and the delays that align."""
 
 from __future__ import annotations
 
 from rtamt.compiler.program import CODES, NO_OPERAND
+from rtamt.language.formula import Const, Parameter, Var
 from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rtamt.compiler.program import Record
     from rtamt.language.formula import Formula
 
-_CONST, _SHIFT = CODES["const"], CODES["shift"]
+_INPUT, _CONST, _SHIFT = (CODES[opcode] for opcode in ("input", "const", "shift"))
 
 
 class Emission:
     """The instructions so far; emitting an existing instruction returns its index."""
 
-    def __init__(self) -> None:
+    def __init__(self, inputs: tuple[str, ...]) -> None:
+        self.inputs = inputs
         self.records: list[Record] = []
         #: The lag of each instruction in steps.
         self.lags: list[int] = []
         #: The formula that each instruction was emitted for.
         self.origins: list[Formula | None] = []
         self.index_of: dict[Record, int] = {}
+        #: The indices of constants, other than parameters, by value.
+        self.constants: dict[float, int] = {}
+        self.parameters: dict[Parameter, int] = {}
+        self.variables: dict[str, int] = {}
+        self._places = {name: place for place, name in enumerate(inputs)}
 
     def emit(self, record: Record, origin: Formula) -> int:
         """Return the index of an instruction, adding it if necessary."""
@@ -48,16 +55,54 @@ class Emission:
         """Return the index of an instruction from its fields, adding it if necessary."""
         return self.emit((CODES[opcode], a, b, 0, n, x, lag), origin)
 
+    def leaf(self, node: Formula) -> int:
+        """Return the index of a variable or a constant, adding it if necessary."""
+        if node.__class__ is Const:  # no parameter
+            return self.constant(node.value, node)
+        if isinstance(node, Var):
+            place = self.variables.get(node.name)  # most occur several times
+            if place is None:
+                assert not node.bound, "quantifiers are resolved before"
+                record = (_INPUT, NO_OPERAND, NO_OPERAND, 0, self._places[node.name], 0.0, 0)
+                place = self.variables[node.name] = self.emit(record, node)
+            return place
+        assert isinstance(node, Parameter)
+        known = self.parameters.get(node)
+        if known is None:
+            known = self.parameters[node] = self.parameter(node.value, node)
+        return known
+
     def constant(self, value: float, origin: Formula) -> int:
-        """Return the index of a constant."""
-        return self.emit((_CONST, NO_OPERAND, NO_OPERAND, 0, 0, value, 0), origin)
+        """Return the index of a constant, adding it if necessary."""
+        known = self.constants.get(value)
+        if known is None:
+            known = self.constants[value] = self.parameter(value, origin)
+        return known
 
     def parameter(self, value: float, origin: Formula) -> int:
-        """Add a constant that is never merged with another one, since its value may be changed; return its index."""
+        """Add a constant, whether or not there is an equal one: values of parameters may change; return its index."""
         self.records.append((_CONST, NO_OPERAND, NO_OPERAND, 0, 0, value, 0))
         self.lags.append(0)
         self.origins.append(origin)
         return len(self.origins) - 1
+
+    def pointwise(self, code: int, origin: Formula, a: int, b: int = NO_OPERAND) -> int:
+        """Lower an operator on values at one instant, over operands that need not be aligned."""
+        lags = self.lags
+        lag = lags[a]
+        if b != NO_OPERAND and (other := lags[b]) != lag:  # as align() does
+            if other < lag:
+                b = self.delayed(b, lag)
+            else:
+                a, lag = self.delayed(a, other), other
+        record = (code, a, b, 0, 0, 0.0, lag)
+        new = len(lags)
+        index = self.index_of.setdefault(record, new)
+        if index == new:  # as emit() does
+            self.records.append(record)
+            lags.append(lag)
+            self.origins.append(origin)
+        return index
 
     def is_const(self, index: int) -> bool:
         """Return whether an instruction is a constant, which needs no delay."""

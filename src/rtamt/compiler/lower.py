@@ -12,7 +12,7 @@ from fractions import Fraction
 from math import inf
 
 from rtamt.compiler.emission import Emission
-from rtamt.compiler.order import is_derived, order_of
+from rtamt.compiler.order import Orders, is_derived
 from rtamt.compiler.places import Origins, Places
 from rtamt.compiler.program import CODES, NO_OPERAND, CallSite, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
@@ -23,9 +23,6 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from rtamt.compiler.order import Group, Order
-    from rtamt.language.operators import Kernel
-    from rtamt.language.records import Operator
     from rtamt.signals.time_domain_interface import TimeDomain
 
 #: Those of windows of bounded length.
@@ -59,23 +56,17 @@ class Lowering(Emission, ABC):
         inputs: tuple[str, ...],
         clip: int | None,
     ) -> None:
-        super().__init__()
+        super().__init__(inputs)
         self.domain = domain
         self.period = period
         self.ratio = period.as_integer_ratio()
-        self.inputs = inputs
-        self.places = {name: place for place, name in enumerate(inputs)}
         self.clip = clip
         self.formulas: tuple[Formula, ...] = ()
-        self.parameters: dict[Parameter, int] = {}
         #: The index of each operator's node, by its identity.
         self.found: dict[int, int] = {}
-        #: The groups of a recipe that are done, and the places of its steps, by the identity of a node that waits.
-        self.begun: dict[int, tuple[int, list[int]]] = {}
         #: Bounds, and their steps, by identity: most intervals of a text share a few bounds.
         self.counts: dict[int, tuple[Fraction, int]] = {}
-        self.variables: dict[str, int] = {}
-        self.orders: dict[Operator, Order] = {}
+        self.orders = Orders()
         self.calls: dict[CallSite, int] = {}
         #: Whether an instruction has a smaller lag than the horizon of its formula.
         self.known_early = False
@@ -105,7 +96,7 @@ class Lowering(Emission, ABC):
     def places_of_nodes(self) -> Iterator[tuple[Formula, int]]:
         """Yield the nodes of the formulas, and the instruction of each."""
         for node in postorder(*self.formulas):
-            yield node, self.found[id(node)] if isinstance(node, Apply) else self._lower_leaf(node)
+            yield node, self.found[id(node)] if isinstance(node, Apply) else self.leaf(node)
 
     def lower(self, formulas: Sequence[Formula]) -> list[int]:
         """Emit the instructions of formulas, operands first, and return the index of each formula's last one.
@@ -114,93 +105,69 @@ class Lowering(Emission, ABC):
         the expansion. Others must have been expanded before.
         """
         self.formulas = tuple(formulas)
-        return [
-            self._lower(formula) if isinstance(formula, Apply) else self._lower_leaf(formula)
-            for formula in formulas
-        ]
+        return [self._lower(formula) for formula in formulas]
 
-    def _lower(self, formula: Apply) -> int:
-        """Emit the instructions of an operator and of what is below it, and return the index of its own."""
+    def _lower(self, formula: Formula) -> int:
+        """Emit the instructions of a formula and of what is below it, and return the index of its own."""
         # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
-        found, orders = self.found, self.orders
-        known = found.get(id(formula))
-        if known is not None:
-            return known
-        leaf, pointwise = self._lower_leaf, self.pointwise
-        waiting: list[Apply] = []  # for an operand
-        node = formula
-        while True:
-            # A node is visited again until its operands, in the order in which it reads them, are lowered.
-            try:
-                alone, groups = orders[node.op]
-            except KeyError:
-                alone, groups = orders[node.op] = order_of(node.op)
-            missing: Any = None
-            if alone is not None:  # most, so that no function is called for an operand that is found
-                code, first, second = alone
-                args = node.args
-                left = args[first]
-                place = found.get(id(left)) if left.__class__ is Apply else leaf(left)
-                if place is None:
-                    missing = left
-                elif second is None:
-                    place = pointwise(code, node, place)
-                else:
-                    right = args[second]
-                    b = found.get(id(right)) if right.__class__ is Apply else leaf(right)
-                    if b is None:
-                        missing = right
-                    else:
-                        place = pointwise(code, node, place, b)
-            elif groups:
-                place, missing = self._lower_groups(node, groups)
-            else:
-                places = []
-                for arg in node.args:
-                    place = found.get(id(arg)) if arg.__class__ is Apply else leaf(arg)
-                    if place is None:
-                        missing = arg
-                        break
-                    places.append(place)
-                else:
-                    place = self._lower_apply(node, node.op.kernel, self.align(places))
-            if missing is not None:
-                waiting.append(node)
-                node = missing
+        found, orders, variables, constants = self.found, self.orders, self.variables, self.constants
+        records, lags, origins, setdefault = self.records, self.lags, self.origins, self.index_of.setdefault
+        opened: list[Apply] = []  # the operators whose result is still to come
+        values: list[int] = []
+        todo: list[Any] = [formula]  # nodes and steps over their values, the next one last
+        while todo:
+            item = todo.pop()
+            kind = item.__class__
+            if kind is tuple:
+                code, count, core, last = item
+                if code is None:
+                    node = opened[-1] if core is None else core
+                    first = len(values) - count
+                    place = self._lower_node(node, values[first:])
+                    values[first:] = (place,)
+                else:  # most, as pointwise() does
+                    b = values.pop() if count == 2 else NO_OPERAND
+                    a = values[-1]
+                    lag = lags[a]
+                    if b != NO_OPERAND and (other := lags[b]) != lag:
+                        if other < lag:
+                            b = self.delayed(b, lag)
+                        else:
+                            a, lag = self.delayed(a, other), other
+                    record = (code, a, b, 0, 0, 0.0, lag)
+                    values[-1] = place = setdefault(record, len(lags))
+                    if place == len(lags):
+                        records.append(record)
+                        lags.append(lag)
+                        origins.append(opened[-1])
+                if last:
+                    found[id(opened.pop())] = place
                 continue
-            assert place is not None
-            found[id(node)] = place
-            if not waiting:
-                return place
-            node = waiting.pop()
+            if kind is Apply:
+                known = found.get(id(item))
+                if known is None:
+                    opened.append(item)
+                    args, order = item.args, orders[item.op]
+                    if order is None:
+                        todo += (None, len(args), None, True), *args[::-1]
+                    else:
+                        todo += [args[each] if each.__class__ is int else each for each in order]
+                    continue
+            elif kind is Var:
+                known = variables.get(item.name)  # most occur several times
+            else:
+                known = constants.get(item.value) if kind is Const else None  # no parameter
+            values.append(self.leaf(item) if known is None else known)
+        return values[0]
 
-    def _lower_groups(self, node: Apply, groups: Sequence[Group]) -> tuple[int, None] | tuple[None, Formula]:
-        """Emit steps of a recipe, and return the index of the last one, or else the operand to be lowered first."""
-        begun = self.begun.pop(id(node), None)
-        done, parts = (0, [-1] * len(node.args)) if begun is None else begun
-        for reads, steps in groups[done:]:
-            for place in reads:
-                arg = node.args[place]
-                part = self.found.get(id(arg)) if arg.__class__ is Apply else self._lower_leaf(arg)
-                if part is None:
-                    self.begun[id(node)] = done, parts
-                    return None, arg
-                parts[place] = part
-            for code, core, places in steps:
-                if code is not None:  # most
-                    parts.append(self.pointwise(code, node, *[parts[place] for place in places]))
-                elif isinstance(core, Apply):
-                    operands = self.align([parts[place] for place in places])
-                    parts.append(self._lower_apply(core, core.op.kernel, operands))
-                else:
-                    parts.append(self._lower_leaf(core))
-            done += 1
-        return parts[-1], None
-
-    def _lower_apply(self, node: Apply, kernel: Kernel | None, args: list[int]) -> int:
-        """Return the index of an operator over aligned operands."""
+    def _lower_node(self, node: Formula, args: list[int]) -> int:
+        """Return the index of an operator over operands that need not be aligned, or of a constant of a recipe."""
+        if not isinstance(node, Apply):
+            return self.leaf(node)
+        kernel = node.op.kernel
         if isinstance(kernel, Window):  # most
             return self.window(node, kernel, args[0])
+        args = self.align(args)
         if isinstance(kernel, Pointwise):
             return self.pointwise(CODES[kernel.opcode], node, *args)
         if isinstance(kernel, Sum):
@@ -216,22 +183,6 @@ class Lowering(Emission, ABC):
         if isinstance(kernel, Until):
             return self.until(node, *args)
         return self.call(node, args)
-
-    def _lower_leaf(self, node: Formula) -> int:
-        """Return the index of a variable or a constant."""
-        if node.__class__ is Const:  # no parameter
-            return self.constant(node.value, node)
-        if isinstance(node, Var):
-            place = self.variables.get(node.name)  # most occur several times
-            if place is None:
-                assert not node.bound, "quantifiers are resolved before"
-                place = self.variables[node.name] = self.add("input", node, n=self.places[node.name])
-            return place
-        assert isinstance(node, Parameter)
-        known = self.parameters.get(node)
-        if known is None:
-            known = self.parameters[node] = self.parameter(node.value, node)
-        return known
 
     # ---- intervals in steps ------------------------------------------------------------------------
 
@@ -261,47 +212,30 @@ class Lowering(Emission, ABC):
             return 0, None
         begin, end = node.interval.begin, node.interval.end
         if self.clip is None:
-            return self.count(begin), None if end is None else self.count(end)
+            known = self.counts.get(id(begin))
+            first = self.count(begin) if known is None else known[1]
+            return first, None if end is None else self.count(end)
         # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
         first = self.steps(begin)
         return first, None if end is None else first + self.steps(end - begin)
 
     # ---- one function for each shape of kernel -----------------------------------------------------
 
-    def pointwise(self, code: int, origin: Formula, a: int, b: int = NO_OPERAND) -> int:
-        """Lower an operator on values at one instant, over operands that need not be aligned."""
-        lags = self.lags
-        lag = lags[a]
-        if b != NO_OPERAND and (other := lags[b]) != lag:  # as align() does
-            if other < lag:
-                b = self.delayed(b, lag)
-            else:
-                a, lag = self.delayed(a, other), other
-        record = (code, a, b, 0, 0, 0.0, lag)
-        new = len(lags)
-        index = self.index_of.setdefault(record, new)
-        if index == new:  # as emit() does
-            self.records.append(record)
-            lags.append(lag)
-            self.origins.append(origin)
-        return index
-
     def window(self, node: Apply, kernel: Window, x: int) -> int:
         """Lower the largest or smallest value in a window."""
         begin, end = self.bounds(node)
-        fill = _IDENTITY[kernel.reduce]
         lag = self.lags[x]
         if node.op.tense is _PAST:
             if end is None:
                 x = self.add(f"run_{kernel.reduce}", node, x, lag=lag)
             else:
                 x = self.extremum(kernel.reduce, x, end - begin + self.point, lag, node)
-            return self.moved(x, begin, fill, lag, node) if begin else x
+            return self.moved(x, begin, _IDENTITY[kernel.reduce], lag, node) if begin else x
         assert end is not None, "unbounded future is cut off before"
         if end == 0:
             return x
         if begin == end:
-            return self.moved(x, 0, fill, lag + end, node)
+            return self.moved(x, 0, _IDENTITY[kernel.reduce], lag + end, node)
         return self.extremum(kernel.reduce, x, end - begin + self.point, lag + end, node)
 
     def rank(self, node: Apply, x: int) -> int:

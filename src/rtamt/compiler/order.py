@@ -7,46 +7,30 @@ from functools import cache
 from rtamt.compiler.program import CODES
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Pointwise, Sort, builtin
-from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.rewrite.recipes import recipe_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from typing import TypeAlias
 
     from rtamt.language.formula import Formula
     from rtamt.language.records import Operator
-    from rtamt.rewrite.recipes import Step
+
+    #: What is emitted over the last values: the code of a pointwise operator, None for others; the number of values;
+    #: the node, None for the operator that is lowered; and whether its own value is the result.
+    Step: TypeAlias = tuple[int | None, int, Formula | None, bool]
 
 
-class Group(NamedTuple):
-    """Operands of an operator, and the steps of its recipe that are emitted once these are found.
+def order_of(op: Operator) -> tuple[int | Step, ...] | None:
+    """Return how an operator is lowered, in postfix notation, last first: places of operands, and steps over these.
 
-    Each step has the code of a pointwise operator, None for other nodes; the node; and the places of its operands.
-    """
-
-    reads: tuple[int, ...]
-    steps: tuple[tuple[int | None, Formula, tuple[int, ...]], ...]
-
-
-class Order(NamedTuple):
-    """How an operator is lowered.
-
-    ``alone``: the code and operands of its one instruction, if it is pointwise or expanded into such an operator.
-    ``groups``: those of an operator that is expanded into several. One without either reads its operands from left to
-    right.
-    """
-
-    alone: tuple[int, int, int | None] | None
-    groups: tuple[Group, ...]
-
-
-def order_of(op: Operator) -> Order:
-    """Return how an operator is lowered; one that is expanded has a recipe.
+    One that is expanded has a recipe. None for one with optional operands, which are read from left to right.
 
     >>> from rtamt.language.operators import STL
-    >>> order_of(STL["le"]).alone, len(order_of(STL["implies"]).groups)
-    ((8, 1, 0), 2)
+    >>> order_of(STL["le"])
+    ((8, 2, None, True), 0, 1)
+    >>> [each if isinstance(each, int) else each[1] for each in order_of(STL["implies"])]
+    [2, 1, 1, 0]
     """
     return _builtin_order(op) if builtin(op.name) is op else _order(op)
 
@@ -63,34 +47,38 @@ def is_lowerable(op: Operator) -> bool:
     return not is_derived(op) or recipe_of(op) is not None
 
 
-def _order(op: Operator) -> Order:
+def _order(op: Operator) -> tuple[int | Step, ...] | None:
     recipe = recipe_of(op) if is_derived(op) else None
     if recipe is None:
-        own = tuple(range(len(op.operands))) if not op.optional else ()
-        return Order(_alone(op, own), ())
-    (node, places, _), *others = recipe
-    alone = _alone(node.op, places) if isinstance(node, Apply) and not others else None
-    return Order(alone, () if alone is not None else _groups(recipe))
+        if op.optional:
+            return None
+        places = range(len(op.operands))
+        return (_code(op, len(places)), len(places), None, True), *reversed(places)
+    # A step that two others read occurs twice: it has the same instructions.
+    found: list[int | Step] = []
+    stack = [len(op.operands) + len(recipe) - 1]
+    while stack:
+        place = stack.pop()
+        if place < len(op.operands):
+            found.append(place)
+            continue
+        node, below, _ = recipe[place - len(op.operands)]
+        code = _code(node.op, len(below)) if isinstance(node, Apply) else None
+        found.append((code, len(below), node if code is None else None, not found))
+        stack += below
+    return tuple(found)
 
 
 _builtin_order = cache(_order)
 
 
-def _alone(op: Operator, places: Sequence[int]) -> tuple[int, int, int | None] | None:
-    if not isinstance(op.kernel, Pointwise) or not 1 <= len(places) <= 2:
-        return None
-    first, *second = places
-    return CODES[op.kernel.opcode], first, second[0] if second else None
+class Orders(dict["Operator", "tuple[int | Step, ...] | None"]):
+    """How the operators of some formulas are lowered, found on first use."""
+
+    def __missing__(self, op: Operator) -> tuple[int | Step, ...] | None:
+        found = self[op] = order_of(op)
+        return found
 
 
-def _groups(recipe: Sequence[Step]) -> tuple[Group, ...]:
-    groups: list[Group] = []
-    for node, places, reads in recipe:
-        kernel = node.op.kernel if isinstance(node, Apply) else None
-        step = CODES[kernel.opcode] if isinstance(kernel, Pointwise) else None, node, places
-        if reads or not groups:
-            groups.append(Group(reads, (step,)))
-        else:
-            before = groups.pop()
-            groups.append(Group(before.reads, (*before.steps, step)))
-    return tuple(groups)
+def _code(op: Operator, operands: int) -> int | None:
+    return CODES[op.kernel.opcode] if isinstance(op.kernel, Pointwise) and 1 <= operands <= 2 else None
