@@ -45,6 +45,8 @@ FIVE = {"time": [0, 1, 2, 3, 4], "req": [0, 6, 0, 0, 0], "gnt": [0, 0, 0, 1, 7]}
 
 SPEC = "asked = req >= 3; always(asked -> eventually[0:5](gnt >= 3))"
 DATA = {"req": [0, 6, 6, 0, 0, 0, 0, 0, 0, 5, 0, 0], "gnt": [0, 0, 0, 0, 4, 4, 0, 0, 0, 0, 1, 2]}
+#: Two grants are missing, and the others are measured with an error.
+PARTLY_KNOWN = {**DATA, "gnt": [0, 0, 0, 0, None, None, 0, 0, 0, 0, 1, 2]}
 DENSE = {"req": [[0, 0], [2, 6], [4, 0], [10, 0]], "gnt": [[0, 0], [6, 6], [8, 0], [10, 0]]}
 
 
@@ -55,6 +57,8 @@ def draw() -> None:
     dense = rtamt.parse(SPEC.replace("5", "2"), time="dense").evaluate(DENSE)
     save(rtamt.parse(README).evaluate(FIVE).plot(rows=3, figure=Figure()), "plot.png")
     save(dense.plot(rows=3, figure=Figure()), "plot_dense.png")
+    known = {"ranges": {"gnt": (0, 6)}, "uncertainty": {"gnt": 0.5}}
+    save(rtamt.parse(SPEC).evaluate(PARTLY_KNOWN, **known).plot(rows=3, figure=Figure()), "plot_bounds.png")
     save(discrete.plot_tree(figure=Figure()), "tree.png")
     walkthrough.draw(IMAGES / "early.gif")
     patterns.draw(IMAGES)

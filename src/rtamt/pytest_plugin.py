@@ -108,7 +108,6 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 
 def _plots(item: pytest.Item, error: UnsatisfiedError) -> list[str]:
     """Write a plot of each failed requirement; return the files, or why there are none."""
-    from rtamt.assertions import is_partly_known
     from rtamt.errors import StlError
     from rtamt.files import replacing
     from rtamt.plot.axes import matplotlib
@@ -120,9 +119,6 @@ def _plots(item: pytest.Item, error: UnsatisfiedError) -> list[str]:
     folder = _folder(item.config)
     lines = []
     for name, part in error.failures.items():
-        if is_partly_known(part):
-            lines.append("no plot: samples are missing or uncertain")
-            continue
         file = folder / (re.sub(r"[^\w.-]+", "_", "-".join(filter(None, (item.nodeid, name)))) + ".png")
         figure = part.plot(figure=figures.Figure())
         with replacing(str(file)) as new:

@@ -286,7 +286,7 @@ class Result(_Slots):
         """
         from rtamt.explain.explain import explain
 
-        self._require_one_start("explain")
+        self._require_exact("explain")
         spec = self.specification
         return explain(
             spec.formula,
@@ -319,6 +319,9 @@ class Result(_Slots):
         robustness at the start, as known after each sample, a band that narrows to it, and the sample that decided
         the verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
 
+        Where samples are missing or uncertain, signals and robustness are bands between their bounds, and instants
+        whose verdict the samples do not decide are shaded; there is no explanation.
+
         >>> import rtamt
         >>> from matplotlib.figure import Figure
         >>> result = rtamt.parse("always(x >= 3)").evaluate({"x": [5, 4, 2, 6]})
@@ -330,6 +333,16 @@ class Result(_Slots):
         from rtamt.plot.scene import scene
 
         self._require_one_start("plot")
+        if self.trace.bounds:
+            from rtamt.plot.uncertain import draw_uncertain
+
+            if bounds:
+                raise UsageError(
+                    "bounds after each sample are drawn for samples that are known exactly; leave bounds=True out"
+                )
+            canvas = new_figure() if figure is None else figure
+            draw_uncertain(self, rows, canvas, at, start, end, zoom)
+            return canvas
         seen = scene(self, at, bounds=bounds)
         window = seen.window(start, end, zoom)
         canvas = new_figure() if figure is None else figure
@@ -351,7 +364,7 @@ class Result(_Slots):
         from rtamt.plot.scene import scene
         from rtamt.plot.tree import draw_tree
 
-        self._require_one_start("plot")
+        self._require_exact("draw the tree of")
         canvas = new_figure() if figure is None else figure
         draw_tree(scene(self, at), canvas)
         return canvas
@@ -383,13 +396,17 @@ class Result(_Slots):
             formula = self.specification._apply_semantics(formula, self.semantics)
         return self.specification._signals_of((formula,), self.trace)[0]
 
-    def _require_one_start(self, what: str) -> None:
-        """Raise :class:`UsageError` if requirements have traces that start at different times, or only bounds."""
+    def _require_exact(self, what: str) -> None:
+        """Raise :class:`UsageError` if the samples give only bounds, or requirements start at different times."""
         if self.trace.bounds:
             raise UsageError(
                 f"cannot {what} a result of missing or uncertain samples; read result.interval, or evaluate samples "
                 f"that are known exactly"
             )
+        self._require_one_start(what)
+
+    def _require_one_start(self, what: str) -> None:
+        """Raise :class:`UsageError` if requirements have traces that start at different times."""
         if isinstance(self.known, Mapping):
             starts = {name: part.signal.times[0] for name, part in self.known.items()}
             first = min(starts, key=lambda name: starts[name])

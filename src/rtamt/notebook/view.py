@@ -54,7 +54,7 @@ def _page(result: Result, at: Any) -> str:
     }
     page = Page("rtamt.notebook.view", formulas)
     for name, part in parts.items():
-        part._require_one_start("view")
+        part._require_exact("view")
         violated = first_violation(part)
         row = Row(
             name,

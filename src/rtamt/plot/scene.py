@@ -16,7 +16,7 @@ from rtamt.lazy.dataclasses import dataclass
 from rtamt.plot.band import Band, band
 from rtamt.plot.lines import Line, Range, ranges
 from rtamt.plot.panels import groups
-from rtamt.plot.x_axis import XAxis
+from rtamt.plot.x_axis import XAxis, visible
 from rtamt.rewrite.truth import is_predicate
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
@@ -112,15 +112,7 @@ class Scene:
             if violation is None:
                 raise UsageError(f"cannot zoom to the violation: the formula is {self.verdict}")
             low, high = self._around(self.x_axis.position(violation))
-        low = low if start is None else self.x_axis.position(start)
-        high = high if end is None else self.x_axis.position(end)
-        if low > high or high < self.x_axis.start or low > self.x_axis.end:
-            ends = f"{self.x_axis.text(self.x_axis.start)} to {self.x_axis.text(self.x_axis.end)}"
-            raise UsageError(
-                f"there is nothing to plot from {self.x_axis.text(low)} to {self.x_axis.text(high)}; "
-                f"the trace lasts from {ends}"
-            )
-        return max(low, self.x_axis.start), min(high, self.x_axis.end)
+        return visible(self.x_axis, start, end, (low, high))
 
     def _around(self, violation: float) -> tuple[float, float]:
         """Return the positions around a violation: the causes that it touches, and something on either side."""
@@ -185,7 +177,7 @@ class _Painter:
         self._positions: dict[Any, float] = {}
 
     def scene(self, known: Band | None) -> Scene:
-        formulas = _sub_formulas(self._spec.formula)
+        formulas = sub_formulas(self._spec.formula)
         places = {formula: i for i, formula in enumerate(formulas)}
         point = self._explanation.critical
         critical = None
@@ -273,7 +265,7 @@ class _Painter:
         return found
 
 
-def _sub_formulas(formula: Formula) -> tuple[Formula, ...]:
+def sub_formulas(formula: Formula) -> tuple[Formula, ...]:
     """Return the formula and its sub-formulas down to predicates, breadth first, equal ones once."""
     found: dict[Formula, None] = {formula: None}
     queue = deque([formula])

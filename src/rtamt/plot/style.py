@@ -19,15 +19,15 @@ SIGNS = {True: "✓", False: "✗"}
 INFINITE = {True: "+∞", False: "−∞"}
 
 
-def number(value: float) -> str:
+def number(value: float, digits: int = 4) -> str:
     """Return a number as it is written in a plot.
 
-    >>> number(-2.5), number(float("inf"))
-    ('−2.5', '+∞')
+    >>> number(-2.5), number(float("inf")), number(1.2345, digits=3)
+    ('−2.5', '+∞', '1.23')
     """
     if abs(value) == float("inf"):
         return INFINITE[value > 0]
-    return f"{value + 0.0:.4g}".replace("-", "−")
+    return f"{value + 0.0:.{digits}g}".replace("-", "−")
 
 
 def apply_style(axes: Any) -> Any:

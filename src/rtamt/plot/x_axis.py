@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import UsageError
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.signals.datetimes import nanoseconds_of
@@ -83,3 +84,21 @@ class XAxis:
         if isinstance(self.origin, np.datetime64):
             return "time"
         return f"seconds after {self.origin:.15g} s" if self.origin else "time [s]"
+
+
+def visible(
+    axis: XAxis, start: Any = None, end: Any = None, window: tuple[float, float] | None = None
+) -> tuple[float, float]:
+    """Return the positions from one time to another; by default those of ``window``, or else all.
+
+    Raises :class:`UsageError` if there is nothing in between.
+    """
+    low, high = window or (axis.start, axis.end)
+    low = low if start is None else axis.position(start)
+    high = high if end is None else axis.position(end)
+    if low > high or high < axis.start or low > axis.end:
+        ends = f"{axis.text(axis.start)} to {axis.text(axis.end)}"
+        raise UsageError(
+            f"there is nothing to plot from {axis.text(low)} to {axis.text(high)}; the trace lasts from {ends}"
+        )
+    return max(low, axis.start), min(high, axis.end)

@@ -154,12 +154,12 @@ def test_wrong_input_is_rejected_with_one_sentence(data, options, message):
         rtamt.parse("always(x >= 3)").evaluate(data, **options)
 
 
-@pytest.mark.parametrize("what", ["explain", "plot"])
-def test_bounds_have_no_explanation(what):
+@pytest.mark.parametrize(("method", "what"), [("explain", "explain"), ("plot_tree", "draw the tree of")])
+def test_bounds_have_no_explanation(method, what):
     result = rtamt.parse("x >= 3").evaluate({"x": [None]})
     message = (
         f"cannot {what} a result of missing or uncertain samples; read result.interval, or evaluate samples that are "
         f"known exactly"
     )
     with pytest.raises(UsageError, match=f"^{re.escape(message)}$"):
-        getattr(result, what)()
+        getattr(result, method)()
