@@ -19,7 +19,8 @@ def test_masked_values_are_missing_values() -> None:
         _ = rtamt.parse("always(x >= 1)").evaluate({"x": x}).robustness
     assert str(info.value) == (
         "the robustness at time 0 is only known to lie between -inf and 0, because samples are missing or "
-        "uncertain; read result.interval or result.intervals"
+        "uncertain; read result.interval or result.intervals, or evaluate without gaps: hold the values before "
+        "them (hold_for= of rtamt.read), or resample (trace.resample(period=...))"
     )
 
 

@@ -156,7 +156,9 @@ class BoundedSignal(Signal):
         if lower != upper:
             raise EvaluationError(
                 f"the robustness at {_format_time(self.times[i])} is only known to lie between {lower:g} and "
-                f"{upper:g}, because samples are missing or uncertain; read result.interval or result.intervals"
+                f"{upper:g}, because samples are missing or uncertain; read result.interval or result.intervals, "
+                f"or evaluate without gaps: hold the values before them (hold_for= of rtamt.read), or resample "
+                f"(trace.resample(period=...))"
             )
         return lower
 

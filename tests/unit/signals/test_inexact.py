@@ -71,10 +71,24 @@ def test_a_number_is_returned_where_the_samples_determine_it():
     assert result.satisfied is True
     message = (
         "the robustness at time 1 is only known to lie between -1 and 2, because samples are missing or uncertain; "
-        "read result.interval or result.intervals"
+        "read result.interval or result.intervals, or evaluate without gaps: hold the values before them "
+        "(hold_for= of rtamt.read), or resample (trace.resample(period=...))"
     )
     with pytest.raises(EvaluationError, match=f"^{re.escape(message)}$"):
         _ = result.signal.values
+
+
+@pytest.mark.parametrize(
+    "filled",
+    [lambda data: rtamt.read(data, hold_for="1s"), lambda data: rtamt.read(data).resample(period="1s")],
+    ids=["hold_for", "resample"],
+)
+def test_gaps_filled_as_the_error_of_the_robustness_suggests_leave_a_number(filled):
+    data = {"time": [0, 1, 2, 3], "x": [1, None, 2, 4]}
+    spec = rtamt.parse("always[0:1](x > 0)")
+    with pytest.raises(EvaluationError, match=r"hold_for= of rtamt\.read.*trace\.resample\(period=\.\.\.\)"):
+        _ = spec.evaluate(data).robustness
+    assert spec.evaluate(filled(data)).robustness == 1.0
 
 
 def test_a_verdict_that_the_samples_do_not_decide_is_an_error():
