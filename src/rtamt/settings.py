@@ -230,11 +230,14 @@ def roles_of(document: Document, given: Mapping[str, str]) -> Mapping[str, str]:
 
 def watched_of(watch: Watch) -> tuple[str | Formula, ...]:
     """Return the watched formulas without duplicates; raise :class:`UsageError` unless given texts or formulas."""
-    wrong = UsageError(f"watch is {shown(watch)}, expected names or formulas, such as ['x >= 3']")
     try:
         given = (watch,) if isinstance(watch, str | Formula) else tuple(watch)
     except TypeError:
-        raise wrong from None
+        raise _wrong_watch(watch) from None
     if not all(isinstance(each, str | Formula) for each in given):
-        raise wrong
+        raise _wrong_watch(watch)
     return tuple(dict.fromkeys(given))
+
+
+def _wrong_watch(watch: Watch) -> UsageError:
+    return UsageError(f"watch is {shown(watch)}, expected names or formulas, such as ['x >= 3']")
