@@ -147,18 +147,18 @@ class _Drawing(Canvas):
 
     def _bounds(self, band: Band, axis: Any) -> None:
         """Draw what was known of the robustness at the start after each sample, and what it was in the end."""
-        both = [
-            self.in_view(Line(end, band.positions, values)).decimated(COLUMNS)
+        # They hold until the next sample, in discrete time too.
+        ends = [
+            Line(end, band.positions, values).between(*self.window, dense=True)
             for end, values in (("lower", band.lower), ("upper", band.upper))
         ]
+        both = [line.decimated(COLUMNS) for line in ends]
         every = np.concatenate([line.values for line in both])
         edges = Edges(axis, np.append(every[np.isfinite(every)], (0.0, band.robustness)), both)
         self.robustness_axis(axis)
         places = merged([line.positions for line in both])
-        lower, upper = (
-            edges.shown(values[np.searchsorted(band.positions, places)])
-            for values in (band.lower, band.upper)
-        )
+        chosen = np.searchsorted(ends[0].positions, places)
+        lower, upper = (edges.shown(line.values[chosen]) for line in ends)
         axis.fill_between(
             self.places(places), lower, upper, step="post", color=style.BAND, alpha=0.35, linewidth=0
         )

@@ -144,3 +144,13 @@ def test_values_of_parts_are_those_at_the_first_violation():
     told = {axis.get_title(loc="left"): [text.get_text() for text in axis.texts] for axis in figure.axes[2:]}
     assert told["always(x >= 3 -> y >= 3)"] == ["✗ −2", "at 0 s"]
     assert told["y >= 3"] == ["✗ −2", "at 1 s"]
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_band_of_a_visible_part_begins_with_the_bounds_known_before(time):
+    spec = rtamt.parse("eventually[0:4](x >= 3)", time=time)
+    result = spec.evaluate({"time": [0, 1, 2, 3, 4], "x": [1, 2, 7, 5, 5]})
+    figure = result.plot(start=1.5, bounds=True, figure=Figure())
+    lower, _ = (line for line in figure.axes[-1].lines if line.get_drawstyle() == "steps-post")
+    assert lower.get_xdata()[:2].tolist() == [1.5, 2.0]
+    assert lower.get_ydata()[:2].tolist() == [-1.0, 4.0]
