@@ -35,8 +35,9 @@ class Alone:
                 monitors[key] = self.spec.monitor(**self.made)
                 for then, sample in taken.setdefault(key, []):
                     monitors[key].update(then, **sample)
+            before = [then for then, _ in taken[key]]
             try:
-                report = reported(monitors[key], monitors[key].update(time, **row), time)
+                report = reported(monitors[key], monitors[key].update(time, **row), [*before, time])
             except TraceError as error:
                 if "later than the lateness" not in str(error):
                     raise
@@ -51,8 +52,8 @@ class Alone:
         return found
 
 
-def reported(monitor: Any, report: Any, time: float) -> Any:
-    """Return what an update of a monitor reported as plain values."""
+def reported(monitor: Any, report: Any, times: list[float]) -> Any:
+    """Return what an update of a monitor reported as plain values. ``times``: of all samples, the newest last."""
     if isinstance(report, rtamt.Signal):
         return list(zip(report.times.tolist(), report.values.tolist(), strict=True))
     if isinstance(report, rtamt.Causation):
@@ -71,7 +72,9 @@ def reported(monitor: Any, report: Any, time: float) -> Any:
             for each in (monitor.changes() if monitor.at == "every" else ())
         ]
         return [bounds.lower, bounds.upper, False, changes]
-    return [report, None if report is None else time - monitor.horizon]
+    if report is None:
+        return [None, None]
+    return [report, times[-1 - round(monitor.horizon / float(monitor.period))]]
 
 
 def of_fleet(update: Any, keys: list[Any]) -> list[Any]:

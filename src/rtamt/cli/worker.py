@@ -46,7 +46,7 @@ With --time dense, each variable has samples of its own: a message may lack some
 sample before of the same variable. There are no gaps and no lateness then.
 
 output: {"key": "car-1", "time": 0.0, "robustness": 3.0, "satisfied": true}, with the key as the key of the message;
-the time is that of the sample minus the horizon, in dense time one from which on the robustness holds. Of several
+the time is that of the sample one horizon before, in dense time one from which on the robustness holds. Of several
 requirements, each has its results, with its name in "requirement"; a sample without a value for one of them is
 rejected for all. "satisfied" is null at robustness 0, whose sign does not decide it;
 with --semantics boolean it is always decided. Infinities are the strings "inf" and "-inf", because JSON has none.
