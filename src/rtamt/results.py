@@ -125,8 +125,8 @@ class Result(_Slots):
     @property
     def _verdict(self) -> str:
         if self.trace.bounds:
-            bounds = self.interval
-            return "satisfied" if bounds.lower > 0 else "violated" if bounds.upper < 0 else "open"
+            decided = self._decided
+            return "open" if decided is None else "satisfied" if decided else "violated"
         violated = first_violation(self)
         if violated is None:
             return "satisfied"
@@ -216,21 +216,23 @@ class Result(_Slots):
     def _verdict_at_start(self) -> bool:
         trace = self.trace
         if trace.bounds:
-            return self._decided
+            decided = self._decided
+            if decided is None:
+                raise EvaluationError(
+                    "the samples do not decide whether the formula holds, because some are missing or uncertain; "
+                    "read result.interval"
+                )
+            return decided
         holds = self.specification._holds(trace) if self.known is None else None
         return self._first_violation is None if holds is None else holds
 
     @property
-    def _decided(self) -> bool:
-        """The verdict at the first instant from partly known samples, if they decide it."""
+    def _decided(self) -> bool | None:
+        """The verdict at the first instant from partly known samples; None if they do not decide it."""
         _, truth = signals_of(self)
         assert isinstance(truth, BoundedSignal)
-        if truth.lower[0] > 0 or truth.upper[0] < 0:
-            return bool(truth.lower[0] > 0)
-        raise EvaluationError(
-            "the samples do not decide whether the formula holds, because some are missing or uncertain; "
-            "read result.interval"
-        )
+        holds, fails = truth.lower[0] > 0, truth.upper[0] < 0
+        return bool(holds) if holds or fails else None
 
     @cached_property
     def _first_violation(self) -> Any:
@@ -319,8 +321,9 @@ class Result(_Slots):
         robustness at the start, as known after each sample, a band that narrows to it, and the sample that decided
         the verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
 
-        Where samples are missing or uncertain, signals and robustness are bands between their bounds, and instants
-        whose verdict the samples do not decide are shaded; there is no explanation.
+        Where samples are missing or uncertain, signals and robustness are bands between their bounds, and the instants
+        whose verdict the samples do not decide are grey. There is no explanation, and ``zoom`` and ``bounds`` are
+        rejected.
 
         >>> import rtamt
         >>> from matplotlib.figure import Figure
@@ -336,13 +339,9 @@ class Result(_Slots):
         if self.trace.bounds:
             from rtamt.plot.uncertain import draw_uncertain
 
-            if bounds:
-                raise UsageError(
-                    "bounds after each sample are drawn for samples that are known exactly; leave bounds=True out"
-                )
-            canvas = new_figure() if figure is None else figure
-            draw_uncertain(self, rows, canvas, at, start, end, zoom)
-            return canvas
+            return draw_uncertain(
+                self, figure, at=at, rows=rows, start=start, end=end, zoom=zoom, bounds=bounds
+            )
         seen = scene(self, at, bounds=bounds)
         window = seen.window(start, end, zoom)
         canvas = new_figure() if figure is None else figure

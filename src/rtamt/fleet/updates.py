@@ -36,8 +36,8 @@ class FleetUpdate:
     """The results of a batch, in the order of the batch.
 
     ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
-    ``known``. ``times``: the time that this robustness is for, that of the key's sample one horizon before; NaN where it
-    is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
+    ``known``. ``times``: the time that this robustness is for, that of the key's sample one horizon before; NaN where
+    it is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
     Of a suite, these four have a column for each requirement, and ``update["SPEED"]`` is the update of one.
     ``late``: which samples arrived too late, or a second time, and were left out. ``released``: what samples made known
     that are not of this batch. ``requirements``: the names of those of a suite.

@@ -12,7 +12,7 @@ from rtamt.plot.texts import in_lines, label_width, names_height, shorten, wrap_
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from rtamt.plot.lines import Line
+    from rtamt.plot.lines import Line, Range
     from rtamt.plot.scene import Panel
     from rtamt.plot.x_axis import XAxis
     from rtamt.signals.arrays import FloatArray
@@ -181,6 +181,12 @@ class Canvas:
             color=style.QUIET,
         )
 
+    def shade(self, axis: Any, stretches: Sequence[Range], label: str, color: str) -> None:
+        """Shade stretches of a row; the legend has the label."""
+        for start, end in self.visible(stretches):
+            patch = axis.axvspan(self.place(start), self.place(end), facecolor=color, alpha=0.13, linewidth=0)
+            self.marks.setdefault(label, patch)
+
     # ---- positions ---------------------------------------------------------------------------------
 
     def in_view(self, line: Line) -> Line:
@@ -201,3 +207,22 @@ class Canvas:
     def place(self, position: float) -> Any:
         """Return a position as matplotlib takes it."""
         return self.places(np.array([position]))[0]
+
+    def visible(self, stretches: Sequence[Range]) -> list[Range]:
+        """Return stretches wide enough to be visible, joined where the gap between them is not."""
+        pixel = (self.limits[1] - self.limits[0]) / 1000
+        low, high = self.limits
+        starts, ends = np.array(sorted(stretches), dtype=float).reshape(-1, 2).T
+        seen = (starts <= high) & (ends >= low)
+        starts, ends = np.maximum(starts[seen], low), np.minimum(ends[seen], high)
+        # There may be very many, most of them closer to their neighbours than a pixel.
+        ends = np.maximum.accumulate(ends)
+        apart = starts[1:] - ends[:-1] >= pixel
+        first, last = (np.r_[each][: len(starts)] for each in ((True, apart), (apart, True)))
+        found: list[Range] = []
+        for start, end in zip(starts[first].tolist(), ends[last].tolist(), strict=True):
+            if found and start - found[-1][1] < pixel:
+                found[-1] = (found[-1][0], max(end, found[-1][1]))
+            else:
+                found.append((start, max(end, start + pixel)))
+        return found

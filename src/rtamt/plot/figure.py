@@ -137,11 +137,7 @@ class _Drawing(Canvas):
             self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
 
     def _fails(self, axis: Any, node: Node) -> None:
-        for start, end in self._visible(node.fails):
-            patch = axis.axvspan(
-                self.place(start), self.place(end), facecolor=style.FAILS, alpha=0.13, linewidth=0
-            )
-            self.marks.setdefault("does not hold", patch)
+        self.shade(axis, node.fails, "does not hold", style.FAILS)
 
     # ---- bounds ------------------------------------------------------------------------------------
 
@@ -181,7 +177,7 @@ class _Drawing(Canvas):
     # ---- marks -------------------------------------------------------------------------------------
 
     def _draw_causes(self, axis: Any, stretches: Sequence[tuple[float, float]]) -> None:
-        for start, end in self._visible(stretches):
+        for start, end in self.visible(stretches):
             patch = axis.axvspan(
                 self.place(start),
                 self.place(end),
@@ -210,25 +206,6 @@ class _Drawing(Canvas):
             clip_on=False,
         )
         self.marks.setdefault("critical point", mark)
-
-    def _visible(self, stretches: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-        """Return stretches wide enough to be visible, joined where the gap between them is not."""
-        pixel = (self.limits[1] - self.limits[0]) / 1000
-        low, high = self.limits
-        starts, ends = np.array(sorted(stretches), dtype=float).reshape(-1, 2).T
-        seen = (starts <= high) & (ends >= low)
-        starts, ends = np.maximum(starts[seen], low), np.minimum(ends[seen], high)
-        # There may be very many, most of them closer to their neighbours than a pixel.
-        ends = np.maximum.accumulate(ends)
-        apart = starts[1:] - ends[:-1] >= pixel
-        first, last = (np.r_[each][: len(starts)] for each in ((True, apart), (apart, True)))
-        found: list[tuple[float, float]] = []
-        for start, end in zip(starts[first].tolist(), ends[last].tolist(), strict=True):
-            if found and start - found[-1][1] < pixel:
-                found[-1] = (found[-1][0], max(end, found[-1][1]))
-            else:
-                found.append((start, max(end, start + pixel)))
-        return found
 
     # ---- lines -------------------------------------------------------------------------------------
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine import Evaluators
 from rtamt.errors import UsageError
 from rtamt.explain.wording import predicate_text
+from rtamt.language.value_types import value_names
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges
 from rtamt.plot.canvas import COLUMNS, ROW, Canvas, panel_heights
+from rtamt.plot.figure import new_figure
 from rtamt.plot.lines import Line, ranges
 from rtamt.plot.panels import groups
 from rtamt.plot.scene import Panel, sub_formulas
@@ -23,6 +25,8 @@ from rtamt.signals.sampling_period import merged
 from rtamt.verdicts.robustness_and_truth import outputs_under
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from rtamt.language.formula import Formula
     from rtamt.results import Result
     from rtamt.signals.signal import Signal
@@ -36,44 +40,60 @@ _COLORS = {True: style.HOLDS, False: style.FAILS, None: style.QUIET}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Bounds:
-    """The bounds of a signal or of a robustness over positions; ``truth``: of the verdict."""
+    """The bounds of a signal over positions."""
 
     name: str
     lower: Line
     upper: Line
-    truth: tuple[Line, Line] | None = None
 
-    def text_at(self, position: float) -> str:
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Robustness(_Bounds):
+    """The bounds of a formula's robustness, and those of its verdict."""
+
+    truth: tuple[Line, Line]
+
+    def text_at(self, position: float, between: str = "{} to {}") -> str:
         """Return the bounds at a position as text; where they meet, the value."""
         low, high = self.lower.at(position), self.upper.at(position)
         if low == high:
             return style.number(low)
-        return f"{style.number(low, 3)} to {style.number(high, 3)}"  # as there is room beside a row
+        return between.format(style.number(low, 3), style.number(high, 3))  # as there is room beside a row
 
     def verdict_at(self, position: float) -> bool | None:
         """Return the verdict at a position; None if the samples do not decide it."""
-        assert self.truth is not None
         holds, fails = self.truth[0].at(position) > 0, self.truth[1].at(position) < 0
         return holds if holds or fails else None
 
 
 def draw_uncertain(
-    result: Result, rows: int, figure: Any, at: Any, start: Any, end: Any, zoom: str | None
-) -> None:
-    """Draw the bounds of a result; the arguments are those of :meth:`rtamt.Result.plot`."""
+    result: Result,
+    figure: Any,
+    *,
+    at: Any,
+    rows: int,
+    start: Any,
+    end: Any,
+    zoom: str | None,
+    bounds: bool,
+) -> Figure:
+    """Draw the bounds of a result; the arguments and what is returned are those of :meth:`rtamt.Result.plot`."""
+    if bounds:
+        raise UsageError(
+            "bounds after each sample are drawn for samples that are known exactly; leave bounds=True out"
+        )
     if zoom is not None:
         raise UsageError(
             "samples are missing or uncertain, so there may be no first violation; give start and end"
         )
-    x_axis = XAxis.of(result.trace)
+    trace = result.trace
+    x_axis = XAxis.of(trace)
     window = visible(x_axis, start, end)
-    position = x_axis.start if at is None else x_axis.position(at)
-    if not x_axis.start <= position <= x_axis.end:
-        raise UsageError(
-            f"the trace has no {x_axis.text(position)}; it lasts from {x_axis.text(x_axis.start)} to "
-            f"{x_axis.text(x_axis.end)}"
-        )
-    _Drawing(result, x_axis, figure, window).draw(rows, position)
+    place = 0 if at is None else trace.position(at)
+    canvas: Figure = new_figure() if figure is None else figure
+    (position,) = x_axis.positions(trace.times_at(np.array([place]))).tolist()
+    _Drawing(result, x_axis, canvas, window).draw(rows, position)
+    return canvas
 
 
 class _Drawing(Canvas):
@@ -96,9 +116,8 @@ class _Drawing(Canvas):
         shown = self._robustness(formulas[:rows])
         satisfied = shown[0].verdict_at(position)
         title = f"{self._spec.name}: " if self._spec.name else ""
-        bounds = shown[0].text_at(position)
-        words = "robustness" if " to " not in bounds else "robustness from"
-        verdict = f"{_SIGNS[satisfied]} {title}{_WORDS[satisfied]}, {words} {bounds}"
+        bounds = shown[0].text_at(position, "from {} to {}")
+        verdict = f"{_SIGNS[satisfied]} {title}{_WORDS[satisfied]}, robustness {bounds}"
         heights = panel_heights(panels) + [ROW] * len(shown)
         axes = self.rows(
             heights, verdict, predicate_text(self._spec.formula, self._spec.text), _COLORS[satisfied]
@@ -116,10 +135,10 @@ class _Drawing(Canvas):
         trace = self._result.trace
         positions, values = self.x_axis.recorded(name)
         lower, upper = trace.bounds.get(name, (values, values))
-        unit = trace.units.get(name, "")
-        return _Bounds(name, Line(name, positions, lower, unit), Line(name, positions, upper, unit))
+        unit, names = trace.units.get(name, ""), value_names(self._spec.types.get(name))
+        return _Bounds(name, *(Line(name, positions, values, unit, names) for values in (lower, upper)))
 
-    def _robustness(self, formulas: tuple[Formula, ...]) -> list[_Bounds]:
+    def _robustness(self, formulas: tuple[Formula, ...]) -> list[_Robustness]:
         """Return the bounds of the robustness of formulas and of their verdicts, all from one program."""
         result, spec = self._result, self._spec
         outputs = [outputs_under(formula, result.semantics, spec.roles) for formula in formulas]
@@ -129,7 +148,7 @@ class _Drawing(Canvas):
         for formula, robustness, truth in zip(formulas, signals, signals, strict=True):
             text, name = predicate_text(formula, spec.text), spec.document.names_of.get(formula)
             both = self._lines(robustness)
-            found.append(_Bounds(f"{name} = {text}" if name else text, *both, self._lines(truth)))
+            found.append(_Robustness(f"{name} = {text}" if name else text, *both, self._lines(truth)))
         return found
 
     def _lines(self, signal: Signal) -> tuple[Line, Line]:
@@ -153,35 +172,32 @@ class _Drawing(Canvas):
         labels = []
         for i, each in enumerate(signals):
             color = style.SIGNALS[i % len(style.SIGNALS)]
-            self._band(each, axis, edges, color)
+            self._band(each, axis, edges, color, color)
             known = each.lower.values[np.isfinite(each.lower.values)]
             labels.append((float(known[-1]) if len(known) else edges.middle, each.lower.label, color))
         self.names(axis, labels)
 
-    def _row(self, bounds: _Bounds, axis: Any, position: float, *, bold: bool) -> None:
+    def _row(self, bounds: _Robustness, axis: Any, position: float, *, bold: bool) -> None:
         ends = [self.in_view(line).decimated(COLUMNS) for line in (bounds.lower, bounds.upper)]
         finite = np.concatenate([line.values[np.isfinite(line.values)] for line in ends])
         edges = Edges(axis, np.append(finite, 0.0), ends)
-        assert bounds.truth is not None
         holds, fails = bounds.truth[0].values > 0, bounds.truth[1].values < 0
         for label, wanted, color in (
             ("does not hold", fails, style.FAILS),
             ("open: the samples do not decide", ~(holds | fails), _OPEN),
         ):
-            for first, last in ranges(bounds.truth[0], wanted, dense=self.dense, end=self.x_axis.end):
-                patch = axis.axvspan(
-                    self.place(first), self.place(last), facecolor=color, alpha=0.16, linewidth=0
-                )
-                self.marks.setdefault(label, patch)
+            stretches = ranges(bounds.truth[0], wanted, dense=self.dense, end=self.x_axis.end)
+            self.shade(axis, stretches, label, color)
         self.robustness_axis(axis)
-        self._band(bounds, axis, edges, style.INK)
+        area = self._band(bounds, axis, edges, style.INK, style.BAND)
+        self.marks.setdefault("between the bounds", area)
         self.row_title(axis, bounds.name, bold=bold)
         satisfied = bounds.verdict_at(position)
         text = f"{_SIGNS[satisfied]} {bounds.text_at(position)}"
         self.annotate(axis, text, f"at {self.x_axis.text(position)}", _COLORS[satisfied])
 
-    def _band(self, bounds: _Bounds, axis: Any, edges: Edges, color: str) -> None:
-        """Draw the area between bounds, and the value where they meet."""
+    def _band(self, bounds: _Bounds, axis: Any, edges: Edges, color: str, between: str) -> Any:
+        """Draw the area between bounds, in a colour of its own, and the value where they meet; return the area."""
         both = [self.in_view(line) for line in (bounds.lower, bounds.upper)]
         kept = merged([line.decimated(COLUMNS).positions for line in both])
         chosen = np.searchsorted(both[0].positions, kept)
@@ -193,11 +209,10 @@ class _Drawing(Canvas):
             edges.shown(lower),
             edges.shown(upper),
             step=step,
-            color=style.BAND,
+            color=between,
             alpha=0.35,
             linewidth=0,
         )
-        self.marks.setdefault("between the bounds", area)
         exact = np.where(lower == upper, edges.shown(lower), np.nan)
         drawn: dict[str, Any] = (
             {"drawstyle": "steps-post"} if self.dense else {"marker": "o", "markersize": 3.2}
@@ -205,3 +220,4 @@ class _Drawing(Canvas):
         if len(kept) > COLUMNS / 2:
             drawn.pop("marker", None)
         axis.plot(places, exact, color=color, linewidth=1.4, **drawn)
+        return area

@@ -69,7 +69,7 @@ def test_long_traces_of_dates_are_drawn():
     [
         ({"bounds": True}, "bounds after each sample are drawn for samples that are known exactly"),
         ({"zoom": "violation"}, "samples are missing or uncertain, so there may be no first violation"),
-        ({"at": 9}, "the trace has no 9 s; it lasts from 0 s to 4 s"),
+        ({"at": 9}, r"(there is no sample at 9;|9 is no instant of) the recording.* from 0 s to 4 s"),
         ({"start": 7}, "there is nothing to plot from 7 s to 4 s; the trace lasts from 0 s to 4 s"),
     ],
 )
@@ -86,3 +86,23 @@ def test_untimed_formulas_without_predicates_are_drawn(time, semantics):
         {"time": [0, 1], "x": [1, None], "y": [2, 3]}, semantics=semantics, uncertainty={"y": 1}
     )
     assert result.plot(figure=Figure()).axes
+
+
+def test_values_of_an_enumeration_have_their_names():
+    spec = rtamt.parse("enum Mode { idle, ready, busy }\ninput Mode mode\nalways[0:1](mode == ready)")
+    result = spec.evaluate({"mode": ["idle", None, "ready", "busy"]})
+    figure = result.plot(figure=Figure())
+    assert {"idle", "ready", "busy"} <= {label.get_text() for label in figure.axes[0].get_yticklabels()}
+
+
+def test_many_short_stretches_are_joined():
+    n = 100_000
+    result = rtamt.parse("x >= 0").evaluate({"x": np.tile([-1.0, 0.0, 1.0], n)}, uncertainty={"x": 0.5})
+    assert len(result.plot(figure=Figure()).axes[-1].patches) <= 2000
+
+
+def test_each_signal_of_a_panel_has_a_band_of_its_colour():
+    data = {"x": [5, None, 4], "y": [1, 2, None]}
+    figure = rtamt.parse("x >= y").evaluate(data, ranges={"x": (0, 9), "y": (0, 9)}).plot(figure=Figure())
+    areas = [each for each in figure.axes[0].collections if isinstance(each, PolyCollection)]
+    assert len({tuple(area.get_facecolor()[0]) for area in areas}) == 2

@@ -177,3 +177,9 @@ def test_bounds_have_no_explanation(method, what):
     )
     with pytest.raises(UsageError, match=f"^{re.escape(message)}$"):
         getattr(result, method)()
+
+
+def test_verdict_of_a_result_at_robustness_zero_is_that_of_satisfied():
+    result = rtamt.parse("eventually(x >= 3)").evaluate({"x": [3, None]}, ranges={"x": (0, 3)})
+    assert (result.interval, result.satisfied) == (rtamt.Interval(0.0, 0.0), True)
+    assert "<td>satisfied</td>" in result._repr_html_()
