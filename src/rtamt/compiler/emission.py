@@ -69,18 +69,18 @@ class Emission:
         assert isinstance(node, Parameter)
         known = self.parameters.get(node)
         if known is None:
-            known = self.parameters[node] = self.parameter(node.value, node)
+            known = self.parameters[node] = self.new_constant(node.value, node)
         return known
 
     def constant(self, value: float, origin: Formula) -> int:
         """Return the index of a constant, adding it if necessary."""
         known = self.constants.get(value)
         if known is None:
-            known = self.constants[value] = self.parameter(value, origin)
+            known = self.constants[value] = self.new_constant(value, origin)
         return known
 
-    def parameter(self, value: float, origin: Formula) -> int:
-        """Add a constant, whether or not there is an equal one: values of parameters may change; return its index."""
+    def new_constant(self, value: float, origin: Formula) -> int:
+        """Add a constant even if there is an equal one, since parameters may change; return its index."""
         self.records.append((_CONST, NO_OPERAND, NO_OPERAND, 0, 0, value, 0))
         self.lags.append(0)
         self.origins.append(origin)

@@ -212,9 +212,7 @@ class Lowering(Emission, ABC):
             return 0, None
         begin, end = node.interval.begin, node.interval.end
         if self.clip is None:
-            known = self.counts.get(id(begin))
-            first = self.count(begin) if known is None else known[1]
-            return first, None if end is None else self.count(end)
+            return self.count(begin), None if end is None else self.count(end)
         # The length is clipped, not the end: precedes reads up to the end, in a window of this length.
         first = self.steps(begin)
         return first, None if end is None else first + self.steps(end - begin)
