@@ -10,7 +10,7 @@ from functools import lru_cache, partial
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import StlError, UsageError, no_specification, placed, shown
+from rtamt.errors import StlError, TraceError, UsageError, no_specification, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
 from rtamt.specification_data import over_data, require_period, sample
@@ -131,6 +131,8 @@ def evaluate_all(
     data: Any,
     *,
     tolerance: float | None = None,
+    uncertainty: Mapping[str, float] | None = None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
     **reading: Unpack[EvaluationSettings],
 ) -> list[Result]:
     """Evaluate many requirements on one complete trace, in one program; return the results in the same order.
@@ -138,7 +140,9 @@ def evaluate_all(
     ``data`` and the other arguments (``time=``, ``period=``, ...) are those of
     :meth:`Specification.evaluate`; ``data`` contains the variables of all requirements. Data are checked once,
     and common sub-formulas are computed once. Each result equals that of ``evaluate``. The programs of the last
-    sets of specifications are kept for other data; for tables of many recordings see :class:`Suite`.
+    sets of specifications are kept for other data; for tables of many recordings see :class:`Suite`. With missing
+    samples, ``uncertainty`` or ``ranges`` (of variables of any of the requirements), results have bounds, and each
+    requirement is evaluated by itself.
 
     Raises the errors of ``evaluate``; errors in bounds are prefixed with the index (from 0) of the
     requirement.
@@ -156,11 +160,31 @@ def evaluate_all(
             with _place(number):
                 raise no_specification(spec)
     groups, apart = _group(specs, {"tolerance": tolerance, **reading})
-    results: dict[int, Result] = {}
-    for number in apart:
-        results[number] = specs[number].evaluate(data, tolerance=tolerance, **reading)
+    declared = _declared_for_each(specs, uncertainty, ranges)
+
+    def alone(number: int) -> Result:
+        errors, limits = declared[number]
+        try:
+            return specs[number].evaluate(
+                data, tolerance=tolerance, uncertainty=errors, ranges=limits, **reading
+            )
+        except TraceError:  # wrong data are wrong for all
+            raise
+        except StlError as error:
+            raise placed(error, f"specification {number}") from None
+
+    if uncertainty is not None or ranges is not None:
+        return [alone(number) for number in range(len(specs))]
+    results = {number: alone(number) for number in apart}
     for group in groups:
-        trace = group.recording(data)
+        try:
+            trace = group.recording(data)
+        except TraceError as error:  # a missing sample has bounds, which common programs do not compute
+            inexact = {number: alone(number) for number in group.asked}
+            if not any(result.trace.bounds for result in inexact.values()):
+                raise error from None
+            results.update(inexact)
+            continue
         for number, asking in group.asked.items():
             with _place(number):
                 asking.spec._check(asking.query, trace)
@@ -169,6 +193,25 @@ def evaluate_all(
             own = spec._with_units(trace.select(spec.input_names))
             results[number] = Result(spec, own, signal, query.semantics)
     return [results[number] for number in range(len(specs))]
+
+
+def _declared_for_each(
+    specs: Sequence[Specification], uncertainty: Any, ranges: Any
+) -> list[tuple[Any, Any]]:
+    """Return, for each specification, the errors and ranges of the variables that it reads."""
+    if uncertainty is None and ranges is None:
+        return [(None, None)] * len(specs)
+    from rtamt.signals.inexact import Uncertainty
+
+    if any(spec.groups for spec in specs):  # the recording decides the names of members
+        return [(uncertainty, ranges)] * len(specs)
+    names = dict.fromkeys(name for spec in specs for name in spec.input_names)
+    Uncertainty.of(uncertainty, ranges, tuple(names))
+
+    def of(spec: Specification, declared: Any) -> Any:
+        return {name: declared[name] for name in declared or () if name in spec.input_names} or None
+
+    return [(of(spec, uncertainty), of(spec, ranges)) for spec in specs]
 
 
 def _group(specs: Sequence[Specification], reading: dict[str, Any]) -> tuple[list[Group], Iterable[int]]:

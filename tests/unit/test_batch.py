@@ -181,6 +181,50 @@ def test_dense_signals_begin_and_end_with_what_each_requirement_reads():
     same(rtamt.evaluate_all(specs, data), expected)
 
 
+@settings(max_examples=60)
+@given(st.data())
+def test_law_missing_and_uncertain_samples_give_the_bounds_that_each_gives_alone(data):
+    formulas = data.draw(st.lists(strategies.formulas(), min_size=1, max_size=3))
+    specs = [*(rtamt.parse(str(formula)) for formula in formulas), rtamt.parse("x >= 0")]
+    trace = data.draw(strategies.traces(tuple(dict.fromkeys(name for s in specs for name in s.input_names))))
+    gaps = st.sets(st.integers(0, len(trace["x"]) - 1), max_size=3)
+    whole = {"time": np.arange(len(trace["x"]), dtype=float)}
+    for name in trace:
+        missing = data.draw(gaps)
+        whole[name] = [None if i in missing else float(value) for i, value in enumerate(trace[name])]
+    uncertain = data.draw(st.sampled_from([None, {"x": 0.5}, {"x": 2.0}]))
+    limits = data.draw(st.sampled_from([None, {"x": (-1e9, 1e9)}]))
+    time = data.draw(st.sampled_from(["discrete", "dense"]))
+    expected, wrong = [], None
+    for spec in specs:
+        own = {key: whole[key] for key in ("time", *spec.input_names)}
+        of_x = {"uncertainty": uncertain, "ranges": limits} if "x" in spec.input_names else {}
+        try:
+            expected.append(spec.evaluate(own, time=time, **of_x))
+        except rtamt.StlError as error:
+            wrong = error
+            break
+    if wrong is not None:
+        with pytest.raises(rtamt.StlError):
+            rtamt.evaluate_all(specs, whole, time=time, uncertainty=uncertain, ranges=limits)
+        return
+    found = rtamt.evaluate_all(specs, whole, time=time, uncertainty=uncertain, ranges=limits)
+    for one, other in zip(found, expected, strict=True):
+        assert one.interval == other.interval
+        for each in ("times", "lower", "upper"):
+            assert np.array_equal(getattr(one.intervals, each), getattr(other.intervals, each))
+
+
+def test_wrong_data_stay_an_error_beside_missing_samples():
+    specs = [rtamt.parse("always(x >= 3)"), rtamt.parse("always(y >= 1)")]
+    with pytest.raises(rtamt.TraceError, match=r"^'y' is NaN at sample 1"):
+        rtamt.evaluate_all(specs, {"x": [5, None], "y": [1, float("nan")]})
+    with pytest.raises(rtamt.TraceError, match=r"^'[xy]' has [12] and '[xy]' has [12] samples"):
+        rtamt.evaluate_all(specs, {"x": [5, 4], "y": [1]})  # each alone fits
+    with pytest.raises(rtamt.UsageError, match=r"^uncertainty= has 'z', and the formula reads x, y$"):
+        rtamt.evaluate_all(specs, {"x": [5, 4], "y": [1, 2]}, uncertainty={"z": 1})
+
+
 def test_one_result_of_many_is_like_any_other():
     specs = [rtamt.parse("low = x <= 3; always(low)"), rtamt.parse("once(y >= 3)")]
     first, second = rtamt.evaluate_all(specs, {"x": [1, 5], "y": [0, 4]})
