@@ -86,6 +86,8 @@ def reach(formula: Formula, step: Fraction) -> int:
         own = 0
         if isinstance(node, Apply) and node.interval is not None:
             own = int((node.interval.end or node.interval.begin) / step)
+        elif isinstance(node, Apply) and node.op.tense is Tense.PAST and node.op.bounds is Bounds.NONE:
+            own = node.op.reach or 0  # rise and fall read one tick before
         return own + max(below, default=0)
 
     return fold(formula, own_and_below)
