@@ -95,7 +95,7 @@ class SpecificationText:
         """The formula of the requirement; of several their conjunction, whose robustness is the minimum."""
         return self.document.formula
 
-    @cached_property
+    @property
     def requirements(self) -> Mapping[str, Self]:
         """Every requirement by name, in the order of the text, each as a separate specification.
 
@@ -113,9 +113,14 @@ class SpecificationText:
         [('REQ-7', 'warning'), ('REQ-8', 'error')]
         """
         known = self.document.requirements
-        if len(known) == 1:
-            return MappingProxyType({known[0].name: self})
-        return MappingProxyType({requirement.name: self.select(requirement.name) for requirement in known})
+        # Kept, the only one would be a cycle, which waits for the garbage collector.
+        return MappingProxyType({known[0].name: self}) if len(known) == 1 else self._several
+
+    @cached_property
+    def _several(self) -> Mapping[str, Self]:
+        """The requirements of a text with several."""
+        names = [requirement.name for requirement in self.document.requirements]
+        return MappingProxyType({name: self.select(name) for name in names})
 
     @cached_property
     def warnings(self) -> tuple[LintWarning, ...]:

@@ -25,13 +25,15 @@ _LARGE_KEPT = 4
 class Contents(NamedTuple):
     """The contents of a formula in postorder: operators, variables and constants, nodes with intervals.
 
-    ``untimed``: the operators of nodes without an interval. ``names``: of the variables, each once, other than fields
-    of members. ``typed``: the variables that are no plain numbers.
+    ``timed_below``: the nodes with an interval but for the formula itself, which keeps its contents: with a cycle,
+    every requirement would wait for the garbage collector. ``untimed``: the operators of nodes without an interval.
+    ``names``: of the variables, each once, other than fields of members. ``typed``: the variables that are no plain
+    numbers.
     """
 
     operators: frozenset[Operator]
     leaves: tuple[Formula, ...]
-    timed: tuple[Apply, ...]
+    timed_below: tuple[Apply, ...]
     untimed: frozenset[Operator]
     names: tuple[str, ...]
     typed: tuple[Var, ...]
@@ -61,6 +63,8 @@ def contents(formula: Formula) -> Contents:
     timed = [node for node in applied if node.interval is not None]
     untimed = frozenset([node.op for node in applied if node.interval is None])
     operators = untimed.union([node.op for node in timed])
+    if formula.interval is not None:
+        timed.pop()
     found = Contents(operators, tuple(leaves), tuple(timed), untimed, *_variables_in(leaves))
     store_contents(formula, found if len(nodes) <= KEPT else LargeContents(found))
     return found
@@ -83,6 +87,17 @@ class LargeContents:
             oldest = self._last.popleft()()
             if oldest is not None:
                 oldest.found = None
+
+
+def timed(formula: Formula) -> tuple[Apply, ...]:
+    """Return the nodes of a formula that have an interval, in postorder.
+
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> timed(parse_formula("always[0:1](once[0:2](x) >= 3)"))
+    (<formula once[0:2](x)>, <formula always[0:1](once[0:2](x) >= 3)>)
+    """
+    below = contents(formula).timed_below
+    return (*below, formula) if isinstance(formula, Apply) and formula.interval is not None else below
 
 
 def _variables_in(leaves: Sequence[Formula]) -> tuple[tuple[str, ...], tuple[Var, ...]]:

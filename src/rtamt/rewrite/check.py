@@ -6,7 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import BoundError, SpecificationError
-from rtamt.language.contents import contents
+from rtamt.language.contents import contents, timed
 from rtamt.language.formula import Apply, Const, Formula, Interval, children, postorder
 from rtamt.language.operators import STL, Bounds, Pointwise, Sum, Tense
 from rtamt.language.units.durations import format_duration
@@ -77,7 +77,7 @@ def check_bounds(
     known: dict[
         int, int
     ] = {}  # the steps of bounds, by identity: most intervals of a text share a few bounds
-    for node in contents(spelled_out(formula)).timed:
+    for node in timed(spelled_out(formula)):
         interval = node.interval
         assert interval is not None
         counts: list[int] = []
@@ -226,9 +226,8 @@ def check_dense(formula: Formula, text: str | None = None, *, ticks: bool = True
 def unbounded_future(formula: Formula) -> Apply | None:
     """Return the first (innermost, leftmost) operator that reads an unbounded future, or None."""
     formula = spelled_out(formula)
-    found = contents(formula)
-    untimed = any(map(_is_unbounded_without_interval, found.untimed))
-    if not untimed and not any(map(reads_unbounded_future, found.timed)):
+    untimed = any(map(_is_unbounded_without_interval, contents(formula).untimed))
+    if not untimed and not any(map(reads_unbounded_future, timed(formula))):
         return None
     for node in postorder(formula):
         if isinstance(node, Apply) and reads_unbounded_future(node):

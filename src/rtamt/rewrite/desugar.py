@@ -151,20 +151,23 @@ def standing_for(source: Formula, formula: Formula, operands: tuple[Formula, ...
 
 
 def _rebuild_above(
-    formula: Formula, stop: set[int], step: Callable[[Formula, tuple[Formula, ...]], Formula]
+    formula: Formula,
+    stop: set[int],
+    step: Callable[[Formula, tuple[Formula, ...]], Formula],
+    done: dict[int, Formula] | None = None,
 ) -> Formula:
-    """Apply a step to each node of an expansion once, operands first, except for those below ``stop``."""
-    done: dict[int, Formula] = {}
+    """Apply a step to each node of an expansion once, operands first, except for those below ``stop``.
 
-    def rebuild(node: Formula) -> Formula:
-        # Expansions are a few nodes deep, so plain recursion is safe here.
-        key = id(node)
-        if key in stop:
-            return node
-        made = done.get(key)
-        if made is None:
-            args = node.args if isinstance(node, Apply) else ()
-            made = done[key] = step(node, tuple([rebuild(child) for child in args]))
-        return made
-
-    return rebuild(formula)
+    ``done``: what has been rebuilt, by the identity of nodes.
+    """
+    key = id(formula)
+    if key in stop:
+        return formula
+    done = {} if done is None else done
+    made = done.get(key)
+    if made is None:
+        args = formula.args if isinstance(formula, Apply) else ()
+        # Expansions are a few nodes deep, so plain recursion is safe here; of a closure it would be a cycle.
+        below = tuple([_rebuild_above(child, stop, step, done) for child in args])
+        made = done[key] = step(formula, below)
+    return made

@@ -7,7 +7,7 @@ nodes of the formula with other intervals; it is printed, and its spans point, a
 
 from __future__ import annotations
 
-from rtamt.language.contents import contents
+from rtamt.language.contents import contents, timed
 from rtamt.language.formula import Apply, Formula, Interval, folds
 from rtamt.language.records import Bounds
 from rtamt.language.units.durations import UNITS
@@ -50,10 +50,9 @@ def grounds(formulas: Sequence[Formula], step: Fraction, *, continuous: bool = F
             return rebuilt(node, args)
         return Apply(node.op, args, interval, node.span)
 
-    parts = list(map(contents, formulas))
-    implied = any(_implied(op, continuous=continuous) for part in parts for op in part.operators)
+    implied = any(_implied(op, continuous=continuous) for each in formulas for op in contents(each).operators)
     if not implied and not any(
-        node.interval.is_open for part in parts for node in part.timed if node.interval
+        node.interval.is_open for each in formulas for node in timed(each) if node.interval
     ):
         return tuple(formulas)
     return folds(formulas, changed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import inf, lcm
 
-from rtamt.language.contents import contents
+from rtamt.language.contents import timed
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import Bounds, Tense
 from rtamt.rewrite.desugar import spelled_out
@@ -46,7 +46,7 @@ def _count_horizons(formula: Formula, period: Fraction) -> tuple[int, dict[int, 
 
     They are integers, and inf where they are unbounded. Nodes without future have none.
     """
-    ends = [node.interval.end for node in contents(formula).timed if node.interval is not None]
+    ends = [node.interval.end for node in timed(formula) if node.interval is not None]
     parts = lcm(period.denominator, *[end.denominator for end in ends if end is not None])
     step = period.numerator * (parts // period.denominator)
     found: dict[int, float] = {}
