@@ -42,6 +42,9 @@ LINE_END = lazy_pattern(r"\r\n|\n|\r")
 _COMMENT = r"//[^\n\r]*|/\*[\s\S]*?\*/"
 _QUOTED = r'"(?:[^"]|"")*"'
 
+#: Most names and numbers, which are found in half the time.
+_PLAIN = r"[A-Za-z][A-Za-z0-9_]*(?![\w.$])|[0-9]+(?![\w.])"
+
 #: A name that needs no quotes: a word, or words joined by dots.
 NAME = lazy_pattern(_NAME)
 #: A topic such as ``/ns/req``, which is also a name where an operand can begin.
@@ -138,15 +141,22 @@ def _begins_no_other(symbol: str, symbols: Collection[str]) -> bool:
 @lru_cache(maxsize=32)  # keyed by text, so that no custom operator is kept alive
 def _lexicon(spellings: str) -> tuple[re.Pattern[str], Collection[str]]:
     """Return the expression of one token, and the symbols."""
-    symbols = {s for s in spellings.split(" ") if not is_word(s)}.union(PUNCTUATION)
-    # Characters that are a symbol, and begin no other token, are most of a text; then come names.
+    symbols = {s for s in spellings.split() if not is_word(s)}.union(PUNCTUATION)
+    # What most of a text consists of comes first: characters that are a symbol and begin no other token, plain names
+    # and numbers, and symbols. Symbols that other tokens begin with follow these.
     single = {s for s in symbols if len(s) == 1 and s not in _BEGINNINGS and _begins_no_other(s, symbols)}
-    symbol = "|".join(re.escape(s) for s in sorted(symbols - single, key=lambda s: (-len(s), s)))
+    late = {s for s in symbols if s[0] in _BEGINNINGS}
     first = "".join(map(re.escape, sorted(single)))
     # Every character that is not white space begins some alternative, so the expression never backtracks into a
     # comment. An opening without an end takes the rest: else further ones would each be searched to the end.
-    token = rf'([{first}]|{_NAME}|{NUMBER}|{_COMMENT}|{_QUOTED}|(?:/\*|")[\s\S]*|{symbol}|\S)'
-    return re.compile(token), frozenset(symbols)
+    rare = (_NAME, NUMBER, _COMMENT, _QUOTED, r'(?:/\*|")[\s\S]*', *_longest_first(late), r"\S")
+    token = "|".join((f"[{first}]", _PLAIN, *_longest_first(symbols - single - late), *rare))
+    return re.compile(f"(?=[^ ])({token})"), frozenset(symbols)
+
+
+def _longest_first(symbols: Collection[str]) -> list[str]:
+    """Return expressions of symbols in the order in which they are tried."""
+    return [re.escape(symbol) for symbol in sorted(symbols, key=lambda s: (-len(s), s))]
 
 
 def tokenize(text: str, language: Language) -> Tokens:
