@@ -58,7 +58,11 @@ class Emission:
     def leaf(self, node: Formula) -> int:
         """Return the index of a variable or a constant, adding it if necessary."""
         if node.__class__ is Const:  # no parameter
-            return self.constant(node.value, node)
+            value = node.value
+            place = self.constants.get(value)
+            if place is None:
+                place = self.constants[value] = self.new_constant(value, node)
+            return place
         if isinstance(node, Var):
             place = self.variables.get(node.name)  # most occur several times
             if place is None:

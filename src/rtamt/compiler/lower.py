@@ -111,7 +111,7 @@ class Lowering(Emission, ABC):
         """Emit the instructions of a formula and of what is below it, and return the index of its own."""
         # By identity, since hashing formulas takes as long as lowering them: equal ones have the same instructions.
         found, orders, variables, constants = self.found, self.orders, self.variables, self.constants
-        records, lags, origins, setdefault = self.records, self.lags, self.origins, self.index_of.setdefault
+        pointwise, leaf = self.pointwise, self.leaf
         opened: list[Apply] = []  # the operators whose result is still to come
         values: list[int] = []
         todo: list[Any] = [formula]  # nodes and steps over their values, the next one last
@@ -125,29 +125,25 @@ class Lowering(Emission, ABC):
                     first = len(values) - count
                     place = self._lower_node(node, values[first:])
                     values[first:] = (place,)
-                else:  # most, as pointwise() does
+                else:  # most
                     b = values.pop() if count == 2 else NO_OPERAND
-                    a = values[-1]
-                    lag = lags[a]
-                    if b != NO_OPERAND and (other := lags[b]) != lag:
-                        if other < lag:
-                            b = self.delayed(b, lag)
-                        else:
-                            a, lag = self.delayed(a, other), other
-                    record = (code, a, b, 0, 0, 0.0, lag)
-                    values[-1] = place = setdefault(record, len(lags))
-                    if place == len(lags):
-                        records.append(record)
-                        lags.append(lag)
-                        origins.append(opened[-1])
+                    values[-1] = place = pointwise(code, opened[-1], values[-1], b)
                 if last:
                     found[id(opened.pop())] = place
                 continue
             if kind is Apply:
                 known = found.get(id(item))
                 if known is None:
+                    args = item.args
+                    pair, order = orders[item.op]
+                    if pair is not None:  # over leaves, as most predicates are, there is nothing to align
+                        code, first, last = pair
+                        a, b = args[first], args[last]
+                        if a.__class__ is not Apply and b.__class__ is not Apply:
+                            place = found[id(item)] = pointwise(code, item, leaf(a), leaf(b))
+                            values.append(place)
+                            continue
                     opened.append(item)
-                    args, order = item.args, orders[item.op]
                     if order is None:
                         todo += (None, len(args), None, True), *args[::-1]
                     else:
@@ -157,7 +153,7 @@ class Lowering(Emission, ABC):
                 known = variables.get(item.name)  # most occur several times
             else:
                 known = constants.get(item.value) if kind is Const else None  # no parameter
-            values.append(self.leaf(item) if known is None else known)
+            values.append(leaf(item) if known is None else known)
         return values[0]
 
     def _lower_node(self, node: Formula, args: list[int]) -> int:

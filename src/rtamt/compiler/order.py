@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     #: What is emitted over the last values: the code of a pointwise operator, None for others; the number of values;
     #: the node, None for the operator that is lowered; and whether its own value is the result.
     Step: TypeAlias = tuple[int | None, int, Formula | None, bool]
+    #: The code of an instruction over two operands, and the places of these.
+    Pair: TypeAlias = tuple[int, int, int]
 
 
 def order_of(op: Operator) -> tuple[int | Step, ...] | None:
@@ -33,6 +35,22 @@ def order_of(op: Operator) -> tuple[int | Step, ...] | None:
     [2, 1, 1, 0]
     """
     return _builtin_order(op) if builtin(op.name) is op else _order(op)
+
+
+def pair_of(op: Operator) -> Pair | None:
+    """Return how an operator that is one instruction over two operands is lowered; None for any other.
+
+    >>> from rtamt.language.operators import STL
+    >>> pair_of(STL["le"]), pair_of(STL["implies"])
+    ((8, 1, 0), None)
+    """
+    order = order_of(op)
+    if order is None or len(order) != 3:
+        return None
+    step, last, first = order
+    if not isinstance(step, tuple) or step[0] is None or not isinstance(first, int) or not isinstance(last, int):
+        return None
+    return step[0], first, last
 
 
 def is_derived(op: Operator) -> bool:
@@ -72,11 +90,11 @@ def _order(op: Operator) -> tuple[int | Step, ...] | None:
 _builtin_order = cache(_order)
 
 
-class Orders(dict["Operator", "tuple[int | Step, ...] | None"]):
-    """How the operators of some formulas are lowered, found on first use."""
+class Orders(dict["Operator", "tuple[Pair | None, tuple[int | Step, ...] | None]"]):
+    """How the operators of some formulas are lowered, found on first use: :func:`pair_of` and :func:`order_of`."""
 
-    def __missing__(self, op: Operator) -> tuple[int | Step, ...] | None:
-        found = self[op] = order_of(op)
+    def __missing__(self, op: Operator) -> tuple[Pair | None, tuple[int | Step, ...] | None]:
+        found = self[op] = pair_of(op), order_of(op)
         return found
 
 
