@@ -1,7 +1,5 @@
 """Monitor Signal Temporal Logic: compute the robustness of requirements on recorded or live signals."""
 
-from rtamt.lazy import attributes
-
 __version__ = "1.0.0.dev0"
 
 
@@ -15,13 +13,16 @@ def _modules() -> dict[str, str]:
     return {names.lstrip("(\n ").partition(" as ")[0]: module for module, _, names in parts}
 
 
-_MODULES = _modules()
+def __getattr__(name: str) -> object:
+    """Return a public name, which is imported on first use; so is the list of these names."""
+    from rtamt.lazy import attributes
 
-__all__ = sorted(_MODULES)  # noqa: PLE0605 - type checkers read the stub
-
-
-__getattr__ = attributes(__name__, _MODULES)
+    modules = _modules()
+    module = globals()
+    module["__all__"] = sorted(modules)
+    module["__getattr__"] = attributes(__name__, modules)
+    return module["__all__"] if name == "__all__" else module["__getattr__"](name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *_modules()})
