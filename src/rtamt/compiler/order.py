@@ -44,13 +44,11 @@ def pair_of(op: Operator) -> Pair | None:
     >>> pair_of(STL["le"]), pair_of(STL["implies"])
     ((8, 1, 0), None)
     """
-    order = order_of(op)
-    if order is None or len(order) != 3:
-        return None
-    step, last, first = order
-    if not isinstance(step, tuple) or step[0] is None or not isinstance(first, int) or not isinstance(last, int):
-        return None
-    return step[0], first, last
+    match order_of(op):
+        case ((int() as code, _, _, _), int() as last, int() as first):
+            return code, first, last
+        case _:
+            return None
 
 
 def is_derived(op: Operator) -> bool:
