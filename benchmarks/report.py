@@ -36,7 +36,7 @@ def write(
     drawn = plots.draw(folder / "plots", running)
     parts = [
         head(facts),
-        summary.write(ratios(running), start_up.ratios(starts), machine),
+        summary.write(ratios(running), starts, machine),
         how(running, absent),
         *(table(group, running, drawn) for group in groups(running)),
         start_up.section(starts),

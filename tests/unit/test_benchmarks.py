@@ -56,7 +56,7 @@ def test_the_summary_names_every_row_that_falls_short_and_where():
     case = Case("online, dense time", "always[0:{k}](a >= -2)", 10, "", "dense", "online", {})
     text = summary.write(
         {(case, "mstlo"): 3.2, (replace(case, x=1000), "mstlo"): 7.0, (case, "this (step)"): 0.5},
-        {"Reelay": 0.4},
+        {"this": start_up.Start([0.01], [0.05]), "Reelay": start_up.Start([0.02], [0.02])},
         [{"formula": "a", "samples": 10_000, "ratio": 1.5}],
     )
     assert "| online, an update: a peer takes at least 5× | 2 | 1 | 1 | 5.1× |" in text
@@ -66,7 +66,8 @@ def test_the_summary_names_every_row_that_falls_short_and_where():
         in text
     )
     assert "- online, dense time, `always[0:{k}](a >= -2)`, mstlo: 3.2× at 10\n" in text
-    assert "- start-up, Reelay: 0.4×\n" in text
+    assert "| start-up, import: no peer is faster | 1 | 1 | 0 | 2× |" in text
+    assert "- first verdict, Reelay: 0.4×\n" in text
     assert text.count("\n- ") == 2
 
 
@@ -106,14 +107,20 @@ def test_every_program_that_is_started_prints_the_verdict_and_is_counted_but_for
     assert list(starts) == [start_up.ALONE, "this"]
     for start in starts.values():
         assert len(start.processor) == len(start.whole) == len(start.elapsed) == 2
-        assert all(seconds > 0 for seconds in (*start.processor, *start.whole, *start.elapsed))
+        assert all(0 < early < late for early, late in zip(start.imported, start.processor, strict=True))
+        assert all(seconds > 0 for seconds in (*start.whole, *start.elapsed))
 
 
 def test_start_up_is_compared_process_by_process():
     starts = {
-        start_up.ALONE: start_up.Start([0.01, 0.01, 0.01], [0.01, 0.01, 0.01], [0.02, 0.02, 0.02]),
-        "this": start_up.Start([0.02, 0.04, 0.05], [0.05, 0.05, 0.05], [0.06, 0.06, 0.06]),
-        "Reelay": start_up.Start([0.04, 0.04, 0.01], [0.05, 0.05, 0.06], [0.06, 0.07, 0.07]),
+        start_up.ALONE: start_up.Start([0.01, 0.01, 0.01], [0.01, 0.01, 0.01], [0.01] * 3, [0.02] * 3),
+        "this": start_up.Start([0.01, 0.02, 0.01], [0.02, 0.04, 0.05], [0.05] * 3, [0.06] * 3),
+        "Reelay": start_up.Start(
+            [0.02, 0.02, 0.03], [0.04, 0.04, 0.01], [0.05, 0.05, 0.06], [0.06, 0.07, 0.07]
+        ),
     }
-    assert start_up.ratios(starts) == {"Reelay": 1.0}
-    assert "| Reelay | 40.0 ms | 30.0 ms | 50.0 ms | 70.0 ms |" in start_up.section(starts)
+    assert start_up.ratios(starts, start_up.TO_IMPORT) == {"Reelay": 2.0}
+    assert start_up.ratios(starts, start_up.TO_VERDICT) == {"Reelay": 1.0}
+    assert "| Reelay | 20.0 ms | 10.0 ms | 40.0 ms | 30.0 ms | 50.0 ms | 70.0 ms |" in start_up.section(
+        starts
+    )
