@@ -73,52 +73,56 @@ def check_bounds(
     >>> from rtamt.language.parsing.parser import parse_formula
     >>> check_bounds(parse_formula("always[0:1] x"), Fraction(1, 10))
     """
-    a, b = step.as_integer_ratio()
-    known: dict[
-        int, int
-    ] = {}  # the steps of bounds, by identity: most intervals of a text share a few bounds
+    #: The steps of bounds, by identity: most intervals of a text share a few bounds.
+    known: dict[int, int] = {}
     for node in timed(spelled_out(formula)):
         interval = node.interval
         assert interval is not None
-        counts: list[int] = []
-        for bound in (interval.begin, interval.end):
-            if bound is None:
-                continue
-            if id(bound) in known:
-                counts.append(known[id(bound)])
-                continue
-            c, d = bound.as_integer_ratio()
-            count, rest = divmod(c * b, d * a)  # a division of fractions costs ten times as much
-            if rest != 0:
-                raise BoundError(
-                    f"The operator bound must be a multiple of the {unit.setting}: "
-                    f"{format_duration(bound)} is not a whole number of {unit.steps} of {format_duration(step)}; "
-                    f"change the bound or the {unit.step}",
-                    text,
-                    interval.span or node.span,
-                )
-            if count > unit.most:
-                raise BoundError(
-                    f"{format_duration(bound)} is {_short(count)} {unit.steps} of {format_duration(step)}, "
-                    f"more than can be counted; shorten the bound, leave it open with inf, or choose {unit.longer}",
-                    text,
-                    interval.span or node.span,
-                )
-            known[id(bound)] = count
-            counts.append(count)
-        if len(counts) == 2 and counts[1] - interval.end_open < counts[0] + interval.begin_open:
-            from rtamt.language.printing.printer import interval_text
+        begin, end = interval.begin, interval.end
+        first = known.get(id(begin))
+        if first is None:
+            first = known[id(begin)] = _count_steps(begin, step, text, unit, node)
+        if end is not None:
+            last = known.get(id(end))
+            if last is None:
+                last = known[id(end)] = _count_steps(end, step, text, unit, node)
+            if last - interval.end_open < first + interval.begin_open:
+                from rtamt.language.printing.printer import interval_text
 
-            raise BoundError(
-                f"the interval {interval_text(interval)} is empty: with a {unit.setting} of "
-                f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",
-                text,
-                interval.span or node.span,
-            )
+                raise BoundError(
+                    f"the interval {interval_text(interval)} is empty: with a {unit.setting} of "
+                    f"{format_duration(step)} no {unit.step} lies in it; close a bound, or choose a {unit.finer}",
+                    text,
+                    interval.span or node.span,
+                )
         if node.op.share:
             _check_share(closed(interval, step), step, text, unit)
     if unit.farthest is not None:
         _check_sums(spelled_out(formula), step, text, unit, unit.farthest)
+
+
+def _count_steps(bound: Fraction, step: Fraction, text: str | None, unit: BoundUnit, node: Apply) -> int:
+    """Return a bound of a node in steps; raise :class:`BoundError` if it is no multiple of them, or too large."""
+    a, b = step.as_integer_ratio()
+    c, d = bound.as_integer_ratio()
+    count, rest = divmod(c * b, d * a)  # a division of fractions costs ten times as much
+    assert node.interval is not None
+    if rest != 0:
+        raise BoundError(
+            f"The operator bound must be a multiple of the {unit.setting}: "
+            f"{format_duration(bound)} is not a whole number of {unit.steps} of {format_duration(step)}; "
+            f"change the bound or the {unit.step}",
+            text,
+            node.interval.span or node.span,
+        )
+    if count > unit.most:
+        raise BoundError(
+            f"{format_duration(bound)} is {_short(count)} {unit.steps} of {format_duration(step)}, "
+            f"more than can be counted; shorten the bound, leave it open with inf, or choose {unit.longer}",
+            text,
+            node.interval.span or node.span,
+        )
+    return count
 
 
 def _check_share(interval: Interval, step: Fraction, text: str | None, unit: BoundUnit) -> None:
