@@ -342,10 +342,10 @@ class SpecificationText:
 
         ``formula``: one that replaces that of the specification, such as its pastified form.
         """
-        from rtamt.verdicts.robustness_and_truth import outputs_of
+        from rtamt.verdicts.robustness_and_truth import Outputs
 
         chosen = self.formula if formula is None else formula
-        return outputs_of(chosen, self._apply_semantics(chosen, semantics))
+        return Outputs(self._apply_semantics(chosen, semantics), self._apply_semantics(chosen, "boolean"))
 
     def _named(self, name: str) -> Formula:
         """Return a named sub-specification or requirement, or the formula of any other text, read in its place."""

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections import Counter
 from math import isfinite, isinf
 
-from rtamt.compiler.places import Origins, Places
+from rtamt.compiler.places import Deferred, Origins
 from rtamt.compiler.program import CODES, records_of
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
@@ -160,7 +160,7 @@ def _move_instructions(program: Program, moves: dict[int, _Move]) -> Program:
         records=records_of(instructions),
         origins=Origins(lambda: [program.origins[source] for source in sources]),
         outputs=tuple(places[output] for output in program.outputs),
-        value_of=Places(
+        value_of=Deferred(
             lambda: [(formula, places[old]) for formula, old in program.value_of.items() if old in places]
         ),
         parametric={places[old]: name for old, name in program.parametric.items() if old in places},

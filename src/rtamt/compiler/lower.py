@@ -13,7 +13,7 @@ from math import inf
 
 from rtamt.compiler.emission import Emission
 from rtamt.compiler.order import Orders, is_derived
-from rtamt.compiler.places import Origins, Places
+from rtamt.compiler.places import Deferred, Origins
 from rtamt.compiler.program import CODES, NO_OPERAND, CallSite, Program
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Var, postorder
 from rtamt.language.lazy_modules import shares
@@ -86,7 +86,7 @@ class Lowering(Emission, ABC):
             self.inputs,
             outputs,
             self.period,
-            Places(lambda: cores().places_of_nodes()),
+            Deferred(lambda: cores().places_of_nodes()),
             Origins(lambda: cores().origins),
             self.domain,
             tuple(self.calls),

@@ -1,4 +1,4 @@
-"""The core formulas of instructions, for messages and for programs that report sub-formulas."""
+"""The formulas of instructions, for messages and for programs that report sub-formulas; few are ever read."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
 
 
-class Places(Mapping["Formula", int]):
-    """A mapping from formulas to instructions that is computed on first use: few programs need it.
+class Deferred(Mapping[Any, Any]):
+    """A mapping that is computed on first use, such as from formulas to their instructions.
 
     >>> from rtamt.language.formula import Var
-    >>> places = Places(lambda: [(Var("x"), 0), (Var("y"), 1)])
+    >>> places = Deferred(lambda: [(Var("x"), 0), (Var("y"), 1)])
     >>> places[Var("y")], len(places)
     (1, 2)
     """
 
-    def __init__(self, pairs: Callable[[], Iterable[tuple[Formula, int]]]) -> None:
+    def __init__(self, pairs: Callable[[], Iterable[tuple[Any, Any]]]) -> None:
         self._pairs = pairs
 
-    def __getitem__(self, formula: Formula) -> int:
-        return self._found[formula]
+    def __getitem__(self, key: Any) -> Any:
+        return self._found[key]
 
-    def __iter__(self) -> Iterator[Formula]:
+    def __iter__(self) -> Iterator[Any]:
         return iter(self._found)
 
     def __len__(self) -> int:
         return len(self._found)
 
     @cached_property
-    def _found(self) -> dict[Formula, int]:
+    def _found(self) -> dict[Any, Any]:
         return dict(self._pairs())
 
     def __reduce__(self) -> tuple[Any, ...]:

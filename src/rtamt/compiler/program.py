@@ -232,17 +232,24 @@ class Program:
                 f"the program calls '{self.calls[0].op.name}', which the core does not know: bytes cannot carry "
                 f"an operator's own code; expand it into the operators of STL, or run the program in Python"
             )
-        return self.code()
+        return self.code() if self.metadata is None else self._carried
 
     def code(self) -> bytes:
-        """Return the bytes that the core runs in this process, together with the calls."""
+        """Return the bytes that the core runs in this process, together with the calls: without metadata."""
         return self._code
 
     @cached_property
     def _code(self) -> bytes:
+        return self._with_note(b"")
+
+    @cached_property
+    def _carried(self) -> bytes:
+        assert self.metadata is not None
+        return self._with_note(self.metadata.to_bytes(self.inputs, self.period))
+
+    def _with_note(self, note: bytes) -> bytes:
         from rtamt.compiler.passes import bits_of
 
-        note = b"" if self.metadata is None else self.metadata.to_bytes(self.inputs, self.period)
         domain = _DOMAINS.index(self.domain)
         counts = len(self.records), len(self.inputs), len(self.outputs), len(note), int(self.worst_case)
         parts = [_HEADER.pack(MAGIC, _VERSION, domain, bits_of(self.without), *counts)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
+from rtamt.compiler.places import Deferred
 from rtamt.compiler.program import records_of
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.typing import TYPE_CHECKING
@@ -52,12 +53,11 @@ def sliced(program: Program, outputs: Sequence[int], kept_inputs: Collection[str
         made.append(old._replace(a=a, b=b, n=n))
     metadata = program.metadata
     if metadata is not None:
+        meanings = metadata.meanings
         metadata = replace(
             metadata,
             outputs=tuple([metadata.outputs[i] for i in outputs]),
-            meanings=MappingProxyType(
-                {place[i]: text for i, text in metadata.meanings.items() if i in place}
-            ),
+            meanings=Deferred(lambda: [(place[i], text) for i, text in meanings.items() if i in place]),
             parameters=MappingProxyType({}),
         )
     return replace(

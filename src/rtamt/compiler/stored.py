@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cached_property, partial
 from types import MappingProxyType
 
 from rtamt.compiler.metadata import Metadata, damaged
+from rtamt.compiler.places import Deferred
 from rtamt.compiler.plan import DEFINED, Plan, Scan, Stage
 from rtamt.compiler.slices import sliced
 from rtamt.errors import UsageError
@@ -38,6 +40,28 @@ def is_built_in(node: Formula) -> bool:
     return not isinstance(node, Apply) or not isinstance(node.op.kernel, Blocks | Compiled | None)
 
 
+class _Meanings:
+    """The texts of instructions that may have no value: written when one is read, or with the bytes of a program."""
+
+    def __init__(self, plan: Plan, asked: Sequence[Formula]) -> None:
+        self._plan = plan
+        self._asked = asked
+
+    @cached_property
+    def _texts(self) -> dict[Formula, Formula]:
+        return as_written(self._asked)
+
+    def of(self, program: Program) -> Iterator[tuple[int, str]]:
+        """Yield each such instruction of a program of the plan, and the text of what it computes."""
+        original = self._plan.originals()
+        for place, origin in enumerate(program.origins):
+            if isinstance(origin, Apply) and program.instructions[place].opcode not in _SAFE:
+                formula = program.origin_of(place)
+                assert formula is not None
+                formula = original(formula)
+                yield place, meaning_of(self._texts.get(formula, formula))
+
+
 @dataclass(frozen=True, slots=True)
 class StoredPlan:
     """A plan whose programs have texts in place of formulas (``Metadata.meanings``).
@@ -54,22 +78,15 @@ class StoredPlan:
 
         Raises :class:`UsageError` for a custom operator, whose code bytes cannot carry.
         """
-        texts, original = as_written(asked), plan.originals()
+        meanings = _Meanings(plan, asked)
 
         def without_formulas(program: Program) -> Program:
             for site in program.calls:
                 raise UsageError(
                     f"the operator '{site.op.name}' has code of its own, which bytes cannot carry"
                 )
-            meanings = {}
-            for place, origin in enumerate(program.origins):
-                if isinstance(origin, Apply) and program.instructions[place].opcode not in _SAFE:
-                    formula = program.origin_of(place)
-                    assert formula is not None
-                    formula = original(formula)
-                    meanings[place] = meaning_of(texts.get(formula, formula))
             names = tuple(map(str, range(len(program.outputs))))
-            metadata = Metadata(outputs=names, meanings=MappingProxyType(meanings))
+            metadata = Metadata(outputs=names, meanings=Deferred(partial(meanings.of, program)))
             nothing: Mapping[Formula, int] = MappingProxyType({})
             return replace(
                 program, metadata=metadata, value_of=nothing, origins=(), parameters=MappingProxyType({})

@@ -252,8 +252,11 @@ def _with_step(domain: TimeDomain, step: Fraction) -> TimeDomain:
 
 
 def _outputs(asking: Asking) -> Asked:
-    robustness, truth = asking.spec._outputs(asking.query.semantics)
-    return Asked(robustness if asking.robustness else None, truth if asking.truth else None)
+    spec, semantics = asking.spec, asking.query.semantics
+    return Asked(
+        spec._apply_semantics(spec.formula, semantics) if asking.robustness else None,
+        spec._outputs(semantics).truth if asking.truth else None,
+    )
 
 
 def way_of(spec: Specification) -> Way:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from rtamt.compiler.stored import is_built_in
 from rtamt.engine.backend import compiled_backend
+from rtamt.language.contents import operators_of
 from rtamt.language.formula import Apply, Var, fold, postorder
+from rtamt.language.operators import builtin
 from rtamt.lazy.dataclasses import replace
 from rtamt.rewrite.desugar import desugar
 from rtamt.rewrite.horizon import reach
@@ -30,7 +32,10 @@ REGISTERS = 256
 
 def is_storable(asked: Asked) -> str:
     """Return why no bytes can hold a requirement, as the end of a sentence; empty if they can."""
-    for node in postorder(*(desugar(formula) for formula in asked if formula is not None)):
+    formulas = [formula for formula in asked if formula is not None]
+    if all(builtin(op.name) is op for op in operators_of(*formulas)):  # most
+        return ""
+    for node in postorder(*map(desugar, formulas)):
         if not is_built_in(node):
             assert isinstance(node, Apply)
             return f"uses the operator '{node.op.name}', whose code bytes cannot carry"
@@ -46,9 +51,12 @@ def prepare(asked: Sequence[Asked], inputs: tuple[str, ...], domain: TimeDomain)
     whole = _prepared(asked, inputs, domain)
     if len(asked) > 1:
         plans = [plan for plan in (whole.robustness, whole.leaves) if plan is not None]
-        if max(_registers(program) for plan in plans for program in plan.programs()) > REGISTERS:
-            half = len(asked) // 2
-            return [*prepare(asked[:half], inputs, domain), *prepare(asked[half:], inputs, domain)]
+        most = max(_registers(program) for plan in plans for program in plan.programs())
+        if most > REGISTERS:
+            # So many parts at once as would be left after halving: the programs in between need not be compiled.
+            size = max(1, len(asked) // 2 ** (most // REGISTERS).bit_length())
+            parts = (asked[first : first + size] for first in range(0, len(asked), size))
+            return [prepared for part in parts for prepared in prepare(part, inputs, domain)]
     return [whole]
 
 
