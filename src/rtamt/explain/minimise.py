@@ -79,6 +79,53 @@ class Intervals:
                 yield literal_, order[begin:end]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Groups:
+    """Groups of neighbours in a sequence: of each the first element, and the one after the last.
+
+    >>> Groups(np.array([0, 5]), np.array([4, 7])).split(2).members().tolist()
+    [0, 1, 2, 3, 5, 6]
+    """
+
+    first: Ints
+    stop: Ints
+
+    @classmethod
+    def none(cls) -> Groups:
+        """Return no groups."""
+        return cls(NONE.starts, NONE.ends)
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def take(self, which: NDArray[np.bool_]) -> Groups:
+        """Return some of the groups."""
+        return Groups(self.first[which], self.stop[which])
+
+    def group_of(self) -> Ints:
+        """Return the number of the group of each of :meth:`members`."""
+        return np.repeat(np.arange(len(self)), self.stop - self.first)
+
+    def members(self) -> Ints:
+        """Return the elements of all groups in their order."""
+        sizes = self.stop - self.first
+        before = np.cumsum(sizes) - sizes
+        return np.arange(int(sizes.sum())) + np.repeat(self.first - before, sizes)
+
+    def largest(self, values: Ints) -> Ints:
+        """Return the largest value in each group; ``values``: of the sequence."""
+        edges = np.column_stack((self.first, self.stop)).ravel()
+        found: Ints = np.maximum.reduceat(np.append(values, 0), edges)[::2]
+        return found
+
+    def split(self, size: int) -> Groups:
+        """Return groups of at most ``size`` elements."""
+        parts = -(-(self.stop - self.first) // size)
+        number = np.arange(int(parts.sum())) - np.repeat(np.cumsum(parts) - parts, parts)
+        first = np.repeat(self.first, parts) + number * size
+        return Groups(first, np.minimum(first + size, np.repeat(self.stop, parts)))
+
+
 class Forcing:
     """Finds where the verdict is lost if the predicates are known only on some intervals."""
 
@@ -149,14 +196,14 @@ def minimal(intervals: Intervals, needs: Demands, forcing: Forcing) -> Intervals
     kept, open_ = np.flatnonzero(plain), np.flatnonzero(~plain)
     open_ = open_[np.lexsort((intervals.ends[open_], intervals.starts[open_]))]
     size = 1 << max(len(open_) - 1, 0).bit_length()
-    groups = [open_] if len(open_) else []
-    while groups:
-        groups = _needed_groups(groups, kept, intervals, forcing)
+    groups = Groups(np.zeros(1, np.int64), np.array([len(open_)])) if len(open_) else Groups.none()
+    while len(groups):
+        groups = _needed_groups(groups, kept, open_, intervals, forcing)
         if size == 1:
             break
         size //= 2
-        groups = [group[i : i + size] for group in groups for i in range(0, len(group), size)]
-    return intervals.take(np.concatenate((kept, *groups)))
+        groups = groups.split(size)
+    return intervals.take(np.concatenate((kept, open_[groups.members()])))
 
 
 def _which_needed(intervals: Intervals, needs: Demands) -> NDArray[np.bool_]:
@@ -168,28 +215,23 @@ def _which_needed(intervals: Intervals, needs: Demands) -> NDArray[np.bool_]:
     return plain
 
 
-def _needed_groups(groups: Sequence[Ints], kept: Ints, intervals: Intervals, forcing: Forcing) -> list[Ints]:
+def _needed_groups(groups: Groups, kept: Ints, open_: Ints, intervals: Intervals, forcing: Forcing) -> Groups:
     """Return the groups that cannot be taken away, each tried when those before it have been decided."""
-    zones = [
-        (
-            int(intervals.starts[group].min()) - forcing.ahead,
-            int(intervals.ends[group].max()) + forcing.behind,
-        )
-        for group in groups
-    ]
-    waiting = sorted(range(len(groups)), key=lambda number: zones[number][1])
-    staying = dict(enumerate(groups))
+    begins = intervals.starts[open_][groups.first] - forcing.ahead  # in a group the first one starts first
+    ends = groups.largest(intervals.ends[open_]) + forcing.behind
+    zones = list(zip(begins.tolist(), ends.tolist(), strict=True))
+    members, group_of = groups.members(), groups.group_of()
+    staying = np.ones(len(groups), bool)
+    waiting = np.argsort(ends, kind="stable").tolist()
     while waiting:
         trial: list[int] = []
         later: list[int] = []
         for number in waiting:
             apart = not trial or zones[number][0] >= zones[trial[-1]][1]
             (trial if apart else later).append(number)
-        for number in trial:
-            del staying[number]
-        failed = forcing.failures(intervals.take(np.concatenate((kept, *staying.values()))))
-        for number in trial:
-            if len(failed & Cells.of([zones[number]])):
-                staying[number] = groups[number]
+        staying[trial] = False
+        left = open_[members[staying[group_of]]]
+        failed = forcing.failures(intervals.take(np.concatenate((kept, left))))
+        staying[trial] = failed.intersects(begins[trial], ends[trial])
         waiting = later
-    return [group for number, group in enumerate(groups) if number in staying]
+    return groups.take(staying)
