@@ -34,6 +34,7 @@ TEXTS = [
     "always(sum[0:1](x) > 0)",
     "always(sqrt(x + 0.5) < 1.8)",
     "require A: always(x >= 0)\nrequire B: eventually[0:2](y >= 1)",
+    "require A: always[0:3](x + y >= 0)\nrequire B: once[0:1](y > 0)\nrequire C: always(x >= 0)",
 ]
 
 
@@ -49,11 +50,16 @@ def logs(draw: Any) -> tuple[dict[str, list[Any]], str]:
     for _ in range(draw(st.sampled_from([0, 0, 1, 1, 2]))):
         place = draw(st.integers(0, n - 1))
         fault = draw(
-            st.sampled_from("nan none inf text gap swap repeat jitter slower nan-time no-time".split())
+            st.sampled_from(
+                "nan none late ended inf text gap swap repeat jitter slower nan-time no-time".split()
+            )
         )
         name = draw(st.sampled_from("xy"))
         if fault in {"nan", "none", "inf", "text"}:
             columns[name][place] = {"nan": np.nan, "none": None, "inf": np.inf, "text": "bad"}[fault]
+        elif fault in {"late", "ended"}:
+            missing = slice(place) if fault == "late" else slice(place, n)
+            columns[name][missing] = [None] * len(columns[name][missing])
         elif fault == "swap":
             times[place], times[place - 1] = times[place - 1], times[place]
         elif fault == "repeat":

@@ -32,6 +32,7 @@ samples                read and check the numbers and the time of one sample
 caller_times           timestamps of samples as the caller gives them
 runs                   runs of ticks
 dense_arrays           dense-time data to int64 ticks and float64 values
+sample_count           the number of instants at which any of several signals has a sample
 sampling_period        infer the sampling period; check order and distance of timestamps
 ticks                  times to int64 ticks and back
 counting               exact conversion of numbers to ticks, rounded once

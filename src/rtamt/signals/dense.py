@@ -143,9 +143,11 @@ class DenseTrace(DomainTrace):
     @property
     def samples(self) -> int:
         """See :class:`DomainTrace`."""
-        from rtamt.signals.sampling_period import merged
+        from rtamt.signals.sample_count import SampleCount
 
-        return len(merged([ticks for ticks, _ in self.columns.values()]))
+        count = SampleCount(self.columns)
+        count.take(self.columns)
+        return count.total
 
     @property
     def size(self) -> int:

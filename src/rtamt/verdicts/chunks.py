@@ -34,9 +34,9 @@ class StreamResult:
     ``robustness``: ρ at the first instant, ``start``. ``satisfied``: whether the formula holds there (Boolean
     semantics). ``first_violation``: when it is first violated, see :func:`rtamt.first_violation`; None
     where it holds. ``minimum``: the smallest ρ at any instant; None where the future is unbounded and
-    chunks do not have it. ``samples``: rows in all chunks. ``period``: seconds from one sample to the
-    next; None in dense time. ``episodes``: how many episodes of violation there are, the worst and the first ones,
-    see ``Result.episodes``; None of several requirements, and as for ``minimum``.
+    chunks do not have it. ``samples``: the number of instants at which a variable has a sample. ``period``: seconds
+    from one sample to the next; None in dense time. ``episodes``: how many episodes of violation there are, the worst
+    and the first ones, see ``Result.episodes``; None of several requirements, and as for ``minimum``.
     ``steady``: False if the period was inferred from the first chunk, and another chunk has another one.
     ``requirements``: the same for each requirement, by name.
 

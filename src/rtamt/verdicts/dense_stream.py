@@ -10,6 +10,7 @@ from rtamt.errors import TraceError
 from rtamt.language.contents import own_variables
 from rtamt.lazy.modules import np
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.sample_count import SampleCount
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.chunks import Group, Requirement, StreamResult
 from rtamt.verdicts.offline import end_of
@@ -35,6 +36,9 @@ class DenseStream(Stream):
         self._domain = domain
         domain.check(spec.formula, spec.text)
         self._groups = [(group, self._monitor(group)) for group in self._grouped()]
+        # As those of a whole recording: of each requirement the samples of its own variables.
+        self._sampled = {frozenset(group.names): SampleCount(group.names) for group, _ in self._groups}
+        self._every = self._sampled.setdefault(frozenset(spec.input_names), SampleCount(spec.input_names))
         self._scale: TimeScale | None = None
         self._counts: dict[str, int] = {}
         self._first: dict[str, int] = {}
@@ -77,7 +81,9 @@ class DenseStream(Stream):
                 self._counts[name] = self._counts.get(name, 0) + len(ticks)
         for group, monitor in self._groups:
             self._known(group, monitor, push_ticks(monitor, samples, self._scale))
-        self.samples += max(map(len, times))
+        for count in self._sampled.values():
+            count.take(samples)
+        self.samples = self._every.total
 
     def _start(self, group: Group) -> int:
         """Return when the trace of a group starts, once all of its variables have."""
@@ -113,9 +119,9 @@ class DenseStream(Stream):
             self._known(group, monitor, push_ticks(monitor, held, self._scale), end)
             self._known(group, monitor, finish_ticks(monitor), end)
             time = partial(self._time, start)
+            count = self._sampled[frozenset(group.names)].total
             found |= {
-                name: each.result(time, end - start, self.samples, None)
-                for name, each in group.requirements.items()
+                name: each.result(time, end - start, count, None) for name, each in group.requirements.items()
             }
         return self.result(found, None)
 

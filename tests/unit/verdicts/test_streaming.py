@@ -32,6 +32,7 @@ def same(streamed, result):
     assert streamed.robustness == result.robustness
     assert streamed.satisfied == result.satisfied
     assert streamed.first_violation == first_violation(result)
+    assert streamed.samples == result.trace.samples
     if streamed.episodes is not None:
         assert streamed.episodes == Episodes.of(result.episodes())
 
@@ -206,6 +207,24 @@ def test_files_and_queries_in_chunks(tmp_path, monkeypatch):
         streamed = rtamt.check_stream(spec, chunks)
         same(streamed, whole)
         assert streamed.samples == 95
+
+
+def test_a_requirement_counted_the_samples_of_the_variables_of_others_in_chunks():
+    spec = rtamt.parse("require A: always(x >= 0); require B: always(y >= 0)", time="dense")
+    columns = {"time": [0, 1, 2, 3, 4], "x": [None, 1, 1, 1, 1], "y": [1, None, None, 1, None]}
+    whole = evaluate_requirements(spec, rtamt.read(columns))
+    table = pa.table(columns)
+    chunks = [rtamt.read(table.slice(begin, 2)) for begin in (0, 2, 4)]
+    streamed = rtamt.check_stream(spec, chunks)
+    assert {name: part.samples for name, part in streamed.requirements.items()} == {"A": 4, "B": 2}
+    assert {name: part.trace.samples for name, part in whole.items()} == {"A": 4, "B": 2}
+    assert streamed.samples == spec.evaluate(rtamt.read(columns)).trace.samples == 5
+
+
+def test_samples_that_two_variables_have_in_turn_were_counted_once_in_chunks():
+    spec = rtamt.parse("always(x + y >= 0)", time="dense")
+    data = {"x": ([0, 2, 4], [1, 1, 1]), "y": ([1, 3, 4], [1, 1, 1])}
+    assert rtamt.check_stream(spec, [data]).samples == spec.evaluate(data).trace.samples == 5
 
 
 def test_what_cannot_be_read_in_chunks():
