@@ -105,11 +105,10 @@ class DenseStream(Stream):
             if name not in self._last:
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         assert self._scale is not None
-        end = max(tick for tick, _ in self._last.values())
         found: dict[str, StreamResult] = {}
         for group, monitor in self._groups:
             # The last values hold for ever, and past windows slide on over them until all has settled.
-            start = self._start(group)
+            start, end = self._start(group), max(self._last[name][0] for name in group.names)
             leaves = (leaf for each in group.requirements.values() for leaf in each.leaves)
             until = max((end_of(leaf, start, end, self._domain.resolution) for leaf in leaves), default=end)
             behind = [(name, self._last[name]) for name in group.names]

@@ -221,6 +221,16 @@ def test_a_requirement_counted_the_samples_of_the_variables_of_others_in_chunks(
     assert streamed.samples == spec.evaluate(rtamt.read(columns)).trace.samples == 5
 
 
+def test_an_episode_lasted_to_the_end_of_the_variables_of_other_requirements_in_chunks():
+    spec = rtamt.parse("require A: always(x >= 0); require B: eventually[0:2](y >= 1)", time="dense")
+    data = {"x": ([0, 1, 5], [1, 1, 1]), "y": ([0, 2], [0, 0])}
+    streamed = rtamt.check_stream(spec, [data]).requirements["B"]
+    alone = rtamt.check_stream(spec.select("B"), [data])
+    (whole,) = evaluate_requirements(spec, data)["B"].episodes()
+    assert (whole.begin, whole.end, whole.worst, whole.at) == (0, 2, -1, 0)
+    assert streamed.episodes == alone.episodes == Episodes.of([whole])
+
+
 def test_samples_that_two_variables_have_in_turn_were_counted_once_in_chunks():
     spec = rtamt.parse("always(x + y >= 0)", time="dense")
     data = {"x": ([0, 2, 4], [1, 1, 1]), "y": ([1, 3, 4], [1, 1, 1])}
