@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rtamt.errors import TraceError
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, WithTimeBases, is_mapping
 from rtamt.signals.time_columns import check_first_column
@@ -45,3 +46,13 @@ def require_times_of_each(data: Any, requirements: Sequence[Collection[str]]) ->
     if len(requirements) > 1:
         for names in requirements:
             require_times(data, names)
+
+
+def lack_of_times(data: WithTimeBases, requirements: Sequence[Collection[str]]) -> TraceError | None:
+    """Return the first error of :func:`require_times` for any of several requirements; None if there is none."""
+    try:
+        for names in requirements:
+            require_times(data, names)
+    except TraceError as error:
+        return error
+    return None

@@ -16,6 +16,7 @@ from rtamt.verdicts.streaming import Stream
 
 if TYPE_CHECKING:
     from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.errors import TraceError
     from rtamt.settings import Semantics
     from rtamt.signals.arrays import Timestamps
     from rtamt.specification import Specification
@@ -34,12 +35,16 @@ class DiscreteStream(Stream):
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
         self._read = [one.input_names for one in spec.requirements.values()]
+        # Of the chunks so far: the rest of a recording may show that its first column holds no timestamps.
+        self._lacks_times: TraceError | None = None
         # The timestamps of positions where something is violated, and of the first.
         self._kept: dict[int, Any] = {}
 
     def take(self, chunk: Any) -> None:
         """See :class:`Stream`."""
         regular = assumed_period.is_known(chunk, self.samples, given=not self._inferred)
+        if not regular and isinstance(chunk, arrays.WithTimeBases):
+            self._lacks_times, regular = assumed_period.lack_of_times(chunk, self._read), True
         # The monitor takes the samples now, and nothing else reads them later.
         timestamps, columns, n = arrays.columns_of(
             chunk,
@@ -103,6 +108,8 @@ class DiscreteStream(Stream):
     def finish(self) -> StreamResult:
         """See :class:`Stream`."""
         self.require_samples()
+        if self._lacks_times is not None:
+            raise self._lacks_times
         assert self._monitor is not None
         self._known(self._monitor, self._monitor.finish())
         found = {

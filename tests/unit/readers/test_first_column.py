@@ -264,6 +264,18 @@ def test_chunks_are_rejected_where_the_count_of_rows_ends(
     assert rtamt.check_stream(SPEC, rtamt.scan(counting, columns=["x"])).satisfied
 
 
+def test_a_first_column_that_increases_in_the_first_chunk_only_was_taken_for_timestamps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("rtamt.readers.csv.BLOCK", 3)
+    level = [f"{x},1\n" for x in (*range(0, 220, 2), 0)]  # longer than what is examined before a file is read
+    path = written(tmp_path, "level,x\n" + "".join(level))
+    for spec in (SPEC, rtamt.parse("require A: always(x > 0); require B: level >= 0")):
+        whole = spec.evaluate(rtamt.read(path, columns=spec.input_names))
+        streamed = rtamt.check_stream(spec, rtamt.scan(path, columns=spec.input_names))
+        assert (streamed.robustness, streamed.samples) == (whole.robustness, len(level))
+
+
 def test_a_large_file_is_rejected_by_the_quick_reader_as_well(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
