@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.command import (
+    NO_STAMPS,
     READING,
     CommandError,
     add_specification_options,
@@ -312,6 +313,13 @@ def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading)
             variable=error.variable,
         ) from None
     return mine
+
+
+def with_stamps(data: Trace, spec: Specification) -> Trace:
+    """Return a recording, or a chunk of it; raise :class:`TraceError` where it lacks the timestamps of dense time."""
+    if spec.domain.own_time_bases and any(data.channel(name).times is None for name in data):
+        raise TraceError(NO_STAMPS)
+    return data
 
 
 def require_all_samples(data: Trace, names: Sequence[str]) -> None:

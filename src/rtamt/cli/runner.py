@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from rtamt.batch import evaluate_requirements
 from rtamt.cli.chunks import Chunks
-from rtamt.cli.command import NO_STAMPS
 from rtamt.cli.outcome import (
     Outcome,
     applicable,
@@ -29,8 +28,9 @@ from rtamt.cli.reading_options import (
     on_time_base,
     read_for,
     require_all_samples,
+    with_stamps,
 )
-from rtamt.errors import BoundError, StlError, TraceError
+from rtamt.errors import BoundError, StlError
 from rtamt.lazy.dataclasses import replace
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
@@ -270,7 +270,8 @@ class _ChunkedRun:
         with opened(self._trace, reading.sheet, reading.query, reading.recover) as source:
             if len(source.tables) != 1 or source.tables[0].chunks is None:
                 return None
-            self._chunks = Chunks(spec, chunks_of(source, choice_for([spec], self._trace, reading)))
+            parts = chunks_of(source, choice_for([spec], self._trace, reading))
+            self._chunks = Chunks(spec, (with_stamps(part, spec) for part in parts))
             return check_stream(spec, self._chunks)
 
     def remedy(self, error: StlError) -> str:
@@ -318,9 +319,7 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
         place = ""
         whole = recorded = recorded or read_for([spec], trace, reading)
         place = f"{shown(trace)}: "
-        if spec.domain.own_time_bases and any(whole.channel(name).times is None for name in whole):
-            raise TraceError(NO_STAMPS)
-        whole = on_time_base(spec.binding.applied(whole), spec, trace, reading)
+        whole = on_time_base(spec.binding.applied(with_stamps(whole, spec)), spec, trace, reading)
         alone = len(spec.requirements) == 1
         parts = (
             evaluate_requirements(spec, whole).values()

@@ -172,8 +172,8 @@ def check_increasing(
 ) -> None:
     """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
 
-    ``first`` is the index of ``times[0]`` in the whole recording, for the message; ``dates``: the times, if
-    they are dates.
+    ``first`` is the index of ``times[0]`` in the whole recording, for the message; ``dates``: the times if they are
+    dates, with that before the first one if there is one.
     """
     finite = np.isfinite(times)
     if not finite.all():
@@ -184,13 +184,15 @@ def check_increasing(
             index=first + i,
         )
     if before is not None and len(times) and times[0] <= before:
-        raise not_increasing(first, float(times[0]), before)
+        raise not_increasing(first, float(times[0]), before, _dates_of(dates, -len(times)))
     steps = np.diff(times)
     if (steps <= 0).any():
         i = int((steps <= 0).argmax()) + 1
         if before is None and len(steps) > 1 and not steps.any():
             raise never_set(float(times[0]), len(times))
-        raise not_increasing(first + i, float(times[i]), float(times[i - 1]), _dates_of(dates, i))
+        raise not_increasing(
+            first + i, float(times[i]), float(times[i - 1]), _dates_of(dates, i - len(times))
+        )
 
 
 def never_set(time: float, count: int, name: str = TIME) -> TraceError:
@@ -203,7 +205,7 @@ def never_set(time: float, count: int, name: str = TIME) -> TraceError:
 
 
 def _dates_of(dates: NDArray[Any] | None, index: int) -> tuple[str, str] | None:
-    """Return the date of a sample and that of its predecessor as text; None if the times are no dates."""
+    """Return the date of a sample, counted from the end, and that before it; None if the times are no dates."""
     if dates is None or dates.dtype.kind != "M":
         return None
     from rtamt.signals.listing import show_time
@@ -235,7 +237,7 @@ def check_regular(
 ) -> None:
     """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance).
 
-    ``dates``: the times if they are dates, for the message.
+    ``dates``: as for :func:`check_increasing`.
     """
     whole = times if before is None else np.concatenate(([before], times))
     step = float(period)
@@ -243,7 +245,7 @@ def check_regular(
     if off.any():
         i = int(off.argmax()) + 1
         index = first + i - (0 if before is None else 1)
-        date = None if before is not None else _dates_of(dates, i)
+        date = _dates_of(dates, i - len(whole))
         raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance, date and date[0])
 
 

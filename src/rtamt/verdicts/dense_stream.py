@@ -43,6 +43,7 @@ class DenseStream(Stream):
         self._counts: dict[str, int] = {}
         self._first: dict[str, int] = {}
         self._last: dict[str, tuple[int, float]] = {}
+        self._taken = False
 
     def _grouped(self) -> Iterator[Group]:
         """Yield the requirements that read the same variables: each trace starts when its variables have started."""
@@ -61,6 +62,7 @@ class DenseStream(Stream):
         """See :class:`Stream`."""
         arrays.require_no_unit(chunk, self.unit)
         columns = dense_arrays.columns_of(chunk, self.spec.input_names, self.declared)
+        self._taken = self._taken or bool(columns)
         given = {name: column for name, column in columns.items() if len(column[0])}
         if not given:
             return
@@ -100,7 +102,8 @@ class DenseStream(Stream):
 
     def finish(self) -> StreamResult:
         """See :class:`Stream`."""
-        self.require_samples()
+        if not self._taken:
+            self.require_samples()
         for name in self.spec.input_names:
             if name not in self._last:
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)

@@ -206,6 +206,48 @@ def test_large_files_are_read_in_chunks_with_the_same_outcome(run, write, monkey
     assert refused == (2, "", "rtamt: log.parquet has no column 'y'; columns: time, x\n")
 
 
+@pytest.mark.parametrize(
+    ("rows", "options", "error"),
+    [
+        ("time,x\n0,\n1,\n2,\n", ("--time", "dense"), "'x' has no samples: give at least one"),
+        (
+            "y,x\n3,5\n1,4\n2,6\n",
+            ("--time", "dense"),
+            "dense time needs a column of timestamps: call it 'time', or name it with --time-column",
+        ),
+        (
+            "time,x\n2026-05-01T10:00:00,5\n2026-05-01T10:00:01,5\n2026-05-01T10:00:05,5\n",
+            ("--period", "1s"),
+            "sample 2 at 2026-05-01T10:00:05 is 4 s after the one before, expected 1 s (within 10%): give the right "
+            "period, resample the trace, or use dense time (--time dense)",
+        ),
+        (
+            "time,x\n2026-05-01T10:00:00,5\n2026-05-01T10:00:01,5\n2026-05-01T10:00:00.5,5\n",
+            (),
+            "time does not increase at sample 2: 2026-05-01T10:00:00.5 comes after 2026-05-01T10:00:01; sort the "
+            "samples and drop repeated timestamps",
+        ),
+        (
+            "time,x\n2026-05-01T10:00:01,5\n2026-05-01T10:00:00,5\n2026-05-01T10:00:02,5\n",
+            (),
+            "time does not increase at sample 1: 2026-05-01T10:00:00 comes after 2026-05-01T10:00:01; sort the "
+            "samples and drop repeated timestamps",
+        ),
+    ],
+    ids=["no sample", "no timestamps", "irregular dates", "earlier date in a later chunk", "earlier date"],
+)
+@pytest.mark.parametrize("block", [2, 3])
+def test_large_files_had_other_errors_than_whole_recordings(
+    run, write, monkeypatch, rows, options, error, block
+):
+    monkeypatch.setattr("rtamt.readers.csv.BLOCK", block)
+    args = ("check", "always(x >= 0)", write("log.csv", rows), *options)
+    expected = (2, "", f"rtamt: log.csv: {error}\n")
+    assert run(*args) == expected
+    monkeypatch.setattr(runner, "LARGE", 0)
+    assert run(*args) == expected
+
+
 def test_info_of_a_recording_tells_what_was_found_and_guessed(run, write):
     assert run("info", write("log.csv", "t [ms],speed [m/s],note\n0,5,go\n100,4,stop\n")) == (
         0,

@@ -178,8 +178,11 @@ class CheckedSamples(OnlineMonitor):
             timestamps = Timestamps(timestamps.seconds, self._recent(0))
         times, ordered = timestamps.seconds, [columns[name] for name in self.input_names]
         if not self._backend.accepts(times, ordered):
-            check_increasing(times, last, self.samples)
-            check_regular(times, self._period, self._tolerance, last, self.samples)
+            dates = None if timestamps.original.dtype.kind != "M" else timestamps.original
+            if dates is not None and last is not None:
+                dates = np.concatenate((self._recent(1), dates))
+            check_increasing(times, last, self.samples, dates)
+            check_regular(times, self._period, self._tolerance, last, self.samples, dates)
             for name, column in columns.items():
                 arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
         return timestamps, ordered
