@@ -75,7 +75,7 @@ DirectEvaluator::DirectEvaluator(std::vector<nb::str> names, nb::str time, const
 }
 
 nb::object DirectEvaluator::run(const nb::handle& data) {
-    const auto given = GivenColumns::of(numpy_, data, names_, time_);
+    const auto given = GivenColumns::of_dict_or_table(numpy_, data, names_, time_);
     if (!given || given->count < admitted_.fewest || given->count > admitted_.most) {
         return nb::none();
     }
@@ -180,9 +180,11 @@ void add_direct_evaluator(nb::module_& m) {
             nb::arg("threads"), nb::arg("signal"), nb::arg("regular_times"),
             nb::arg("stored_times"), nb::arg("exact_period"))
         .def("run", &DirectEvaluator::run, nb::arg("data").none(),
-             "Evaluate a dict of columns; return memory, count, whether there are timestamps, and "
-             "the signal. None if anything has to be converted, is wrong, or has no value. The "
-             "memory, a bytearray or a list of arrays, has the columns and the timestamps.");
+             "Evaluate a dict of columns, or a tuple of an array and a dict from names to its "
+             "columns; return memory, count, whether there are timestamps, and the signal. None if "
+             "anything "
+             "has to be converted, is wrong, or has no value. The memory, a bytearray or a list of "
+             "arrays, has the columns and the timestamps.");
 }
 
 } // namespace rtamt::python

@@ -39,61 +39,58 @@ struct NotANumber {
 
 // Copies items as doubles; returns whether none is NaN.
 template <class Item>
-bool copy_items(const Py_buffer& view, double* out) noexcept {
-    const auto* bytes = static_cast<const std::byte*>(view.buf);
-    const Py_ssize_t count = view.shape[0];
+bool copy_items(const Items& items, double* out) noexcept {
+    const auto count = static_cast<std::ptrdiff_t>(items.count);
     std::uint64_t wrong = 0; // as wide as a double, for a loop of vector instructions
-    const auto copy = [&](Py_ssize_t step) {
-        for (Py_ssize_t i = 0; i < count; ++i) {
+    const auto copy = [&](std::ptrdiff_t step) {
+        for (std::ptrdiff_t i = 0; i < count; ++i) {
             Item item; // NOLINT(*-pro-type-member-init,*-init-variables): memcpy writes it
-            std::memcpy(&item, bytes + i * step, sizeof(Item));
+            std::memcpy(&item, items.first + i * step, sizeof(Item));
             const auto number = static_cast<double>(item);
             out[i] = number;
             wrong |= static_cast<std::uint64_t>(std::isnan(number));
         }
     };
-    constexpr auto next = static_cast<Py_ssize_t>(sizeof(Item));
-    view.strides[0] == next ? copy(next) : copy(view.strides[0]);
+    constexpr auto next = static_cast<std::ptrdiff_t>(sizeof(Item));
+    items.step == next ? copy(next) : copy(items.step);
     return wrong == 0;
 }
 
 // The same of doubles, which most are: as fast as memory where they are contiguous.
-bool copy_doubles(const Py_buffer& view, double* out) noexcept {
-    if (view.strides[0] != sizeof(double)) return copy_items<double>(view, out);
-    const auto count = static_cast<std::size_t>(view.shape[0]);
-    std::memcpy(out, view.buf, count * sizeof(double));
-    return all_numbers({out, count});
+bool copy_doubles(const Items& items, double* out) noexcept {
+    if (items.step != sizeof(double)) return copy_items<double>(items, out);
+    std::memcpy(out, items.first, items.count * sizeof(double));
+    return all_numbers({out, items.count});
 }
 
-bool copy_buffer(const Buffer& buffer, double* out) noexcept {
-    const Py_buffer& view = buffer.view();
-    switch (buffer.format()) {
+bool copy_numbers(const Items& items, double* out) noexcept {
+    switch (items.format) {
     case 'd':
-        return copy_doubles(view, out);
+        return copy_doubles(items, out);
     case 'f':
-        return copy_items<float>(view, out);
+        return copy_items<float>(items, out);
     case '?':
-        return copy_items<std::uint8_t>(view, out);
+        return copy_items<std::uint8_t>(items, out);
     case 'b':
-        return copy_items<signed char>(view, out);
+        return copy_items<signed char>(items, out);
     case 'B':
-        return copy_items<unsigned char>(view, out);
+        return copy_items<unsigned char>(items, out);
     case 'h':
-        return copy_items<short>(view, out);
+        return copy_items<short>(items, out);
     case 'H':
-        return copy_items<unsigned short>(view, out);
+        return copy_items<unsigned short>(items, out);
     case 'i':
-        return copy_items<int>(view, out);
+        return copy_items<int>(items, out);
     case 'I':
-        return copy_items<unsigned int>(view, out);
+        return copy_items<unsigned int>(items, out);
     case 'l':
-        return copy_items<long>(view, out);
+        return copy_items<long>(items, out);
     case 'L':
-        return copy_items<unsigned long>(view, out);
+        return copy_items<unsigned long>(items, out);
     case 'q':
-        return copy_items<long long>(view, out);
+        return copy_items<long long>(items, out);
     case 'Q':
-        return copy_items<unsigned long long>(view, out);
+        return copy_items<unsigned long long>(items, out);
     default:
         return false;
     }
@@ -114,7 +111,10 @@ Given::Given(const NumPy& numpy, nb::object object) noexcept : object_(std::move
         if (!buffer_) { // of dates, for instance
             PyErr_Clear();
         } else if (buffer_.view().ndim == 1) {
-            count_ = static_cast<std::size_t>(buffer_.view().shape[0]);
+            const Py_buffer& view = buffer_.view();
+            count_ = static_cast<std::size_t>(view.shape[0]);
+            items_ = {buffer_.format(), buffer_.values<const std::byte>(), *count_,
+                      view.strides[0]};
         }
     } else if (PyList_CheckExact(given) || PyTuple_CheckExact(given)) {
         count_ = static_cast<std::size_t>(sequence_size(given));
@@ -122,7 +122,7 @@ Given::Given(const NumPy& numpy, nb::object object) noexcept : object_(std::move
 }
 
 bool Given::copy(double* out) const noexcept {
-    if (buffer_) return copy_buffer(buffer_, out);
+    if (items_) return copy_numbers(*items_, out);
     const nb::ft_object_guard guard(object_);
     if (std::cmp_not_equal(sequence_size(object_.ptr()), *count_)) return false;
     for (std::size_t i = 0; i < *count_; ++i) {
@@ -133,9 +133,9 @@ bool Given::copy(double* out) const noexcept {
 }
 
 bool Given::copy_floats(double* out) const noexcept {
-    if (buffer_) {
-        if (buffer_.format() != 'd') return false;
-        (void)copy_buffer(buffer_, out);
+    if (items_) {
+        if (items_->format != 'd') return false;
+        (void)copy_numbers(*items_, out);
         return true;
     }
     const nb::ft_object_guard guard(object_);
@@ -149,11 +149,9 @@ bool Given::copy_floats(double* out) const noexcept {
 }
 
 const double* Given::in_place() const noexcept {
-    const Py_buffer& view = buffer_.view();
-    const bool plain = buffer_ && buffer_.format() == 'd' &&
-                       std::cmp_equal(view.strides[0], sizeof(double)) &&
-                       reinterpret_cast<std::uintptr_t>(view.buf) % alignof(double) == 0;
-    return plain ? buffer_.values<double>() : nullptr;
+    const bool plain = items_ && items_->format == 'd' && items_->step == sizeof(double) &&
+                       reinterpret_cast<std::uintptr_t>(items_->first) % alignof(double) == 0;
+    return plain ? reinterpret_cast<const double*>(items_->first) : nullptr;
 }
 
 nb::object item_of(const nb::handle& dict, const nb::handle& name) noexcept {
@@ -163,26 +161,75 @@ nb::object item_of(const nb::handle& dict, const nb::handle& name) noexcept {
     return found;
 }
 
+namespace {
+
+// Whether all columns are read here. `find` passes what makes the column of a name to a function,
+// and returns false where there is none. `size`: of names.
+template <class Find>
+[[nodiscard]] bool take(GivenColumns& given, const Find& find, Py_ssize_t size,
+                        std::span<const nb::str> names, const nb::handle& time) {
+    given.columns.reserve(names.size());
+    const auto add = [&](auto&&... parts) {
+        given.columns.emplace_back(std::forward<decltype(parts)>(parts)...);
+    };
+    for (const nb::str& name : names) {
+        if (!find(name, add)) return false;
+        const auto count = given.columns.back().count();
+        if (!count || *count != *given.columns.front().count()) return false;
+        given.count = *count;
+    }
+    if (given.count == 0) return false;
+    const auto set = [&](auto&&... parts) {
+        given.times.emplace(std::forward<decltype(parts)>(parts)...);
+    };
+    if (find(time, set)) return given.times->count() == given.count;
+    return std::cmp_less_equal(size, names.size()); // one of the others may hold the timestamps
+}
+
+} // namespace
+
 std::optional<GivenColumns> GivenColumns::of(const NumPy& numpy, const nb::handle& data,
                                              std::span<const nb::str> names,
                                              const nb::handle& time) {
     if (!PyDict_CheckExact(data.ptr())) return std::nullopt;
-    GivenColumns given;
-    given.columns.reserve(names.size());
-    for (const nb::str& name : names) {
+    const auto find = [&](const nb::handle& name, const auto& use) {
         nb::object found = item_of(data, name);
-        if (!found.is_valid()) return std::nullopt;
-        const auto count = given.columns.emplace_back(numpy, std::move(found)).count();
-        if (!count || *count != *given.columns.front().count()) return std::nullopt;
-        given.count = *count;
+        if (!found.is_valid()) return false;
+        use(numpy, std::move(found));
+        return true;
+    };
+    std::optional<GivenColumns> given(std::in_place);
+    if (!take(*given, find, PyDict_Size(data.ptr()), names, time)) given.reset();
+    return given;
+}
+
+std::optional<GivenColumns> GivenColumns::of_dict_or_table(const NumPy& numpy,
+                                                           const nb::handle& data,
+                                                           std::span<const nb::str> names,
+                                                           const nb::handle& time) {
+    if (!PyTuple_CheckExact(data.ptr())) return of(numpy, data, names, time);
+    const auto pair = nb::borrow<nb::tuple>(data);
+    const nb::object table = pair[0];
+    const nb::object places = pair[1];
+    std::optional<GivenColumns> given(std::in_place);
+    given->table = Buffer(table.ptr(), PyBUF_STRIDES | PyBUF_FORMAT);
+    if (!given->table) { // of dates, for instance
+        PyErr_Clear();
+        return std::nullopt;
     }
-    if (given.count == 0) return std::nullopt;
-    if (nb::object found = item_of(data, time); found.is_valid()) {
-        given.times.emplace(numpy, std::move(found));
-        if (given.times->count() != given.count) return std::nullopt;
-    } else if (std::cmp_greater(PyDict_Size(data.ptr()), names.size())) {
-        return std::nullopt; // one of the others may hold the timestamps
-    }
+    const Py_buffer& view = given->table.view();
+    if (view.ndim != 2) return std::nullopt;
+    const auto find = [&](const nb::handle& name, const auto& use) {
+        const nb::object place = item_of(places, name);
+        Py_ssize_t column = -1;
+        if (!place.is_valid() || !nb::try_cast(place, column)) return false;
+        if (column < 0 || column >= view.shape[1]) return false;
+        use(Items{given->table.format(),
+                  given->table.values<const std::byte>() + column * view.strides[1],
+                  static_cast<std::size_t>(view.shape[0]), view.strides[0]});
+        return true;
+    };
+    if (!take(*given, find, PyDict_Size(places.ptr()), names, time)) given.reset();
     return given;
 }
 
@@ -280,7 +327,7 @@ namespace {
 nb::object read_columns(const NumPy& numpy, const nb::handle& data,
                         const std::vector<nb::str>& names, const nb::handle& time,
                         std::optional<double> period, double tolerance) {
-    const auto given = GivenColumns::of(numpy, data, names, time);
+    const auto given = GivenColumns::of_dict_or_table(numpy, data, names, time);
     if (!given) return nb::none();
     const std::size_t count = given->count;
     nb::object times = nb::none();
@@ -322,9 +369,9 @@ void add_recording(nb::module_& m) {
         },
         nb::arg("data"), nb::arg("names"), nb::arg("time"), nb::arg("period").none(),
         nb::arg("tolerance"),
-        "Copy the columns of a trace, a dict; return the timestamps (None without), the period "
-        "(inferred if None), columns by name and their length. None if anything has to be "
-        "converted, or is wrong.");
+        "Copy the columns of a trace, a dict, or a tuple of an array and a dict from names to its "
+        "columns; return the timestamps (None without), the period (inferred if None), columns "
+        "by name and their length. None if anything has to be converted, or is wrong.");
 }
 
 } // namespace rtamt::python

@@ -108,6 +108,100 @@ def test_plain_frames_are_evaluated_directly(library: Any) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    "other",
+    [["on"] * 9, np.arange(9) > 3, np.arange(9) * np.timedelta64(1, "s"), [None] * 9, [1, "a"] * 4 + [None]],
+    ids=["texts", "truths", "durations", "nulls", "mixed"],
+)
+@pytest.mark.parametrize("place", ["first", "last"])
+def test_frames_of_pandas_with_numbers_beside_other_values_are_evaluated_directly(
+    other: Any, place: str
+) -> None:
+    plain = {"time": np.arange(9) * 0.1, "x": np.arange(9), "y": np.ones(9)}
+    unread = {"z": pd.Series(other)}
+    data = unread | plain if place == "first" else plain | unread
+    assert facts(evaluate_twice(FORMULAS[1], pd.DataFrame(data))) == facts(
+        rtamt.parse(FORMULAS[1]).evaluate(plain)
+    )
+
+
+FRAMES = {
+    "numbers": {"x": [1.0, 2.0, 0.0], "y": [3.0, 1.0, 2.0]},
+    "integers": {"x": [1, 2, 2**53 + 1], "y": np.array([3, 1, 2**64 - 1], np.uint64)},
+    "single": {"x": np.array([0.1, 0.2, 0.3], np.float32), "y": np.array([1, 2, 3], np.int8)},
+    "truths": {"x": [True, False, True], "y": [False, False, True]},
+    "truths beside numbers": {"x": [True, False, True], "y": [3.0, 1.0, 2.0]},
+    "nullable": {"x": pd.array([1, 2, 3], "Int64"), "y": pd.array([0.5, 1.5, 2.5], "Float64")},
+    "null": {"x": pd.array([1, None, 3], "Int64"), "y": [3.0, 1.0, 2.0]},
+    "nullable truths": {"x": pd.array([True, False, True], "boolean"), "y": [3.0, 1.0, 2.0]},
+    "categories": {"x": pd.Categorical([1.0, 2.0, 1.0]), "y": [3.0, 1.0, 2.0]},
+    "NaN": {"x": [1.0, float("nan"), 0.0], "y": [3.0, 1.0, 2.0]},
+    "infinite": {"x": [1.0, float("inf"), 0.0], "y": [3.0, 1.0, 2.0]},
+    "half": {"x": np.array([0.1, 0.2, 0.3], np.float16), "y": np.array([1, 2, 3], np.float16)},
+    "complex": {"x": np.array([1j, 2, 3]), "y": np.array([1j, 2, 3])},
+    "texts": {"x": ["1", "2", "3"], "y": ["1", "2", "3"]},
+    "dates": {"x": np.arange(3) * np.timedelta64(1, "s"), "y": np.arange(3) * np.timedelta64(2, "s")},
+    "big-endian": {"x": np.array([1.0, 2.0, 0.0], ">f8"), "y": np.array([3.0, 1.0, 2.0], ">f8")},
+}
+
+
+@pytest.mark.parametrize("number", [2, 4], ids=["regular", "irregular"])
+@pytest.mark.parametrize("kind", FRAMES)
+def test_frames_of_pandas_of_any_type_evaluate_as_their_columns_do(kind: str, number: int) -> None:
+    data = {"time": np.array([0, 1, number], float), **FRAMES[kind]}
+    frame = pd.DataFrame(data)
+    wide = pd.concat([frame, frame[["x", "y"]].rename(columns={"x": "u", "y": "v"})], axis=1)
+    split = pd.DataFrame({"time": data["time"]})
+    for name, values in FRAMES[kind].items():
+        split[name] = values  # a block of memory of its own
+    spec = rtamt.parse(FORMULAS[1])
+    spec.evaluate({"time": [0.0, 1.0, 2.0], "x": [1.0, 2.0, 3.0], "y": [0.0, 0.0, 0.0]})
+    expected = outcome(lambda: facts(rtamt.parse(FORMULAS[1]).evaluate(MappingProxyType(columns_of(frame)))))
+    for each in (frame, wide, split, frame.iloc[::-1].iloc[::-1], frame):
+        copy = each.copy()
+        assert outcome(lambda one=each: facts(spec.evaluate(one))) == expected
+        pd.testing.assert_frame_equal(each, copy, check_dtype=False)  # copies have the native byte order
+
+
+def columns_of(frame: pd.DataFrame) -> dict[str, Any]:
+    """Return the columns of a frame as its library converts each by itself."""
+    return {str(name): frame[name] for name in frame}
+
+
+def test_frames_of_pandas_with_equal_columns_are_told_apart_by_their_values() -> None:
+    plain = {"time": np.arange(9) * 0.1, "x": np.arange(9) * 1.0, "y": np.ones(9)}
+    numbers = pd.DataFrame(plain)
+    texts = pd.DataFrame({**plain, "y": ["a"] * 9})
+    texts.columns = numbers.columns
+    spec = rtamt.parse(FORMULAS[1])
+    expected = facts(rtamt.parse(FORMULAS[1]).evaluate(plain))
+    for _ in range(3):
+        assert facts(spec.evaluate(numbers)) == expected
+        with pytest.raises(rtamt.TraceError, match="'y'"):
+            spec.evaluate(texts)
+
+
+def test_a_column_of_pandas_called_like_a_method_of_polars_is_read_as_a_column() -> None:
+    data = {"time": np.arange(9) * 0.1, "get_column": np.arange(9) * 1.0, "z": ["a"] * 9}
+    result = evaluate_twice("once(get_column >= 2)", pd.DataFrame(data))
+    assert result.robustness == -2.0
+
+
+def test_frames_of_pandas_with_two_equal_names_or_levels_of_names_are_not_read_at_once() -> None:
+    frame = pd.DataFrame({"time": np.arange(9) * 0.1, "x": np.arange(9) * 1.0, "y": np.ones(9)})
+    spec = rtamt.parse("x >= 0")
+    assert spec.evaluate(frame).robustness == 0.0
+    assert spec.evaluate(frame).robustness == 0.0
+    for names in (["time", "x", "x"], ["time", "time", "x"]):
+        twice = frame.set_axis(names, axis=1)
+        with pytest.raises(rtamt.TraceError):
+            spec.evaluate(twice)
+    levels = frame.set_axis(pd.MultiIndex.from_tuples([("time", ""), ("x", "a"), ("z", "a")]), axis=1)
+    assert outcome(lambda: facts(spec.evaluate(levels))) == outcome(
+        lambda: facts(rtamt.parse("x >= 0").evaluate(levels))
+    )
+
+
 @pytest.mark.parametrize("time", ["discrete", "dense"])
 def test_the_signal_of_a_result_is_one_object_with_the_times_of_the_trace(time: str) -> None:
     data = {"time": np.arange(9) * 0.5, "x": np.linspace(0, 2, 9)}

@@ -626,11 +626,11 @@ class DirectEvaluator:
         exact_period: Fraction,
     ) -> None: ...
     def run(self, data: Any) -> tuple[bytearray | list[NDArray[np.float64]], int, bool, Signal] | None:
-        """Evaluate a dict of columns.
+        """Evaluate a dict of columns, or a tuple of an array and a dict from names to its columns.
 
-        Return them, and the timestamps if there are any, as rows of a bytearray or as a list of arrays; the number of
-        samples, whether there are timestamps, and the robustness. None for data that has to be converted, is wrong, or
-        makes no value.
+        Return the columns, and the timestamps if there are any, as rows of a bytearray or as a list of arrays; the
+        number of samples, whether there are timestamps, and the robustness. None for data that has to be converted,
+        is wrong, or makes no value.
         """
 
 class DenseDirectEvaluator:
@@ -670,7 +670,7 @@ def read_columns(
     period: float | None,
     tolerance: float,
 ) -> tuple[NDArray[np.float64] | None, float, dict[str, NDArray[np.float64]], int] | None:
-    """Copy the columns of a trace, a dict.
+    """Copy the columns of a trace, a dict, or a tuple of an array and a dict from names to its columns.
 
     Return the timestamps (None without), the period (inferred if None), columns by name and their length. None if
     anything has to be converted, or is wrong.

@@ -29,11 +29,12 @@ class Direct(NamedTuple):
     """Evaluates one formula over recordings that need no conversion.
 
     ``run``: from data in a dict to what was found; None for data that have to be read, checked or evaluated in the
-    general way. ``columns``: from other data and the variables to such a dict; None where that is impossible.
+    general way. ``columns``: from other data and the variables to such a dict, or what else ``run`` reads; None where
+    that is impossible.
     """
 
     run: Callable[[Any], Any]
-    columns: Callable[[Any, Sequence[str]], dict[str, Any] | None]
+    columns: Callable[[Any, Sequence[str]], Any]
     reading: Reading
 
     @staticmethod

@@ -45,57 +45,78 @@ def read_discrete(data: Any, names: Sequence[str], domain: Discrete) -> Discrete
 
 
 class _Seen(NamedTuple):
-    """The columns of a frame that was read, and the variables in them, each with its place in an index of pandas.
+    """A frame that was read: its class, its columns, the variables, and the columns to read with their places.
 
-    Frames that are parts of one frame share its index, and frames of one source have equal columns.
+    Frames that are parts of one frame share its index of columns in pandas, and frames of one source have equal lists
+    of columns in polars. ``at_once``: the rows up to which all columns of a frame of pandas are read at once, None for
+    polars.
     """
 
+    kind: Any
     columns: Any
     names: Sequence[str]
     wanted: dict[str, Any]
+    at_once: int | None
 
 
-_last_seen = _Seen(None, (), {})
+_last_seen = _Seen(None, (), (), {}, None)
 
 
-def frame_columns(data: Any, names: Sequence[str]) -> dict[str, Any] | None:
-    """Return the columns of a frame of pandas or polars as arrays; None for anything else."""
-    library = _library_of(data.__class__)
-    if library is None:
-        return None
+def frame_columns(data: Any, names: Sequence[str]) -> dict[str, Any] | tuple[Any, dict[str, int]] | None:
+    """Return the columns of a frame of pandas or polars for the core; None for anything else.
+
+    They are arrays by name, or those of one array, and the place of each name.
+    """
     global _last_seen  # noqa: PLW0603 - replaced as a whole
-    columns, seen = data.columns, _last_seen
-    listed = columns.__class__ is list
-    same = seen.columns is columns or (listed and seen.columns.__class__ is list and seen.columns == columns)
-    if not same or seen.names != names:
-        wanted = {
-            name: None if listed else columns.get_loc(name) for name in (TIME, *names) if name in columns
-        }
-        if len(wanted) != len(columns) or TIME not in wanted:
-            check_frame(data, TIME, names)
-        seen = _Seen(columns, names, wanted)
-        if TIME in wanted:  # otherwise the check depends on more than names
-            _last_seen = seen
-    if TIME not in seen.wanted and (
-        (len(columns) and columns[0] not in names)
-        or (library == "pandas" and getattr(data.index, "step", 0) != 1)
+    kind, columns, variables, wanted, at_once = _last_seen
+    if (
+        data.__class__ is not kind
+        or variables != names
+        or ((given := data.columns) is not columns and (given.__class__ is not list or given != columns))
     ):
-        return None  # the conversion of the samples considers whether a period is given
-    if library == "pandas" and len(columns) * len(data.index) <= _SMALL and columns.is_unique:
-        rows = data.values.T  # a frame takes longer to return a column than an evaluation of it takes
-        return {name: rows[place] for name, place in seen.wanted.items()}
-    column = data.__getitem__ if library == "pandas" else data.get_column
+        seen = _look(data, names) if _is_frame(data.__class__) else None
+        if seen is None:
+            return None
+        wanted, at_once = seen.wanted, seen.at_once
+        if TIME in wanted:  # otherwise what is read depends on more than names
+            _last_seen = seen
+    if at_once is not None and len(data.index) <= at_once:
+        values = data.values  # a frame takes longer to return a column than an evaluation of it takes
+        if values.dtype.kind != "O":
+            return values, wanted
+        if TIME in wanted:  # numbers beside texts, truth values or dates, as probably in the next frame
+            _last_seen = _Seen(data.__class__, data.columns, names, wanted, -1)
+    column = data.get_column if at_once is None else data.__getitem__
     try:
-        return {name: column(name).to_numpy() for name in seen.wanted}
+        return {name: column(name).to_numpy() for name in wanted}
     except Exception:  # noqa: BLE001 - a library's own: polars has integers of 128 bits
         return None
 
 
+def _look(data: Any, names: Sequence[str]) -> _Seen | None:
+    """Return what to read of a frame; None if that depends on whether a period is given.
+
+    Raises :class:`TraceError` if the timestamps may be in another column than ``time``, or in the index.
+    """
+    columns = data.columns
+    found = [name for name in (TIME, *names) if name in columns]
+    if len(found) != len(columns) or TIME not in found:
+        check_frame(data, TIME, names)
+    index = getattr(data, "index", None)
+    if TIME not in found and (
+        (len(columns) and columns[0] not in names) or (index is not None and getattr(index, "step", 0) != 1)
+    ):
+        return None
+    if index is None:
+        return _Seen(data.__class__, columns, names, dict.fromkeys(found), None)
+    at_once = _SMALL // len(columns) if len(columns) and columns.is_unique else -1
+    return _Seen(data.__class__, columns, names, {name: columns.get_loc(name) for name in found}, at_once)
+
+
 @lru_cache(16)
-def _library_of(kind: type) -> str | None:
-    """Return the library of a class of frames; None for any other class."""
-    library = kind.__module__.partition(".")[0]
-    return library if kind.__name__ == "DataFrame" and library in ("pandas", "polars") else None
+def _is_frame(kind: type) -> bool:
+    """Return whether a class is that of frames of pandas or polars."""
+    return kind.__name__ == "DataFrame" and kind.__module__.partition(".")[0] in ("pandas", "polars")
 
 
 class Reading(NamedTuple):
