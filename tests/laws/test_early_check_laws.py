@@ -104,7 +104,7 @@ def test_nothing_in_dense_time_is_read_behind_the_sample_that_decides_the_last_r
     assert any(map(check.take, chunks()))
     assert [(d.satisfied, d.first_violation, d.decided_at, d.samples) for d in check.decided] == [
         (False, 1.5, 1.5, 2),
-        (True, None, 4.25, 7),
+        (True, None, 4.25, 4),
     ]
 
 

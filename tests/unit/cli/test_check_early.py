@@ -89,6 +89,17 @@ def test_early_with_several_requirements_stops_when_all_are_decided(run, write):
     assert "note: a.csv: R2 is decided at 2 s, later samples are not checked" in table
 
 
+def test_early_counted_the_samples_of_the_variables_of_other_requirements(run, write):
+    write("two.stl", "require A: always(x >= 0)\nrequire B: always(y >= 0)\n")
+    write("a.csv", "time,x,y\n0,1,\n1,1,\n2,1,1\n3,,-1\n4,-1,1\n5,1,1\n")
+    answer = run("check", "two.stl", "a.csv", "--early", "--json", "--time", "dense")
+    found = [json.loads(line) for line in answer.out.splitlines()]
+    assert [(row["first_violation"], row["decided_at"], row["samples"]) for row in found] == [
+        (4, 4, 4),
+        (3, 3, 2),
+    ]
+
+
 def test_early_leaves_nothing_to_write(run, write):
     write("a.csv", GOOD)
     answer = run("check", "x > 0", "a.csv", "--early", "-o", "out.csv")

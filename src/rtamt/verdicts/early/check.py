@@ -38,7 +38,8 @@ class Decided:
     """A verdict that no later sample can change.
 
     ``start``: of the trace. ``decided_at``: the time of the sample that decided verdict and first violation.
-    ``samples``: how many there were up to it. ``period``: None in dense time. ``bounds``: of the robustness, by then.
+    ``samples``: how many of its variables there were up to it. ``period``: None in dense time. ``bounds``: of the
+    robustness, by then.
     """
 
     satisfied: bool

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.signals import dense_arrays
 from rtamt.signals.dense import Dense
+from rtamt.signals.sample_count import SampleCount
 from rtamt.signals.ticks import TimeScale
 from rtamt.verdicts.early.check import EarlyCheck, Watch
 from rtamt.verdicts.early.dense import push_tick
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from fractions import Fraction
 
+    from rtamt.signals.dense_arrays import Samples
     from rtamt.signals.outcomes import Interval
     from rtamt.specification import Specification
 
@@ -38,7 +40,6 @@ class DenseEarlyCheck(EarlyCheck):
         self._scale: TimeScale | None = None
         self._counts = dict.fromkeys(self._names, 0)
         self._lasts: dict[str, int] = {}
-        self._samples = 0
 
     def take(self, chunk: Any) -> bool:
         """See :class:`EarlyCheck`."""
@@ -49,28 +50,39 @@ class DenseEarlyCheck(EarlyCheck):
         times = [each for each, _ in given.values()]
         scale = TimeScale.of(self._tick, times) if self._scale is None else self._scale.widened(times)
         self._scale = scale
+        samples: dict[str, Samples] = {}
         rows: dict[int, dict[str, float]] = {}
         for name, column in given.items():
             ticks, values = dense_arrays.samples_of(
                 column, name, scale, self._counts[name], self._lasts.get(name), self._types.get(name)
             )
+            samples[name] = ticks, values
             self._counts[name] += len(ticks)
             self._lasts[name] = int(ticks[-1])
             for tick, value in zip(ticks.tolist(), values.tolist(), strict=True):
                 rows.setdefault(tick, {})[name] = value
         for tick in sorted(rows):
-            self._samples += 1
             for number, watch in list(self._watches.items()):
                 if watch.take(tick, rows[tick]):
-                    self._close(number, watch.start, watch.violated_at, watch.newest, self._samples, None)
+                    watch.count.take(_up_to(tick, samples))
+                    total = watch.count.total
+                    self._close(number, watch.start, watch.violated_at, watch.newest, total, None)
                     del self._watches[number]
             if not self._open:
                 return True
+        for watch in self._watches.values():
+            watch.count.take(samples)
         return False
 
     def _time(self, tick: int) -> Any:
         assert self._scale is not None
         return self._scale.time(tick)
+
+
+def _up_to(tick: int, samples: Mapping[str, Samples]) -> dict[str, Samples]:
+    """Return the samples up to a tick."""
+    ends = {name: int(ticks.searchsorted(tick, "right")) for name, (ticks, _) in samples.items()}
+    return {name: (ticks[: ends[name]], values[: ends[name]]) for name, (ticks, values) in samples.items()}
 
 
 class _Ticks(Watch):
@@ -81,6 +93,8 @@ class _Ticks(Watch):
         domain, (truth, robustness) = Dense(tick), self._formulas
         self._verdicts = DenseEagerMonitor(truth, domain, watch=self._watched, backend=spec.backend)
         self._bounds = DenseIntervalMonitor(robustness, domain, at="start", backend=spec.backend)
+        #: The samples of its variables in the chunks before.
+        self.count = SampleCount(self.names)
         self._firsts: dict[str, int] = {}
         #: The tick at which the trace starts, once all variables have.
         self.start = 0
