@@ -19,6 +19,13 @@ using Piece = LargeMemory::Piece;
 constexpr std::size_t huge = std::size_t{2} << 20U; // bytes of a huge page
 constexpr std::size_t page = std::size_t{4} << 10U;
 
+// Bytes that are kept for reuse: more where the system can take them back.
+#ifdef MADV_FREE
+constexpr std::size_t most_kept = std::size_t{128} << 20U;
+#else
+constexpr std::size_t most_kept = std::size_t{32} << 20U;
+#endif
+
 [[nodiscard]] std::align_val_t alignment(std::size_t size) noexcept {
     return static_cast<std::align_val_t>(size >= huge ? huge : page);
 }
@@ -54,9 +61,12 @@ class Spare {
     }
 
     void keep(const Piece& piece) noexcept {
-        if (piece.size > LargeMemory::most_kept) return release(piece);
+        if (piece.size > most_kept) return release(piece);
+#ifdef MADV_FREE
+        if (piece.size >= huge) (void)::madvise(piece.memory, piece.size, MADV_FREE);
+#endif
         const std::scoped_lock lock(mutex_);
-        while (count_ == pieces_.size() || bytes_ + piece.size > LargeMemory::most_kept)
+        while (count_ == pieces_.size() || bytes_ + piece.size > most_kept)
             release(remove(0));
         pieces_[count_++] = piece;
         bytes_ += piece.size;

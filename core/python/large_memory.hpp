@@ -4,7 +4,9 @@
 // A page costs more when it is touched for the first time than the evaluation of its samples, and
 // the C library returns large pieces to the system as soon as they are freed.
 //
-// Cost: a lock and a look at a few pieces. Memory: `most_kept` bytes at most are kept for reuse.
+// Cost: a lock and a look at a few pieces. Memory: 32 pieces are kept for reuse, of 128 MiB
+// together; on Linux, those of huge pages are taken back when the system is short of memory.
+// Elsewhere the limit is 32 MiB.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -30,8 +32,6 @@ class LargeMemory {
     LargeMemory& operator=(const LargeMemory&) = delete;
     LargeMemory(LargeMemory&&) = delete;
     LargeMemory& operator=(LargeMemory&&) = delete;
-
-    static constexpr std::size_t most_kept = std::size_t{32} << 20U;
 
     // Of `size` bytes.
     struct Piece {
