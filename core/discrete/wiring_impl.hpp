@@ -294,13 +294,14 @@ void Wiring<D>::grow(std::size_t last) {
     connect();
 }
 
-// Blocks are as long as keeps the registers in the first cache: calls of kernels are fewer, and
-// more of each result is written at once. Code that is called keeps its blocks.
+// Blocks are as long as keeps the registers in a part of the second cache: kernels are called less
+// often, and more of each column is read and written at once, which is worth more than the first
+// cache. Code that is called keeps its blocks.
 template <ValueDomain D>
 void Wiring<D>::grow_for_trace(std::size_t slots, std::span<const std::size_t> bypassed)
     requires UniformDomain<D>
 {
-    constexpr std::size_t cache = std::size_t{24} * 1024;
+    constexpr std::size_t cache = std::size_t{64} * 1024;
     const std::size_t used = std::max<std::size_t>(formulas_.rows() - bypassed.size(), 1);
     const std::size_t longest = program_.calls.empty() ? longest_trace_block * block : block;
     const std::size_t fitting = std::clamp(cache / (used * sizeof(Formula)), block, longest);
