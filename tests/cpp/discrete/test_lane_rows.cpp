@@ -8,7 +8,7 @@ using namespace rtamt;
 using namespace rtamt::discrete;
 
 TEST_CASE("rows become lanes, and lanes rows, for any number of samples") {
-    for (const std::size_t count : {0U, 1U, 2U, 5U, 16U}) {
+    for (const std::size_t count : {0U, 1U, 2U, 5U, 16U, 64U, 65U, 131U}) {
         std::vector<std::vector<double>> rows(8, std::vector<double>(count));
         std::vector<std::vector<double>> back(8, std::vector<double>(count));
         LaneRows<const double, 8> from{};
