@@ -237,7 +237,7 @@ class Result(_Slots):
     @cached_property
     def _first_violation(self) -> Any:
         spec = self.specification
-        if len(spec.requirements) > 1:
+        if len(spec.document.requirements) > 1:
             violations = [part._first_violation for part in self.requirements.values()]
             return min((each for each in violations if each is not None), default=None)
         if isinstance(self.known, Findings) and self.known.violations:
