@@ -110,7 +110,8 @@ class Groups:
         """Return the elements of all groups in their order."""
         sizes = self.stop - self.first
         before = np.cumsum(sizes) - sizes
-        return np.arange(int(sizes.sum())) + np.repeat(self.first - before, sizes)
+        found: Ints = np.arange(int(sizes.sum())) + np.repeat(self.first - before, sizes)
+        return found
 
     def largest(self, values: Ints) -> Ints:
         """Return the largest value in each group; ``values``: of the sequence."""
