@@ -93,8 +93,8 @@ def timed(formula: Formula) -> tuple[Apply, ...]:
     """Return the nodes of a formula that have an interval, in postorder.
 
     >>> from rtamt.language.parsing.parser import parse_formula
-    >>> timed(parse_formula("always[0:1](once[0:2](x) >= 3)"))
-    (<formula once[0:2](x)>, <formula always[0:1](once[0:2](x) >= 3)>)
+    >>> timed(parse_formula("always[0:1](once[0:2](x >= 3))"))
+    (<formula once[0:2](x >= 3)>, <formula always[0:1](once[0:2](x >= 3))>)
     """
     below = contents(formula).timed_below
     return (*below, formula) if isinstance(formula, Apply) and formula.interval is not None else below
