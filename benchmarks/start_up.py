@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass, field
+from datetime import date
 from operator import attrgetter
 from pathlib import Path
 from statistics import median
@@ -172,7 +173,7 @@ def section(starts: Mapping[str, Start]) -> str:
         "the bytecode of all is cached. The first columns are processor time from the start of the process until the",
         "tool is imported and until it has given the verdict, each with what of it is beyond that of Python alone.",
         "Ours loads parser, compiler and core on first use: what a program waits for is the verdict.",
-        f"The load average was {os.getloadavg()[0]:.0f}.",
+        f"Measured on {date.today()}; the load average was {os.getloadavg()[0]:.0f}.",
         "",
         "| tool | imported | beyond Python | to the verdict | beyond Python | whole process | elapsed |",
         "|---|---:|---:|---:|---:|---:|---:|",
