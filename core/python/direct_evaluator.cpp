@@ -181,10 +181,9 @@ void add_direct_evaluator(nb::module_& m) {
             nb::arg("stored_times"), nb::arg("exact_period"))
         .def("run", &DirectEvaluator::run, nb::arg("data").none(),
              "Evaluate a dict of columns, or a tuple of an array and a dict from names to its "
-             "columns; return memory, count, whether there are timestamps, and the signal. None if "
-             "anything "
-             "has to be converted, is wrong, or has no value. The memory, a bytearray or a list of "
-             "arrays, has the columns and the timestamps.");
+             "columns; return memory, count, whether there are timestamps, and the signal. None "
+             "if anything has to be converted, is wrong, or has no value. The memory, a bytearray "
+             "or a list of arrays, has the columns and the timestamps.");
 }
 
 } // namespace rtamt::python
