@@ -24,7 +24,8 @@ class Times {
 
   // A position as text: a date and the seconds since the start, or seconds.
   text(x) {
-    const seconds = String(Number(x.toPrecision(12))).replace("-", "−");
+    // Positions of dates are differences of large numbers: what follows the microseconds is rounding.
+    const seconds = String(Number(this.dated ? x.toFixed(6) : x.toPrecision(12))).replace("-", "−");
     if (!this.dated) return this.origin ? `${this.origin} + ${seconds} s` : `${seconds} s`;
     const iso = new Date(this.origin + x * 1000).toISOString();
     return `${iso.replace("T", " ").replace(/\.?0*Z$/, "")} (+${seconds} s)`;

@@ -312,3 +312,15 @@ def test_members_and_booleans_are_read_by_name(page, folder):
     values = page.run("[...document.querySelectorAll('.legend .value')].map(value => value.textContent)")
     assert values[:2] == ["true", "MANUAL"]
     assert page.errors == []
+
+
+def test_seconds_after_an_epoch_time_have_no_digits_of_rounding(page, folder):
+    rows = "".join(f"{1_700_000_000 + i / 10:.1f},{5 - i / 4}\n" for i in range(22))
+    (folder / "epoch.csv").write_text(f"time,x\n{rows}")
+    (folder / "epoch.stl").write_text("always(x >= 0)")
+    paths = [str(folder / name) for name in ("epoch.stl", "epoch.csv")]
+    assert main(["report", *paths, "-o", str(folder / "epoch.html")]) == 1
+    open_page(page, folder / "epoch.html")
+    assert "2023-11-14 22:13:22.1 (+2.1 s)" in page.run("document.querySelector('details[open]').textContent")
+    press(page, "violation")
+    assert page.run(BAR) == "2023-11-14 22:13:22.1 (+2.1 s)"

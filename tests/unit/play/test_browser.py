@@ -113,6 +113,14 @@ def test_new_variables_get_a_signal(page):
     assert page.run(f"{decoded}.then(saved => Object.keys(saved.signals))") == ["req", "gnt", "level"]
 
 
+def test_a_variable_may_be_called_like_a_method_of_every_object(page):
+    write(page, "always(valueOf <= 2 and constructor > -1)")
+    until(page, "document.querySelector('#charts h3')?.textContent === 'valueOf'")
+    until(page, f"{WORD} === 'Satisfied'")
+    assert page.run("document.querySelectorAll('.handle').length") == 2
+    assert page.errors == []
+
+
 def test_points_are_dragged_and_the_verdict_follows(page):
     x, y = place(page, ".handle", 3)
     assert page.run(HANDLES)[3] == ["req, point 4 of 5", "5 at 18 s"]

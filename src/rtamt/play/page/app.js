@@ -21,6 +21,7 @@ const EXAMPLE = {
 const state = { text: "", time: "discrete", period: "1s", duration: 30, signals: {}, recording: null, resample: "", focus: null, at: null };
 const withoutPrototype = (signals) => Object.assign(Object.create(null), signals); // any name, even __proto__
 state.signals = withoutPrototype({});
+const own = (object, name) => (object && Object.hasOwn(object, name) ? object[name] : undefined); // not what all objects inherit
 let answer = null; // the last one without an error
 let changes = 0; // of what is evaluated
 let charts = new Map();
@@ -177,8 +178,8 @@ function arrange(names) {
     }
   }
   for (const [name, chart] of charts) {
-    chart.levels = answer?.thresholds?.[name] || [];
-    chart.because = answer?.explanation?.because?.[name] || [];
+    chart.levels = own(answer?.thresholds, name) || [];
+    chart.because = own(answer?.explanation?.because, name) || [];
     if (state.recording) chart.data = drawn()?.lines.find((each) => each.name === name) || chart.data;
     chart.draw();
   }
