@@ -200,7 +200,7 @@ def _raws(table: Any, wanted: Sequence[Field]) -> list[Raw]:
 def _raw(column: Any) -> Raw:
     kind = str(column.type)
     if kind.startswith("decimal"):
-        column = column.cast("float64")
+        column = column.cast("string").cast("float64")  # to the nearest double, which a direct cast may miss
     if not column.null_count and kind in _NUMBERS:
         return values_of(column)
     missing = column.is_null().to_numpy() if column.null_count else None

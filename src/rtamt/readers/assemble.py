@@ -189,7 +189,8 @@ def _raw_chunks(source: Source, selections: Sequence[Selection]) -> Iterator[lis
         yield [raws]
 
 
-_NO_UNIT = "name their column, or leave out time_unit=, on the command line --time-unit"
+_LEAVE_OUT_UNIT = "leave out time_unit=, on the command line --time-unit"
+_NO_UNIT = f"name their column, or {_LEAVE_OUT_UNIT}"
 
 
 # ---- column selection ----------------------------------------------------------------------------
@@ -348,6 +349,12 @@ def timestamps_of(source: Source, selection: Selection, choice: Choice) -> Times
     if selection.time_field is None:
         return None
     unit = choice.units.get(selection.time_field.column, choice.units.get(TIME))
+    table = selection.table
+    if unit is not None and table.has_unit and selection.time_field == table.time_field:
+        raise TraceError(
+            f"the timestamps of {source.name} have a unit, {table.time_field.unit}: {_LEAVE_OUT_UNIT}",
+            variable=TIME,
+        )
     guessed = selection.guessed and selection.time_field.column.lower() != TIME
     return TimestampColumn(selection.time_field, unit, guessed, source.name)
 

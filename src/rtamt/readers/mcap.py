@@ -29,6 +29,7 @@ _RECORD = struct.Struct("<BQ")  # kind, length
 _IN_MESSAGE = struct.Struct("<HIQQ")  # channel, number, time of recording, time of publication
 _IN_CHUNK = struct.Struct("<QQQII")  # first time, last time, size, checksum, length of the compression's name
 _LENGTH = struct.Struct("<Q")
+_END = struct.Struct("<BQQQI")  # kind and length of the footer, the place of the summary, that of its offsets, checksum
 
 
 def salvage(path: str, copy: str) -> str:
@@ -64,31 +65,52 @@ def salvage(path: str, copy: str) -> str:
     return f"the file is damaged at byte {reached:,} of {size:,}: read up to {until} UTC"
 
 
-#: Messages of ROS, and those that rosbags reads.
-_ENCODINGS = ("cdr", "ros1")
+#: Messages of ROS 2, which rosbags reads; it does not read those of ROS 1 in this format.
+_ENCODING = "cdr"
 
 
 def refuse_encodings(path: str) -> None:
-    """Raise :class:`TraceError` at a topic whose messages are not those of ROS, such as JSON, or Protocol Buffers.
+    """Raise :class:`TraceError` at a topic whose messages are not those of ROS 2, such as JSON, or Protocol Buffers.
 
-    Channels come before their messages, in records of their own or in chunks, and again after the last one.
+    Channels come before their messages, in records of their own or in chunks, and again in the summary at the end.
     """
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         if file.read(len(_MAGIC)) != _MAGIC:
             return  # the reader rejects other files
-        for kind, data, complete in _records(file, size):
-            records = [(kind, data)] if kind != _CHUNK else _whole_records(data) if complete else []
-            for part, content in records:
-                if part == _CHANNEL and (channel := _channel(content)):
+        for part in (_beginning(file, size), _summary(file, size)):
+            for content in part:
+                if channel := _channel(content):
                     topic, encoding = channel
-                    if encoding not in _ENCODINGS:
+                    if encoding != _ENCODING:
                         raise TraceError(
                             f"'{path}' cannot be read: the messages on {topic} are {encoding or 'of no encoding'}, "
-                            f"and only those of ROS (cdr, ros1) are read; convert the file, to CSV for example"
+                            f"and only those of ROS 2 (cdr) are read; convert the file, to CSV for example"
                         )
-            if kind in (_CHUNK, _MESSAGE, _DATA_END, _FOOTER):
-                return  # the first messages: what follows would have to be read whole
+
+
+def _beginning(file: BinaryIO, size: int) -> Iterator[bytes]:
+    """Yield the channels before the first messages: what follows would have to be read whole."""
+    for kind, data, complete in _records(file, size):
+        records = [(kind, data)] if kind != _CHUNK else _whole_records(data) if complete else []
+        yield from (content for part, content in records if part == _CHANNEL)
+        if kind in (_CHUNK, _MESSAGE, _DATA_END, _FOOTER):
+            return
+
+
+def _summary(file: BinaryIO, size: int) -> Iterator[bytes]:
+    """Yield the channels of the summary, whose place is in the footer; none where there is no summary."""
+    at = size - len(_MAGIC) - _END.size
+    if at < len(_MAGIC):
+        return
+    file.seek(at)
+    kind, _, start = _END.unpack(file.read(_END.size))[:3]
+    if kind != _FOOTER or not len(_MAGIC) <= start < at:
+        return
+    file.seek(start)
+    for part, data, complete in _records(file, size):
+        if part == _CHANNEL and complete:
+            yield data
 
 
 def _channel(data: bytes) -> tuple[str, str] | None:

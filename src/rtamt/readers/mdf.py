@@ -6,8 +6,9 @@ import ast
 import logging
 import os
 from collections import Counter
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, redirect_stdout
 from datetime import timezone
+from io import StringIO
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,9 @@ from rtamt.lazy.modules import np
 from rtamt.readers.source import Field, Source, Table, damage, library, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
+    from rtamt.language.value_types import ValueType
     from rtamt.readers.source import Raw
 
 
@@ -27,6 +29,10 @@ _DENSEST = 1032
 #: Types of channels of MDF 4 that have no bytes in the records: virtual masters and data.
 _VIRTUAL = (3, 6)
 _VARIABLE_LENGTH = 1
+#: What a master channel of MDF 4 may hold other than time.
+_AXES = {2: "angle", 3: "distance", 4: "an index"}
+#: Types of conversions from numbers, or ranges of numbers, to texts, in MDF 4 and before.
+_TEXT_TABLES, _OLD_TEXT_TABLES = (7, 8), (11, 12)
 #: The flag of an MDF 4 channel with a bit in each record that marks invalid samples.
 _HAS_FLAG = 2
 #: Types of data that are no numbers: texts, bytes, MIME, dates as bytes. Their lengths lie anywhere in the file.
@@ -72,12 +78,17 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
     master = file.masters_db.get(number)
     prefix = getattr(group.channel_group, "acq_name", "") or f"group{number}"
     places: dict[str, int] = {}
-    fields, time_field = [], None
+    fields, time_field, losses = [], None, []
     for index, channel in enumerate(group.channels):
         name = channel.name if counts[channel.name] == 1 else f"{prefix}.{channel.name}"
         kind = "text" if _is_text(channel) else ""
         field = Field(name, name, _unit(channel), kind)
-        if index == master:
+        over = _AXES.get(getattr(channel, "sync_type", 1), "") if index == master else ""
+        if over:
+            losses.append(
+                f"{printable(prefix)} is recorded over {over}, not over time, so that it has no timestamps"
+            )
+        elif index == master:
             time_field = field = Field(name, name, "s", "number")
         places[name] = index
         fields.append(field)
@@ -89,11 +100,21 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
         return [
             np.asarray(file.get_master(number))
             if field == time_field
-            else _samples(file, number, places[field.column], by_name=isinstance(field.type, Enumeration))
+            else _samples(file, number, places[field.column], field.type)
             for field in wanted
         ]
 
-    return Table(tuple(fields), load, time_field=time_field)
+    return Table(tuple(fields), _quietly(load), time_field=time_field, has_unit=True, losses=losses)
+
+
+def _quietly(load: Callable[[Sequence[Field]], list[Raw]]) -> Callable[[Sequence[Field]], list[Raw]]:
+    """Return a function that drops what asammdf prints, where the robustness of a command line goes."""
+
+    def quiet(wanted: Sequence[Field]) -> list[Raw]:
+        with redirect_stdout(StringIO()):
+            return load(wanted)
+
+    return quiet
 
 
 @contextmanager
@@ -200,17 +221,30 @@ def _is_text(channel: Any) -> bool:
     )
 
 
+def _has_texts(channel: Any) -> bool:
+    """Return whether a channel has texts for numbers."""
+    tables = _TEXT_TABLES if hasattr(channel, "byte_offset") else _OLD_TEXT_TABLES
+    return getattr(channel.conversion, "conversion_type", None) in tables
+
+
+def _members(values: Sequence[Any], type_: Enumeration) -> Iterator[Any]:
+    """Yield texts of a value table, and for numbers without a text a number that is the code of no member."""
+    codes = {code for _, code in type_.members}
+    for value in map(_text, values):
+        yield max(codes) + 1 if isinstance(value, int | float) and value in codes else value
+
+
 def _unit(channel: Any) -> str:
     conversion = getattr(channel, "conversion", None)
     return str(channel.unit or getattr(conversion, "unit", "") or "").strip()
 
 
-def _samples(file: Any, group: int, index: int, *, by_name: bool) -> Raw:
-    """Return the values of a channel; ``by_name``: the texts that its value table has for numbers."""
+def _samples(file: Any, group: int, index: int, type_: ValueType | None) -> Raw:
+    """Return the values of a channel; of an enumeration the texts that its value table has for numbers."""
     signal = file.get(group=group, index=index, ignore_invalidation_bits=True)
     texts = signal.samples.dtype.kind in "SUO"
-    if texts and by_name:
-        signal.samples = np.array([*map(_text, signal.samples.tolist()), None], dtype=object)[:-1]
+    if isinstance(type_, Enumeration) and (texts or _has_texts(file.groups[group].channels[index])):
+        signal.samples = np.array([*_members(signal.samples.tolist(), type_), None], dtype=object)[:-1]
     elif texts:
         raw = file.get(group=group, index=index, ignore_invalidation_bits=True, raw=True)
         signal = raw if raw.samples.dtype.kind in "fiub" else signal

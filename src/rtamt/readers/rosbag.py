@@ -16,6 +16,7 @@ from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
+from rtamt.readers.message_definitions import require_one_definition
 from rtamt.readers.source import Field, Source, Table, printable, reason
 from rtamt.signals.arrays import is_number
 from rtamt.signals.recoding import Recoding
@@ -84,8 +85,11 @@ def open_reader(path: str, recover: bool = False) -> Iterator[tuple[Any, tuple[s
             losses = (lost,) if lost else ()
             try:
                 reader = _reader(copy if lost else path)
-            except TraceError:
-                reader = _reader(copy)  # all messages are complete, but their index is damaged
+            except TraceError as error:
+                try:
+                    reader = _reader(copy)  # all messages are complete, but their index is damaged
+                except TraceError:
+                    raise error from None  # which names the file, and not its copy
         else:
             reader = _reader(path)
         stack.callback(reader.close)
@@ -102,6 +106,11 @@ def _reader(path: str) -> Any:
             refuse_encodings(path)
         reader = highlevel.AnyReader([_existing(path)], default_typestore=known)
         reader.open()
+        try:
+            require_one_definition(path, reader.connections, typesys)
+        except BaseException:
+            reader.close()
+            raise
     return reader
 
 
@@ -190,7 +199,7 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
         return columns
 
     fields = [Field(column, column, "", "number") for column in steps]
-    table = Table((time_field, *fields), load, time_field=time_field)
+    table = Table((time_field, *fields), load, time_field=time_field, has_unit=True)
     made.append(_Topic(table, connections, steps, from_zero, recorded - stamp if stamp or from_zero else 0))
     return made[0]
 
@@ -299,9 +308,22 @@ def _columns(
             continue
         column = next(values)
         missing = [value is None for value in column]
-        numbers = np.array([0.0 if value is None else float(value) for value in column])
+        numbers = _numbers_in([0 if value is None else value for value in column])
         found.append(np.ma.masked_array(numbers, missing) if any(missing) else numbers)
     return found
+
+
+def _numbers_in(column: list[Any]) -> Raw:
+    """Return numbers as an array: integers as integers, since doubles do not hold all of them."""
+    if column and all(
+        isinstance(value, int | np.integer) and not isinstance(value, bool) for value in column
+    ):
+        whole = [int(value) for value in column]
+        if min(whole) >= -(2**63) and max(whole) < 2**63:
+            return np.array(whole, np.int64)
+        if min(whole) >= 0 and max(whole) < 2**64:
+            return np.array(whole, np.uint64)
+    return np.array([float(value) for value in column])
 
 
 # ---- messages ------------------------------------------------------------------------------------

@@ -68,6 +68,8 @@ class Table:
     chunks: Callable[[Sequence[Field]], Iterator[list[Raw]]] | None = None
     #: The field that is known to hold the timestamps; None where it has to be found by its name.
     time_field: Field | None = None
+    #: Whether the format defines the unit of that field.
+    has_unit: bool = False
     #: Whether the arrays of chunks are new ones, which nothing else reads or changes.
     fresh: bool = False
     #: What ``load`` had to leave out, a sentence each; empty until then.

@@ -110,7 +110,7 @@ def _table(topic: Any) -> Table:
     def load(wanted: Sequence[Field]) -> list[Raw]:
         return [topic.data[names[field.column]] for field in wanted]
 
-    return Table((time_field, *fields), load, time_field=time_field)
+    return Table((time_field, *fields), load, time_field=time_field, has_unit=True)
 
 
 def _dropouts(log: Any) -> tuple[str, ...]:

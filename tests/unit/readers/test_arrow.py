@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from decimal import Decimal
 
 import numpy as np
 import pyarrow as pa
@@ -205,3 +206,15 @@ def test_the_index_that_pandas_writes_without_a_name_may_hold_the_timestamps(tmp
         f"{path} has a column that may hold the timestamps: '__index_level_0__'; choose one with time=, or on the "
         f"command line --time-column ('' for none)"
     )
+
+
+def test_decimals_are_the_nearest_doubles(tmp_path):
+    """The cast of pyarrow reads 0.70 as 0.7000000000000001."""
+    numbers = [Decimal(cents).scaleb(-2) for cents in range(-500, 500, 7)]
+    for places in (2, 4, 20):
+        column = pa.array([*numbers, None], pa.decimal128(38, places))
+        times = pa.array([Decimal(at) / 10 for at in range(len(column))], pa.decimal128(10, 1))
+        parquet.write_table(pa.table({"time": times, "x": column}), tmp_path / "log.parquet")
+        trace = rtamt.read(tmp_path / "log.parquet")
+        assert trace["x"].times.tolist() == [at / 10 for at in range(len(numbers))]
+        assert trace["x"].values.tolist() == [float(number) for number in numbers]

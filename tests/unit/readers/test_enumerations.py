@@ -11,6 +11,7 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from asammdf.blocks.conversion_utils import from_dict
 
 import rtamt
 from rtamt.cli import main
@@ -109,6 +110,17 @@ def test_the_value_table_of_a_measurement_is_read_by_name(tmp_path):
         file.save(tmp_path / "log.mf4")
     assert values(tmp_path / "log.mf4") == IS_AUTO
     assert rtamt.read(tmp_path / "log.mf4")["mode"].values.tolist() == [0, 1, 2]
+
+
+def test_a_number_without_a_text_in_the_value_table_is_no_member(tmp_path):
+    """The file has the number 4 for no mode; AUTO, whose code is 4 in the specification, is 1 in the file."""
+    table = {f"val_{i}": i for i in range(3)} | {f"text_{i}": name for i, name in enumerate(COLUMN)}
+    table["default_addr"] = {"a": 1.0, "b": 0.0}
+    with asammdf.MDF(version="4.10") as file:
+        raw = np.array([4, 4, 4], dtype="u1")
+        file.append([asammdf.Signal(raw, np.arange(3.0), name="mode", conversion=from_dict(table))])
+        file.save(tmp_path / "log.mf4")
+    assert values(tmp_path / "log.mf4") == [-inf, -inf, -inf]
 
 
 def test_constants_of_a_message_are_read_by_name(tmp_path):

@@ -14,6 +14,7 @@ import pytest
 
 import rtamt
 from rtamt.readers import excel
+from tests.unit.readers.bags import Bag
 
 AGAIN = "; the file is damaged, incomplete or of another kind: copy or export it again"
 
@@ -247,6 +248,53 @@ def test_mdf(tmp_path):
     assert rtamt.parse("always(gear >= 1 -> speed >= 4)").evaluate(trace).satisfied
     both = [name for name in rtamt.read(path).names if "torque" in name]
     assert [rtamt.read(path)[name].values.tolist() for name in both] == [[7, 8], [9, 10]]
+
+
+@pytest.mark.parametrize(("kind", "axis"), [(2, "angle"), (3, "distance"), (4, "an index")])
+def test_a_group_that_is_not_recorded_over_time_has_no_timestamps(tmp_path, kind, axis):
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(np.array([0.0, 9.0, 0.0]), np.arange(3) * 90.0, name="p")])
+        master = file.groups[0].channels[0]
+        master.sync_type, master.name = kind, "crank"
+        file.save(tmp_path / "engine.mf4")
+    with pytest.raises(rtamt.TraceError, match="has no timestamps, which dense time needs"):
+        rtamt.parse("always(p >= 0)", time="dense").evaluate(
+            rtamt.read(tmp_path / "engine.mf4", columns=["p"])
+        )
+    trace = rtamt.read(tmp_path / "engine.mf4")
+    assert trace["crank"].values.tolist() == [0, 90, 180]
+    assert trace["p"].times.tolist() == [0, 1, 2]
+    assert trace.losses == (f"group0 is recorded over {axis}, not over time, so that it has no timestamps",)
+
+
+def test_formats_with_a_unit_of_time_refuse_another_one(tmp_path):
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(np.array([3.0, 4.0]), np.array([0.0, 1.0]), name="x")])
+        file.save(tmp_path / "log.mf4")
+    flight = ulog(tmp_path / "flight.ulg", [("t", 0, "float x", [(1_000_000, 5.0)])])
+    with Bag(tmp_path, "mcap") as bag:
+        bag.stamped("/a", 1, 5.0)
+    for path, unit in ((tmp_path / "log.mf4", "s"), (flight, "us"), (bag.path, "ns")):
+        with pytest.raises(rtamt.TraceError) as caught:
+            rtamt.read(path, time_unit="ms")
+        assert str(caught.value) == (
+            f"the timestamps of {path} have a unit, {unit}: leave out time_unit=, on the command line --time-unit"
+        )
+
+
+def test_what_asammdf_prints_is_not_printed(tmp_path, monkeypatch, capsys):
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(np.array([3.0, 4.0]), np.array([0.0, 1.0]), name="x")])
+        file.save(tmp_path / "log.mf4")
+    get = asammdf.MDF.get
+
+    def loud(*args, **options):
+        print("MDF ====")
+        return get(*args, **options)
+
+    monkeypatch.setattr(asammdf.MDF, "get", loud)
+    assert rtamt.read(tmp_path / "log.mf4")["x"].values.tolist() == [3, 4]
+    assert capsys.readouterr().out == ""
 
 
 def test_a_measurement_whose_conversion_is_python_code_is_refused_before_asammdf_runs_it(tmp_path):

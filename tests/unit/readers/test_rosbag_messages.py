@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 
 import pytest
+from mcap.writer import Writer
+from rosbags import rosbag1
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 import rtamt
 from rtamt.cli import main
@@ -70,3 +74,76 @@ def test_stamps_that_were_left_at_0_at_first_are_times_of_recording(tmp_path):
             at = START + i
             bag.stamped("/x", at if i > 1 else 0, i, late=0 if i > 1 else at)
     assert rtamt.read(bag.path)["/x.value"].times.tolist() == [(START + i) * 10**9 for i in range(5)]
+
+
+#: A type as two nodes define it: of the same name and size, with fields in another order.
+OLD, NEW = "float64 speed\nfloat64 limit\n", "float64 limit\nfloat64 speed\n"
+
+
+def car(text):
+    store = get_typestore(Stores.ROS1_NOETIC)
+    store.register(get_types_from_msg(text, "my_msgs/msg/Car"))
+    return store
+
+
+@pytest.mark.parametrize("topics", [("/old", "/new"), ("/car", "/car")])
+def test_a_type_with_two_definitions_is_refused_since_one_of_them_would_be_read_wrongly(tmp_path, topics):
+    path, stores = tmp_path / "a.bag", [car(OLD), car(NEW)]
+    with rosbag1.Writer(path) as bag:
+        for at, (topic, store) in enumerate(zip(topics, stores, strict=True)):
+            connection = bag.add_connection(topic, "my_msgs/msg/Car", typestore=store)
+            message = store.types["my_msgs/msg/Car"](speed=100.0, limit=10.0)
+            bag.write(connection, at * 10**9, store.serialize_ros1(message, "my_msgs/msg/Car"))
+    with pytest.raises(
+        TraceError, match=r"it holds two definitions of the type my_msgs/msg/Car, .*; split it"
+    ):
+        rtamt.read(path)
+
+
+def mcap(path, schemas, encoding="cdr"):
+    with open(path, "wb") as file:
+        bag = Writer(file)
+        bag.start(profile="ros2")
+        for number, (kind, text) in enumerate(schemas):
+            schema = bag.register_schema(kind, "ros2msg", text.encode())
+            channel = bag.register_channel(f"/t{number}", encoding, schema)
+            bag.add_message(channel, 10**9, b"\0\1\0\0" + struct.pack("<2d", 100.0, 10.0), 10**9)
+        bag.finish()
+    return path
+
+
+def test_an_embedded_type_with_two_definitions_is_refused(tmp_path):
+    point = f"my_msgs/P p\n{'=' * 80}\nMSG: my_msgs/P\n"
+    schemas = [("my_msgs/msg/A", point + OLD), ("my_msgs/msg/B", point + NEW)]
+    with pytest.raises(TraceError, match="two definitions of the type my_msgs/msg/P, on /t0 and on /t1"):
+        rtamt.read(mcap(tmp_path / "a.mcap", schemas))
+    alike = [("my_msgs/msg/A", point + OLD), ("my_msgs/msg/B", point + f"# the same\n{OLD}")]
+    trace = rtamt.read(mcap(tmp_path / "b.mcap", alike))
+    assert [trace[f"/t{i}.p.speed"].values.tolist() for i in range(2)] == [[100], [100]]
+
+
+@pytest.mark.parametrize("recover", [False, True])
+def test_messages_of_ros_1_in_mcap_are_refused_by_what_they_are(tmp_path, recover):
+    path = mcap(tmp_path / "a.mcap", [("my_msgs/msg/Car", OLD)], "ros1")
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(path, recover=recover)
+    assert str(caught.value) == (
+        f"'{path}' cannot be read: the messages on /t0 are ros1, and only those of ROS 2 (cdr) are read; "
+        f"convert the file, to CSV for example"
+    )
+
+
+@pytest.mark.parametrize("kind", ["ros1", "mcap"])
+def test_integers_that_no_double_holds_have_a_note(tmp_path, kind):
+    with Bag(tmp_path, kind) as bag:
+        bag.store.register(get_types_from_msg("int64 count\nuint64 most\n", "my_msgs/msg/Count"))
+        for at in range(2):
+            message = bag.store.types["my_msgs/msg/Count"](count=2**53 + at, most=2**64 - 1)
+            bag.write("/c", "my_msgs/msg/Count", at * 10**9, message)
+    trace = rtamt.read(bag.path)
+    assert trace["/c.count"].values.tolist() == [2.0**53, 2.0**53]
+    assert trace["/c.most"].values.tolist() == [2.0**64, 2.0**64]
+    assert trace.losses == (
+        "rounded to doubles: 1 integer of /c.count beyond 2^53, the first at 1 s",
+        "rounded to doubles: 2 integers of /c.most beyond 2^53, the first at 0 s",
+    )
