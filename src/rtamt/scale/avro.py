@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,6 +17,8 @@ from rtamt.extras import library
 from rtamt.files import open_text
 from rtamt.scale.messages import framed
 
+#: Where an object is in memory, which differs from run to run.
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
 _PRIMITIVE = frozenset({"null", "boolean", "int", "long", "float", "double", "bytes", "string"})
 
 
@@ -69,7 +72,7 @@ class AvroDecoder:
 
 
 def _sentence(error: Exception) -> str:
-    text = " ".join(str(error).split())
+    text = " ".join(_ADDRESS.sub("", str(error)).split())
     return f"{type(error).__name__}{': ' + text[:100] if text else ''}"
 
 

@@ -150,7 +150,8 @@ class MessageReader:
 
     def _values(self, data: Mapping[str, Any]) -> tuple[float, ...]:
         """Return the values of the variables that a message has, NaN for the others; in dense time."""
-        has = [any(_member(data, column) is not _MISSING for column in each.columns) for each in self._inputs]
+        found = [[_member(data, column) for column in each.columns] for each in self._inputs]
+        has = [any(value is not _MISSING and value is not None for value in values) for values in found]
         if not any(has):
             names = " or ".join(f"'{each.columns[0]}'" for each in self._inputs)
             raise TraceError(f"the message has no {names}")

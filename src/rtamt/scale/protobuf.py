@@ -51,12 +51,12 @@ class _Fields(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         field = self._known.get(name)
-        if field is None or field.is_repeated or (field.has_presence and not self._message.HasField(name)):
+        if field is None or _is_repeated(field) or (field.has_presence and not self._message.HasField(name)):
             raise KeyError(name)
         value = getattr(self._message, name)
         if field.enum_type is not None:
             member = field.enum_type.values_by_number.get(value)
-            return value if member is None else member.name
+            return str(value) if member is None else member.name  # a number without a name is no member
         return _Fields(value) if field.message_type is not None else value
 
     def __contains__(self, name: object) -> bool:
@@ -71,6 +71,12 @@ class _Fields(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
+
+
+def _is_repeated(field: Any) -> bool:
+    """Return whether a field is a list; the descriptors of protobuf have said so themselves since 6.31."""
+    known: bool | None = getattr(field, "is_repeated", None)
+    return bool(field.label == field.LABEL_REPEATED) if known is None else known
 
 
 def _message_type(path: str, name: str | None) -> Any:
