@@ -256,17 +256,17 @@ nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time)
     const std::int64_t so_far = executor_.samples();
     const NewArray timestamps = numpy_.make(count);
     const std::span<double> times(timestamps.values(), count);
-    const auto last = clock_.timestamps().last();
-    const double period = clock_.period();
+    std::optional<std::span<const double>> stamps;
     if (given->times) {
+        const auto last = clock_.timestamps().last();
         if (!given->times->copy(times.data()) || !ordered(times, last) ||
-            !regular(times, last, period, clock_.tolerance())) {
+            !regular(times, last, clock_.period(), clock_.tolerance())) {
             return nb::none();
         }
+        stamps = times;
     } else {
-        const double first = last ? *last + period : 0.0;
         for (std::size_t i = 0; i < count; ++i)
-            times[i] = first + period * static_cast<double>(i);
+            times[i] = clock_.upcoming(i);
     }
     const std::size_t width = given->columns.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * count);
@@ -298,7 +298,7 @@ nb::object Monitor::take_columns(const nb::handle& data, const nb::handle& time)
     }
     usage_.require_idle(); // an allocation may have run Python code
     usage_.require(executor_.samples() == so_far && !executor_.finished());
-    push(times, columns, count, outputs);
+    push(stamps, columns, count, outputs);
     return nb::make_tuple(executor_.samples(), news);
 }
 

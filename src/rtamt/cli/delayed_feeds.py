@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.json_lines import STDIN
 from rtamt.errors import StlError
+from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.signals.sampling_period import TOLERANCE
 from rtamt.signals.signal import Signal
@@ -50,8 +51,9 @@ class SampleFeed:
             timestamp = self.monitor.samples * self._period
         time = timestamp if isinstance(timestamp, float) else float(in_seconds(np.array([timestamp]))[0])
         if self._assumed and self._last is not None and self._differs(time - self._last):
+            at = time_text(time, dated=isinstance(timestamp, np.datetime64))
             return (
-                f"{STDIN}, line {line}: sample {self.monitor.samples} at {time:.15g} s is {time - self._last:g} s "
+                f"{STDIN}, line {line}: sample {self.monitor.samples} at {at} is {time - self._last:g} s "
                 f"after the one before, expected {self._period:g} s: give the right period with --period, "
                 f"or use --time dense"
             )

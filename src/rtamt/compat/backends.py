@@ -9,7 +9,7 @@ from rtamt.engine import BACKENDS, Evaluators, engine_of
 from rtamt.engine.backend import compiled_backend
 from rtamt.errors import UsageError
 from rtamt.language.formula import Const
-from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.undefined_value import UndefinedByDefinitionError, at_sample, undefined
 from rtamt.language.units.durations import UNITS
 from rtamt.signals.discrete import DISCRETE, Discrete
 
@@ -105,6 +105,8 @@ class Stream:
         """
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
+        except UndefinedByDefinitionError:  # in seconds
+            raise
         except self._undefined as error:
             formula = self._session.culprit(error)
             raise undefined(formula, at_sample(error.args[1], error.time * self._unit)) from None

@@ -9,7 +9,7 @@ from rtamt.engine.native import core, culprit
 from rtamt.errors import UsageError
 from rtamt.language.contents import types_of
 from rtamt.language.formula import postorder
-from rtamt.language.undefined_value import UndefinedAtTickError
+from rtamt.language.undefined_value import UndefinedByDefinitionError
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.lazy.typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from rtamt.rewrite.desugar import desugar
@@ -123,10 +123,10 @@ class Session(ABC):
             )
 
 
-class TickDefinition(Session):
-    """Formulas that are evaluated by definition, in ticks; in samples the definition raises the final error."""
+class Definition(Session):
+    """Formulas that are evaluated by definition."""
 
-    undefined = (UndefinedAtTickError,)
+    undefined = (UndefinedByDefinitionError,)
 
     def culprit(self, error: Exception) -> Formula:
         """See :class:`Session`."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.compiler.causation import compile_causes
 from rtamt.compiler.shared import Shape
-from rtamt.engine.backend import Session, TickDefinition
+from rtamt.engine.backend import Definition, Session
 from rtamt.engine.native import core
 from rtamt.errors import changed_state
 from rtamt.language.parameters import with_values
@@ -158,5 +158,5 @@ class EarlyProgram(EarlySession):
         raise changed_state()
 
 
-class EarlyDefinition(EarlySession, TickDefinition):
+class EarlyDefinition(EarlySession, Definition):
     """Formulas that are evaluated by definition; their graphs give lags, and refuse what has no bounds."""

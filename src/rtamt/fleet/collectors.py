@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from math import nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -73,7 +72,7 @@ class _Values(Collector):
     def take(self, index: int, monitor: Monitor, report: float | None) -> None:  # noqa: ARG002 - as Collector has it
         """See :class:`Collector`."""
         self._values.append(report)
-        self._times.append(nan if report is None else last_settled_time(monitor))
+        self._times.append(last_settled_time(monitor, known=report is not None))
 
     def update(self, keys: NDArray[Any]) -> FleetUpdate:
         """See :class:`Collector`."""
@@ -82,9 +81,7 @@ class _Values(Collector):
         known = np.array([value is not None for value in self._values], np.bool_)
         nothing, none = np.zeros(n, np.bool_), np.empty(0)
         released = Released(keys[:0], none, none, np.empty(0, np.int64))
-        return FleetUpdate(
-            values, known, np.array(self._times, np.float64), nothing, nothing.copy(), released
-        )
+        return FleetUpdate(values, known, _times(self._times), nothing, nothing.copy(), released)
 
 
 class _Points(Collector):

@@ -6,12 +6,14 @@ from functools import lru_cache
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
+from rtamt.engine.fleet_keys import place_of
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.fleet_snapshot import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import is_truth, number_of, timestamps
+from rtamt.signals.arrays import TIME, is_moment, is_truth, number_of, timestamps
+from rtamt.signals.caller_times import KINDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
     from rtamt.engine import OnlineMonitor
     from rtamt.fleet.gaps import Gaps
     from rtamt.signals.arrays import FloatArray
+
+
+#: How the error for a value that is no number ends.
+_NO_NUMBER = "expected a number"
 
 
 class Output(NamedTuple):
@@ -52,29 +58,73 @@ class InOrder:
 
     def __init__(self, records: Any, requirements: tuple[str, ...]) -> None:
         self.records, self._requirements = records, requirements
+        #: The kind of the dtype of the caller's times; None before the first.
+        self._kind: str | None = None
 
     def take(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
         """Take a batch as a user gives it; return what it made known."""
-        known = self.records.take(keys, times, columns)
+        known = None if self._kind in ("M", "m") else self.records.take(keys, times, columns)
         if known is None:
             return self._take_carefully(keys, times, columns)
+        if len(keys):
+            self._kind = "f"
         return self._updated(_all_in_order(keys, known))
 
     def _take_carefully(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
         """Take a batch that has to be converted, checked or put in order first."""
-        seconds, found = self.records.columns(times, columns)
+        try:
+            (seconds, given), found = self.records.columns(times, columns)
+        except TraceError as error:
+            raise _of_key(error, keys, columns) from None
         if len(keys) != len(seconds):
             raise TraceError(
                 f"there are {len(keys)} keys and {len(seconds)} times: give one of each for every sample"
             )
-        return self._updated(self.update(keys, seconds, found))
+        before = self._kind
+        if len(seconds):
+            self._require_kind(given.dtype.kind)
+            self._kind = given.dtype.kind
+        try:
+            return self._updated(self.update(keys, seconds, found))
+        except BaseException:
+            self._kind = before
+            raise
+
+    def _require_kind(self, kind: str) -> None:
+        """Raise :class:`TraceError` if times are of another kind than before."""
+        if self._kind not in (None, kind):
+            raise TraceError(
+                f"'{TIME}' is in {KINDS[kind]}, but before in {KINDS[self._kind or kind]}: use one of them for all",
+                variable=TIME,
+            )
+
+    def _expect(self, time: Any) -> None:
+        """Take the kind of times from a watermark after a restart: a state has seconds alone."""
+        if self._kind is None and is_moment(time):
+            self._kind = timestamps([time]).original.dtype.kind
+
+    @property
+    def _dated(self) -> bool:
+        """Whether the caller's times are dates."""
+        return self._kind == "M"
+
+    def _as_given(self, seconds: FloatArray) -> NDArray[Any]:
+        """Return times of samples in the caller's format; dates to the microsecond, which is what a double holds."""
+        if self._kind not in ("M", "m"):
+            return seconds
+        known = ~np.isnan(seconds)
+        times = np.full(seconds.shape, np.iinfo(np.int64).min)  # NaT
+        times[known] = np.rint(seconds[known] * 1e6).astype(np.int64) * 1000
+        return times.view(f"{self._kind}8[ns]")
 
     def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
         """Release what waits up to a time; ``arrays``: makes an array of keys."""
+        self._expect(time)
         return self._updated(self.release(_seconds(time), arrays))
 
     def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
         """Set the current time: release what waits up to the lateness before it."""
+        self._expect(now)
         return self._updated(self.release(_seconds(now) - (self._lateness or 0.0), arrays))
 
     def release_keys(
@@ -90,7 +140,7 @@ class InOrder:
         released = (
             Released(
                 np.concatenate([each.keys for each in outputs]),
-                np.concatenate([each.at for each in outputs]),
+                self._as_given(np.concatenate([each.at for each in outputs])),
                 np.concatenate([each.found for each in outputs]),
                 np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
             )
@@ -99,10 +149,11 @@ class InOrder:
         )
         if not self._requirements:
             (one,) = outputs
-            return FleetUpdate(one.values, one.known, one.times, one.warming, taken.late, released)
+            times = self._as_given(one.times)
+            return FleetUpdate(one.values, one.known, times, one.warming, taken.late, released)
         values = np.stack([each.values for each in outputs], axis=1)
         known = np.stack([each.known for each in outputs], axis=1)
-        times = np.stack([each.times for each in outputs], axis=1)
+        times = self._as_given(np.stack([each.times for each in outputs], axis=1))
         warming = np.stack([each.warming for each in outputs], axis=1)
         return FleetUpdate(values, known, times, warming, taken.late, released, self._requirements)
 
@@ -114,8 +165,8 @@ class InOrder:
 
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
         """Take a batch. Raises for wrong data, and nothing has changed."""
-        self.records.check(keys, times, columns)
-        return _all_in_order(keys, self.records.update(keys, times, columns))
+        self.records.check(keys, times, columns, dated=self._dated)
+        return _all_in_order(keys, self.records.update(keys, times, columns, dated=self._dated))
 
     def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:  # noqa: ARG002 - nothing waits
         """Release what waits up to a time in seconds."""
@@ -195,15 +246,15 @@ class Reordered(InOrder):
 
     def update(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> Taken:
         """See :class:`InOrder`."""
-        self.records.check(keys, times, columns)
-        late, ready = self._buffer.offer(keys, times, columns)
+        self.records.check(keys, times, columns, dated=self._dated)
+        late, ready = self._buffer.offer(keys, times, columns, dated=self._dated)
         return self._taken(late, keys[ready.places], ready)
 
     def release(self, time: float, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> Taken:
         """See :class:`InOrder`."""
         if self._lateness is None:
             return super().release(time, arrays)
-        keys, ready = self._buffer.advance(time)
+        keys, ready = self._buffer.advance(time, dated=self._dated)
         return self._taken(np.empty(0, np.bool_), arrays(keys), ready)
 
     def release_keys(
@@ -217,13 +268,15 @@ class Reordered(InOrder):
                 raise UsageError(
                     f"the fleet has no key {keys[index].item()!r} (index {index}); nothing was released"
                 )
-        found, ready = self._buffer.release(keys)
+        found, ready = self._buffer.release(keys, dated=self._dated)
         return self._updated(self._taken(np.empty(0, np.bool_), arrays(found), ready))
 
     def _taken(self, late: NDArray[np.bool_], keys: NDArray[Any], ready: Any) -> Taken:
         """Monitor the released samples; ``keys``: of each of these samples."""
         try:
-            known = self.records.update(np.ascontiguousarray(keys), ready.times, ready.columns, ready.place)
+            known = self.records.update(
+                np.ascontiguousarray(keys), ready.times, ready.columns, ready.place, dated=self._dated
+            )
         except BaseException:
             self._buffer.withdraw()
             raise
@@ -279,6 +332,17 @@ class Reordered(InOrder):
         """See :class:`InOrder`."""
         waiting = self._buffer.snapshot()
         return packed(FleetState(gaps, self._lateness, waiting, bytes(self.records.snapshot())))
+
+
+def _of_key(error: TraceError, keys: NDArray[Any], columns: Mapping[str, Any]) -> TraceError:
+    """Return the error for data of a sample with the key and the index in the batch."""
+    index, name = error.index, error.variable or ""
+    if index is None or index >= len(keys):
+        return error
+    text = str(error)
+    if name in columns and text.endswith(_NO_NUMBER):
+        text = f"'{name}' is {shown(list(columns[name])[index])}, {_NO_NUMBER}"
+    return TraceError(f"{place_of(keys[index].item(), index)}: {text}", variable=error.variable, index=index)
 
 
 def _all_in_order(keys: NDArray[Any], known: Iterable[Sequence[NDArray[Any]]]) -> Taken:

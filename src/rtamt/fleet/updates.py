@@ -23,7 +23,7 @@ class Released:
     """
 
     keys: NDArray[Any]
-    times: FloatArray
+    times: NDArray[Any]
     values: FloatArray
     requirements: NDArray[np.int64]
 
@@ -36,11 +36,12 @@ class FleetUpdate:
     """The results of a batch, in the order of the batch.
 
     ``values``: for each sample, the robustness that it made final, as ``Monitor.update`` returns it; only valid where
-    ``known``. ``times``: the time that this robustness is for, that of the key's sample one horizon before; NaN where
-    it is not known. ``warming``: whether it is not known because the requirement has changed (:meth:`Fleet.restore`).
-    Of a suite, these four have a column for each requirement, and ``update["SPEED"]`` is the update of one.
-    ``late``: which samples arrived too late, or a second time, and were left out. ``released``: what samples made known
-    that are not of this batch. ``requirements``: the names of those of a suite.
+    ``known``. ``times``: the time that this robustness is for, that of the key's sample one horizon before, in the
+    caller's format (dates to the microsecond); NaN or NaT where it is not known. ``warming``: whether it is not known
+    because the requirement has changed (:meth:`Fleet.restore`). Of a suite, these four have a column for each
+    requirement, and ``update["SPEED"]`` is the update of one. ``late``: which samples arrived too late, or a second
+    time, and were left out. ``released``: what samples made known that are not of this batch. ``requirements``: the
+    names of those of a suite.
 
     >>> import rtamt
     >>> fleet = rtamt.Fleet(rtamt.parse("always[0:1](x >= 3)"), capacity=10)
@@ -51,7 +52,7 @@ class FleetUpdate:
 
     values: FloatArray
     known: NDArray[np.bool_]
-    times: FloatArray
+    times: NDArray[Any]
     warming: NDArray[np.bool_]
     late: NDArray[np.bool_]
     released: Released

@@ -36,18 +36,38 @@ def undefined(formula: Formula, where: str) -> EvaluationError:
     return undefined_text(meaning_of(formula), where)
 
 
-class UndefinedAtTickError(EvaluationError):
-    """The definition's error for an undefined value in dense time, which callers word with times in their own format.
+class UndefinedByDefinitionError(EvaluationError):
+    """The definition's error for an undefined value, which callers word with times in their own format.
 
-    ``args``: the formula without a value, as it is written, and the tick; the text has ``seconds``.
+    ``args``: the formula without a value, as it is written, the tick or sample, and the time in seconds.
     """
 
-    def __init__(self, formula: Formula, tick: int, seconds: float) -> None:
-        super().__init__(formula, tick, seconds)
+    def __init__(self, formula: Formula, place: int, seconds: float) -> None:
+        super().__init__(formula, place, seconds)
+
+    @property
+    def time(self) -> float:
+        """The time in seconds."""
+        seconds: float = self.args[2]
+        return seconds
+
+
+class UndefinedAtTickError(UndefinedByDefinitionError):
+    """An undefined value in dense time."""
 
     def __str__(self) -> str:
+        from rtamt.language.units.moments import time_text
+
         formula, _, seconds = self.args
-        return str(undefined(formula, f"time {seconds:.15g} s"))
+        return str(undefined(formula, f"time {time_text(seconds)}"))
+
+
+class UndefinedAtSampleError(UndefinedByDefinitionError):
+    """An undefined value in discrete time."""
+
+    def __str__(self) -> str:
+        formula, sample, seconds = self.args
+        return str(undefined(formula, at_sample(sample, seconds)))
 
 
 def meaning_of(formula: Formula) -> str:
@@ -66,9 +86,11 @@ def undefined_text(meaning: str, where: str) -> EvaluationError:
     )
 
 
-def at_sample(sample: int, seconds: float) -> str:
-    """Return the index and time of a sample for a message; the time with all significant digits of a double."""
-    return f"sample {sample}, time {seconds:.15g} s"
+def at_sample(sample: int, seconds: float, *, dated: bool = False) -> str:
+    """Return the index and time of a sample for a message; ``dated``: whether the caller's times are dates."""
+    from rtamt.language.units.moments import time_text
+
+    return f"sample {sample}, time {time_text(seconds, dated=dated)}"
 
 
 def _is_the_users(formula: Apply) -> bool:

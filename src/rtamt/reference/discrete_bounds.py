@@ -18,7 +18,7 @@ from rtamt.errors import SpecificationError
 from rtamt.language.definitions.enclosures import Enclosure, extended
 from rtamt.language.formula import Apply, Const, Formula, Var, fold
 from rtamt.language.operators import Ahead, Pointwise, Rank, Shift, Since, Sum, Tense, Until, Window
-from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.undefined_value import UndefinedAtSampleError
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.modules import np
 from rtamt.reference.cores import core_of, inside_predicates
@@ -105,7 +105,7 @@ def bounds(
             if (wrong & certain).any():
                 i = int((wrong & certain).argmax())
                 culprit = written(node, [formula])
-                raise undefined(culprit, at_sample(i, start + float(i * period)))
+                raise UndefinedAtSampleError(culprit, i, start + float(i * period))
             value = Enclosure(np.where(wrong, -inf, value.lower), np.where(wrong, inf, value.upper))
             if inside is None and earlier:
                 inside = inside_predicates(core)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from rtamt.errors import UsageError
 from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
 from rtamt.language.operators import Bounds, Sum, Tense
-from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.undefined_value import UndefinedAtSampleError
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.reference.definition_adapter import arguments_of, values_of, window_in_steps
@@ -241,7 +241,7 @@ def _evaluate(
         if wrong.any():
             for i in range(stretch.n) if exact is None else exact(node):
                 if wrong[i]:
-                    raise undefined(node, at_sample(stretch.first + i, stretch.time(i)))
+                    raise UndefinedAtSampleError(node, stretch.first + i, stretch.time(i))
         if every is not None:
             every[node] = value
         return value

@@ -73,6 +73,11 @@ def is_moment(time: Any) -> bool:
     return isinstance(time, (dt.datetime, dt.timedelta, np.datetime64, np.timedelta64))
 
 
+def are_dates(times: NDArray[Any] | None) -> bool:
+    """Return whether times in the caller's format, None for seconds, are dates."""
+    return times is not None and times.dtype.kind == "M"
+
+
 def plain(time: Any) -> Any:
     """Convert a numpy number to a Python number; dates are kept, since Python may lack the precision."""
     return time if isinstance(time, np.datetime64 | np.timedelta64) else time.item()
@@ -89,13 +94,14 @@ def columns_of(
     unit: str | None = None,
     types: Types = NO_TYPES,
     *,
+    first: int = 0,
     copy: bool = True,
     regular: bool = True,
 ) -> tuple[Timestamps | None, dict[str, FloatArray], int]:
     """Return the timestamps (None if there are none), a column for each name, and their common length.
 
-    ``types``: of the variables that may be given by the names of members. ``copy``: see :func:`array`. ``regular``:
-    whether the period of samples without timestamps is known.
+    ``types``: of the variables that may be given by the names of members. ``first``, ``copy``: see :func:`array`.
+    ``regular``: whether the period of samples without timestamps is known.
     """
     require_no_unit(data, unit)
     if data.__class__ is not dict and isinstance(data, WithTimeBases):
@@ -111,8 +117,8 @@ def columns_of(
         from rtamt.signals.assumed_period import require_times  # monitors have a period
 
         require_times(data, names)
-    columns = {name: _column(data, keys, name, types.get(name), copy=copy) for name in names}
-    times = timestamps(data[TIME], unit, copy=copy) if TIME in keys else None
+    columns = {name: _column(data, keys, name, types.get(name), first, copy=copy) for name in names}
+    times = timestamps(data[TIME], unit, first, copy=copy) if TIME in keys else None
     return times, columns, _common_length(columns, times, data, keys)
 
 
@@ -220,38 +226,39 @@ def is_truth(value: Any) -> bool:
     return isinstance(value, bool) or (not isinstance(value, float | int) and isinstance(value, np.bool_))
 
 
-def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Timestamps:
+def timestamps(values: Any, unit: str | None = None, first: int = 0, *, copy: bool = True) -> Timestamps:
     """Return timestamps in seconds and as given; numbers are in ``unit`` or seconds, dates count from 1970.
 
-    ``copy``: see :func:`array`. Raises :class:`TraceError` for anything but times; missing times (NaN, NaT) become NaN
-    seconds.
+    ``first``, ``copy``: see :func:`array`. Raises :class:`TraceError` for anything but times; missing times (NaN, NaT)
+    become NaN seconds.
     """
     from rtamt.signals.counting import all_integers, integers, quotients, refuse_implausible
 
     try:
         raw = values if is_masked(values) else as_array(values)
     except (TypeError, ValueError):  # lists of different lengths, for numpy
-        raise _not_numbers(values, TIME, 0) from None
+        raise _not_numbers(values, TIME, first) from None
     if raw.dtype.kind == "O" and any(map(is_moment, raw.flat)):
-        raw = _moments(raw)
+        raw = _moments(raw, first)
     if raw.dtype.kind in "mM":
         if unit is not None:
             raise TraceError(
-                f"'{TIME}' is {raw.flat[0]} at sample 0, expected a number of {unit}, which is what time_unit= says",
+                f"'{TIME}' is {raw.flat[0]} at sample {first}, expected a number of {unit}, which is what "
+                f"time_unit= says",
                 variable=TIME,
-                index=0,
+                index=first,
             )
         from rtamt.signals.datetimes import in_nanoseconds
 
         original = in_nanoseconds(
-            np.where(np.ma.getmaskarray(raw), np.array("NaT", raw.dtype), np.asarray(raw)), TIME
+            np.where(np.ma.getmaskarray(raw), np.array("NaT", raw.dtype), np.asarray(raw)), TIME, first=first
         )
         seconds = quotients(original.view(np.int64), 1, 10**9)
         seconds[np.isnat(original)] = np.nan
         return Timestamps(seconds, original)
-    numbers = array(values, TIME, copy=copy)
+    numbers = array(values, TIME, first, copy=copy)
     if unit is None:
-        refuse_implausible(raw, TIME)
+        refuse_implausible(raw, TIME, first)
         return Timestamps(numbers, numbers)
     size = UNITS[unit]
     if not raw.size or (raw.dtype.kind in "iuO" and all_integers(raw)):
@@ -263,14 +270,14 @@ def timestamps(values: Any, unit: str | None = None, *, copy: bool = True) -> Ti
     return Timestamps(in_seconds(numbers, size), numbers)
 
 
-def _moments(raw: NDArray[Any]) -> NDArray[Any]:
+def _moments(raw: NDArray[Any], first: int) -> NDArray[Any]:
     """Return dates or durations in nanoseconds; dates without a time zone are taken literally, as in dense time."""
     from rtamt.signals.datetimes import has_length, nanoseconds_of, no_length, out_of_reach
 
     zones: dict[bool, int] = {}
     kinds: dict[str, int] = {}
     found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
-    for i, value in enumerate(raw.flat):
+    for i, value in enumerate(raw.flat, first):
         kind = "m" if isinstance(value, dt.timedelta | np.timedelta64) else "M"
         kinds.setdefault(kind, i)
         if not is_moment(value) or len(kinds) > 1:
@@ -288,7 +295,7 @@ def _moments(raw: NDArray[Any]) -> NDArray[Any]:
         if abs(moment) >= 2**63:
             raise out_of_reach(TIME, i, value, kind)
         zones.setdefault(getattr(value, "tzinfo", None) is not None, i)
-        found[i] = moment
+        found[i - first] = moment
     if len(zones) > 1:
         raise TraceError(
             f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
@@ -305,18 +312,25 @@ def check_numbers(
     times: FloatArray | RegularTimes,
     first: int = 0,
     type_: ValueType | None = None,
+    *,
+    dated: bool = False,
 ) -> None:
     """Raise :class:`TraceError` at the first NaN, of a Boolean also at a number that is neither 1 nor 0.
 
-    ``first`` is the index of ``column[0]`` in the recording.
+    ``first`` is the index of ``column[0]`` in the recording. ``dated``: whether the caller's times are dates.
     """
     if len(column) and isnan(np.minimum.reduce(column)):  # NaN propagates
         from rtamt.signals.data_errors import nan_error
 
         i = int(np.isnan(column).argmax())
-        raise nan_error(name, first + i, float(times[i]))
+        raise nan_error(name, first + i, float(times[i]), dated=dated)
     if type_ is not None:
-        require_truths(name, type_, column, lambda i: f"sample {first + i}, time {times[i]:.15g} s", first)
+        from rtamt.language.units.moments import time_text
+
+        def where(i: int) -> str:
+            return f"sample {first + i}, time {time_text(float(times[i]), dated=dated)}"
+
+        require_truths(name, type_, column, where, first)
 
 
 def field(value: Any, path: Sequence[str]) -> Any:
@@ -374,13 +388,15 @@ def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collecti
             raise unknown_variable(str(key), names)
 
 
-def _column(data: Any, keys: Sequence[str], name: str, type_: ValueType | None, *, copy: bool) -> FloatArray:
+def _column(
+    data: Any, keys: Sequence[str], name: str, type_: ValueType | None, first: int, *, copy: bool
+) -> FloatArray:
     if name in keys:
-        return array(encoded(data[name], name, type_), name, copy=copy)
+        return array(encoded(data[name], name, type_, first), name, first, copy=copy)
     head, *path = name.split(".")
     if path and head in keys:
-        values = [field_of(value, head, path, i) for i, value in enumerate(data[head])]
-        return array(encoded(values, name, type_), name)
+        values = [field_of(value, head, path, i) for i, value in enumerate(data[head], first)]
+        return array(encoded(values, name, type_, first), name, first)
     from rtamt.signals.data_errors import missing_variable
 
     raise missing_variable(name, [key for key in keys if key != TIME])

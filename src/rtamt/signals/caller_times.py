@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import Timestamps
 
 #: The names of time formats in messages, by the kind of their dtype.
-_KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
+KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
 _NUMBERS = {"f": "f8", "i": "i8", "M": "i8", "m": "i8"}
 
 
@@ -55,8 +55,8 @@ class CallerTimes:
             before = "f" if self.original is None else self.original.dtype.kind
             if timestamps.original.dtype.kind != before:
                 raise TraceError(
-                    f"'{arrays.TIME}' is in {_KINDS[timestamps.original.dtype.kind]} at sample {samples}, but before "
-                    f"in {_KINDS[before]}: use one of them for all",
+                    f"'{arrays.TIME}' is in {KINDS[timestamps.original.dtype.kind]} at sample {samples}, but before "
+                    f"in {KINDS[before]}: use one of them for all",
                     variable=arrays.TIME,
                     index=samples,
                 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from rtamt.errors import TraceError, choices
+from rtamt.language.units.moments import time_text
 from rtamt.lazy.typing import TYPE_CHECKING
 from rtamt.signals.arrays import TIME
 
@@ -17,10 +18,10 @@ if TYPE_CHECKING:
 NAN_MEND = "fill the gap or leave the sample out"
 
 
-def nan_error(name: str, index: int, time: float) -> TraceError:
-    """Return the error for a NaN in the data."""
+def nan_error(name: str, index: int, time: float, *, dated: bool = False) -> TraceError:
+    """Return the error for a NaN in the data; ``dated``: whether the caller's times are dates."""
     return TraceError(
-        f"'{name}' is NaN at sample {index}, time {time:.15g} s: {NAN_MEND}",
+        f"'{name}' is NaN at sample {index}, time {time_text(time, dated=dated)}: {NAN_MEND}",
         variable=name,
         index=index,
         time=time,

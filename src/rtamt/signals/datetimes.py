@@ -54,15 +54,15 @@ def counts_of(dated: NDArray[Any]) -> tuple[NDArray[np.int64], Fraction]:
     return dated.view(np.int64), _LENGTHS[unit] * count
 
 
-def in_nanoseconds(dated: NDArray[Any], name: str, source: str = "") -> NDArray[Any]:
+def in_nanoseconds(dated: NDArray[Any], name: str, source: str = "", *, first: int = 0) -> NDArray[Any]:
     """Return dates or times since a start, of any unit, in nanoseconds.
 
-    ``name``: of what has them, for messages; ``source``: where it was read. Raises :class:`TraceError` for what
-    64 bits cannot hold, such as the year 9999, and for timedeltas without a unit.
+    ``name``: of what has them, for messages; ``source``: where it was read; ``first``: the index of the first one.
+    Raises :class:`TraceError` for what 64 bits cannot hold, such as the year 9999, and for timedeltas without a unit.
     """
     kind, where = dated.dtype.kind, f" of {source}" if source else ""
     if kind == "m" and not has_length(dated):
-        raise no_length(name, 0)
+        raise no_length(name, first)
     target = f"{kind}8[ns]"
     present = dated[~np.isnat(dated)]
     try:
@@ -74,7 +74,7 @@ def in_nanoseconds(dated: NDArray[Any], name: str, source: str = "") -> NDArray[
     if not len(wrong):
         return dated.astype(target)
     index = int(np.flatnonzero(~np.isnat(dated))[wrong[0]])
-    raise out_of_reach(name, index, dated[index], kind, where)
+    raise out_of_reach(name, first + index, dated[index], kind, where)
 
 
 def out_of_reach(name: str, index: int, time: Any, kind: str, where: str = "") -> TraceError:

@@ -14,6 +14,7 @@ from rtamt.rewrite.check import PERIODS, check_bounds
 from rtamt.signals.arrays import (
     TIME,
     Timestamps,
+    are_dates,
     check_numbers,
     columns_of,
     is_number,
@@ -159,6 +160,11 @@ class DiscreteTrace(DomainTrace):
         """Seconds; of dates, since 1970."""
         times = self._times
         return times.array if isinstance(times, DeferredTimes) else times
+
+    @property
+    def dated(self) -> bool:
+        """Whether the caller's times are dates."""
+        return are_dates(self.original)
 
     @property
     def domain(self) -> Discrete:
@@ -372,7 +378,7 @@ def record_discrete(
     stamped, columns, n = columns_of(data, names, unit, types, regular=period is not None)
     if n == 0:
         raise TraceError("the trace is empty: give at least one sample")
-    inferred, original = False, None
+    inferred, original, dated = False, None, False
     times: FloatArray | RegularTimes
     if stamped is None:
         period = period or Fraction(1)
@@ -380,12 +386,13 @@ def record_discrete(
     else:
         times = stamped.seconds
         original = None if stamped.original is times else stamped.original
-        check_increasing(times, dates=original)
+        dated = are_dates(original)
+        check_increasing(times, dated=dated)
         inferred = period is None
         period = period or infer_period(times)
-        check_regular(times, period, tolerance, dates=original)
+        check_regular(times, period, tolerance, dated=dated)
     for name, column in columns.items():
-        check_numbers(name, column, times, type_=types.get(name))
+        check_numbers(name, column, times, type_=types.get(name), dated=dated)
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import groupby
 
+from rtamt.language.units.moments import show_date
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.datetimes import nanoseconds_of
@@ -96,7 +97,7 @@ def show_time(time: Any, start: Any = None) -> str:
     if since is not None and begin is not None:
         return moment_text(since, begin)
     if isinstance(time, np.datetime64):
-        return str(time).rstrip("0").rstrip(".") if "." in str(time) else str(time)
+        return show_date(time)
     if since is not None:
         return date_text(since)
     return f"{time.astype(np.int64)} ns" if isinstance(time, np.timedelta64) else f"{time:.12g} s"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite, isnan
 
 from rtamt.errors import TraceError, UsageError, shown
+from rtamt.language.units.moments import time_text
 from rtamt.language.value_types import BOOLEAN
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
@@ -29,10 +30,12 @@ def time_of(given: tuple[Any, ...]) -> Any:
     return given[0]
 
 
-def read_time(time: Any, index: int, last: float | None, *, again: bool = False) -> float:
+def read_time(
+    time: Any, index: int, last: float | None, *, again: bool = False, dated: bool = False
+) -> float:
     """Return a sample's timestamp; raise :class:`TraceError` for an invalid one.
 
-    ``again``: whether it may be the same as the ``last`` one.
+    ``again``: whether it may be the same as the ``last`` one. ``dated``: whether the caller's times are dates.
     """
     timestamp = arrays.number_of(time)
     if timestamp is None:
@@ -44,7 +47,7 @@ def read_time(time: Any, index: int, last: float | None, *, again: bool = False)
     if not isfinite(timestamp):
         raise TraceError(f"time is {timestamp} at sample {index}: give a finite number of seconds")
     if last is not None and (timestamp < last or (timestamp == last and not again)):
-        raise not_increasing(index, timestamp, last)
+        raise not_increasing(index, timestamp, last, dated=dated)
     return timestamp
 
 
@@ -54,8 +57,13 @@ def read_values(
     index: int,
     time: float,
     types: Types = NO_TYPES,
+    *,
+    dated: bool = False,
 ) -> dict[str, float]:
-    """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`."""
+    """Return a sample's values in the order of the names, each read once; raise :class:`TraceError`.
+
+    ``dated``: whether the caller's times are dates.
+    """
     for name in values:
         if name not in names:
             raise unknown_variable(name, names)
@@ -64,7 +72,7 @@ def read_values(
         if name not in values:
             raise missing_variable(name, tuple(values))
         type_ = types.get(name)
-        where = "" if type_ is None else f"sample {index}, time {time:.15g} s"
+        where = "" if type_ is None else f"sample {index}, time {time_text(time, dated=dated)}"
         number = arrays.number_of(encoded_value(values[name], name, type_, where, index))
         if number is None:
             raise TraceError(
@@ -73,7 +81,7 @@ def read_values(
                 index=index,
             )
         if isnan(number):
-            raise nan_error(name, index, time)
+            raise nan_error(name, index, time, dated=dated)
         if type_ is BOOLEAN and number not in (0.0, 1.0):
             raise no_truth(name, number, where, index)
         numbers[name] = number

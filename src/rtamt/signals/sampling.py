@@ -111,7 +111,7 @@ def _channel(name: str, times: Any, values: Any) -> Channel:
             f"'{name}' has {len(seconds)} times but {len(raw)} values: give one of each for every sample",
             variable=name,
         )
-    check_increasing(seconds)
+    check_increasing(seconds, dated=arrays.are_dates(original))
     return Channel(original[~absent], raw[~absent])
 
 

@@ -168,12 +168,12 @@ def coarse_place(gap: float) -> float:
 
 
 def check_increasing(
-    times: FloatArray, before: float | None = None, first: int = 0, dates: NDArray[Any] | None = None
+    times: FloatArray, before: float | None = None, first: int = 0, *, dated: bool = False
 ) -> None:
     """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
 
-    ``first`` is the index of ``times[0]`` in the whole recording, for the message; ``dates``: the times if they are
-    dates, with that before the first one if there is one.
+    ``first`` is the index of ``times[0]`` in the whole recording, and ``dated`` whether the caller's times are dates,
+    for the message.
     """
     finite = np.isfinite(times)
     if not finite.all():
@@ -184,15 +184,13 @@ def check_increasing(
             index=first + i,
         )
     if before is not None and len(times) and times[0] <= before:
-        raise not_increasing(first, float(times[0]), before, _dates_of(dates, -len(times)))
+        raise not_increasing(first, float(times[0]), before, dated=dated)
     steps = np.diff(times)
     if (steps <= 0).any():
         i = int((steps <= 0).argmax()) + 1
         if before is None and len(steps) > 1 and not steps.any():
             raise never_set(float(times[0]), len(times))
-        raise not_increasing(
-            first + i, float(times[i]), float(times[i - 1]), _dates_of(dates, i - len(times))
-        )
+        raise not_increasing(first + i, float(times[i]), float(times[i - 1]), dated=dated)
 
 
 def never_set(time: float, count: int, name: str = TIME) -> TraceError:
@@ -204,20 +202,11 @@ def never_set(time: float, count: int, name: str = TIME) -> TraceError:
     )
 
 
-def _dates_of(dates: NDArray[Any] | None, index: int) -> tuple[str, str] | None:
-    """Return the date of a sample, counted from the end, and that before it; None if the times are no dates."""
-    if dates is None or dates.dtype.kind != "M":
-        return None
-    from rtamt.signals.listing import show_time
+def not_increasing(index: int, time: float, before: float, *, dated: bool = False) -> TraceError:
+    """Return the error for a timestamp that is not later than its predecessor; ``dated``: whether both are dates."""
+    from rtamt.language.units.moments import time_text
 
-    return show_time(dates[index]), show_time(dates[index - 1])
-
-
-def not_increasing(
-    index: int, time: float, before: float, dates: tuple[str, str] | None = None
-) -> TraceError:
-    """Return the error for a timestamp that is not later than its predecessor; ``dates``: both as text."""
-    now, then = dates or (f"{time:.15g} s", f"{before:.15g} s")
+    now, then = time_text(time, dated=dated), time_text(before, dated=dated)
     return TraceError(
         f"time does not increase at sample {index}: {now} comes after {then}; "
         f"sort the samples and drop repeated timestamps",
@@ -233,11 +222,12 @@ def check_regular(
     tolerance: float = TOLERANCE,
     before: float | None = None,
     first: int = 0,
-    dates: NDArray[Any] | None = None,
+    *,
+    dated: bool = False,
 ) -> None:
     """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance).
 
-    ``dates``: as for :func:`check_increasing`.
+    ``dated``: as for :func:`check_increasing`.
     """
     whole = times if before is None else np.concatenate(([before], times))
     step = float(period)
@@ -245,16 +235,17 @@ def check_regular(
     if off.any():
         i = int(off.argmax()) + 1
         index = first + i - (0 if before is None else 1)
-        date = _dates_of(dates, i - len(whole))
-        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance, date and date[0])
+        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance, dated=dated)
 
 
 def irregular(
-    index: int, time: float, before: float, period: Fraction, tolerance: float, date: str | None = None
+    index: int, time: float, before: float, period: Fraction, tolerance: float, *, dated: bool = False
 ) -> TraceError:
-    """Return the error for a sample that is not one period after the one before; ``date``: its time as text."""
+    """Return the error for a sample that is not one period after the one before; ``dated``: whether times are dates."""
+    from rtamt.language.units.moments import time_text
+
     return TraceError(
-        f"sample {index} at {date or f'{time:.15g} s'} is {time - before:g} s after the one before, expected "
+        f"sample {index} at {time_text(time, dated=dated)} is {time - before:g} s after the one before, expected "
         f"{format_duration(period)} (within {tolerance:.0%}): give the right period, resample the trace, or use "
         f"dense time (--time dense)",
         variable=TIME,

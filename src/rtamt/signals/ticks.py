@@ -25,6 +25,7 @@ from types import MappingProxyType
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import NANOSECOND, UNITS, check_unit, decimal, format_duration
+from rtamt.language.units.moments import show_date
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import dt, np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
@@ -313,7 +314,7 @@ class TimeScale:
         """Return a tick for a message."""
         time = self.time(tick)
         if self.kind in ("datetimes", "zoned"):
-            return str(time)
+            return show_date(time)
         unit = next((name for name, size in UNITS.items() if size == self.unit), "s")
         # To the last tick: timestamps since 1970 differ in their last digits.
         return f"{decimal(tick * self.tick / self.unit) or f'{float(time):.12g}'} {unit}"

@@ -68,7 +68,7 @@ class DiscreteStream(Stream):
 
     def _begin(self, timestamps: Timestamps | None) -> Monitor:
         if timestamps is not None:
-            check_increasing(timestamps.seconds, dates=timestamps.original)
+            check_increasing(timestamps.seconds, dated=arrays.are_dates(timestamps.original))
         if self._period is None:
             self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
         domain = Discrete(self._period, self._tolerance)

@@ -23,7 +23,7 @@ FORMATS = {
     "dates": (
         lambda t: np.datetime64(t, "s"),
         None,
-        ("1970-01-01T00:00:00.000000000", "1970-01-01T00:00:01.000000000"),
+        ("1970-01-01T00:00:00", "1970-01-01T00:00:01"),
     ),
     "durations": (lambda t: dt.timedelta(seconds=t), None, ("0 s", "1 s")),
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rtamt.compiler.shared import Shape
 from rtamt.compiler.stored import StoredPlan
 from rtamt.engine import offline_bounds
-from rtamt.engine.backend import Compiled, CompiledSession, Defined, TickDefinition, named
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, Definition, named
 from rtamt.engine.dense.evaluate import BoundsEvaluator, Evaluator, StoredEvaluator, settling
 from rtamt.engine.dense.python_backend import PythonDenseMonitor
 from rtamt.engine.native import calls_of, core, creation_error
@@ -159,7 +159,7 @@ class EventProgram(CompiledSession):
         return known
 
 
-class EventDefinition(TickDefinition):
+class EventDefinition(Definition):
     """Formulas that are evaluated by definition."""
 
     def __init__(self, formulas: Sequence[Formula], inputs: tuple[str, ...], domain: Dense) -> None:

@@ -9,10 +9,11 @@ from fractions import Fraction
 
 from rtamt.compiler.passes import PASSES
 from rtamt.compiler.shared import Shape
-from rtamt.engine.backend import Compiled, CompiledSession, Defined, Place, Session, named
+from rtamt.engine.backend import Compiled, CompiledSession, Defined, Definition, Place, named
 from rtamt.engine.native import calls_of, core, core_monitor
 from rtamt.engine.online import depth_of
 from rtamt.errors import UsageError
+from rtamt.language.undefined_value import UndefinedAtSampleError, at_sample, undefined
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.desugar import desugar
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rtamt.engine.discrete.evaluate import Evaluator, StoredEvaluator
     from rtamt.engine.discrete.python_backend import PythonMonitor
     from rtamt.engine.early import EarlyQuery, EarlySession
+    from rtamt.errors import EvaluationError
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
     from rtamt.signals.discrete import Discrete, DiscreteTrace
@@ -121,7 +123,10 @@ class DefinedDiscrete(Defined):
 
         def evaluated(trace: DiscreteTrace) -> list[FloatArray]:
             start = float(trace.times[0])
-            return [reference.evaluate(f, trace.columns, len(trace), step, start) for f in formulas]
+            try:
+                return [reference.evaluate(f, trace.columns, len(trace), step, start) for f in formulas]
+            except UndefinedAtSampleError as error:
+                raise _at_callers_time(error, trace) from None
 
         return evaluated
 
@@ -129,7 +134,10 @@ class DefinedDiscrete(Defined):
         """See :class:`Defined`."""
         from rtamt.engine import offline_bounds
 
-        return offline_bounds.discrete(formula, trace)
+        try:
+            return offline_bounds.discrete(formula, trace)
+        except UndefinedAtSampleError as error:
+            raise _at_callers_time(error, trace) from None
 
     def session(
         self,
@@ -198,7 +206,7 @@ class SampleProgram(CompiledSession):
         return instruction.x if instruction.opcode == "const" else float(monitor.last(place))
 
 
-class SampleDefinition(Session):
+class SampleDefinition(Definition):
     """Formulas that are evaluated by definition.
 
     ``strict``: reject a sample off the period, instead of counting it. ``unit``: seconds in a unit of the timestamps.
@@ -231,6 +239,11 @@ class SampleDefinition(Session):
     def part(self, monitor: PythonMonitor, formula: Formula) -> float:
         """Return the value at the last sample of a part without future operators."""
         return monitor.last(formula)
+
+
+def _at_callers_time(error: UndefinedAtSampleError, trace: DiscreteTrace) -> EvaluationError:
+    formula, sample, seconds = error.args
+    return undefined(formula, at_sample(sample, seconds, dated=trace.dated))
 
 
 _DEFINED = DefinedDiscrete()

@@ -47,40 +47,45 @@ class CheckedSamples(OnlineMonitor):
         from rtamt.signals.samples import time_of
 
         time = time_of(given)
-        if self._plain:
+        if self._plain and not self._begins_with_moment(time):
             return self._take(time, values)
         return self._take_alone(time, values)
+
+    def _begins_with_moment(self, time: Any) -> bool:
+        """Return whether a time is a date or a duration, and that of the first sample: it decides for the others."""
+        return arrays.is_moment(time) and self._times.plain and not self.samples
 
     @exclusive
     def _take_alone(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time or value is remembered here."""
-        robustness = (
-            self._take(time, values) if self._times.plain else self._take_at_caller_time(time, values)
-        )
+        plain = self._times.plain and not self._begins_with_moment(time)
+        robustness = self._take(time, values) if plain else self._take_at_caller_time(time, values)
         self._note_sample(robustness)
         return robustness
 
     def _take_at_caller_time(self, time: Any, values: dict[str, Any]) -> float | None:
         """Take a sample whose time is not given in seconds."""
         timestamp = self._times.read([time], self.samples)
-        robustness = self._take(float(timestamp.seconds[0]), values)
+        robustness = self._take(
+            float(timestamp.seconds[0]), values, dated=arrays.are_dates(timestamp.original)
+        )
         self._remember(timestamp.original)
         return robustness
 
-    def _take(self, time: Any, values: dict[str, Any]) -> float | None:
+    def _take(self, time: Any, values: dict[str, Any], *, dated: bool = False) -> float | None:
         from rtamt.signals.samples import read_time, read_values
 
         flat = self._read_by_formula(values)
         if self._finished:
             raise self._is_finished()
-        timestamp = read_time(time, self.samples, self._last_time)
-        numbers = read_values(flat, self.input_names, self.samples, timestamp, self._types)
+        timestamp = read_time(time, self.samples, self._last_time, dated=dated)
+        numbers = read_values(flat, self.input_names, self.samples, timestamp, self._types, dated=dated)
         try:
             robustness: float | None = self._update(timestamp, numbers)
         except self._refused:
-            raise self._refusal(timestamp) from None
+            raise self._refusal(timestamp, dated=dated) from None
         except self._undefined as error:
-            raise self._no_value(error) from None
+            raise self._no_value(error, dated=dated) from None
         return robustness
 
     def _step_carefully(self, *values: Any) -> float | None:
@@ -98,11 +103,11 @@ class CheckedSamples(OnlineMonitor):
     def _take_row_at_caller_time(self, values: tuple[float, ...]) -> float | None:
         """Take a sample after samples whose times are not in seconds."""
         later = self._times.later(1)
-        robustness = self._take_row(values)
+        robustness = self._take_row(values, dated=arrays.are_dates(later))
         self._remember(later)
         return robustness
 
-    def _take_row(self, values: tuple[float, ...]) -> float | None:
+    def _take_row(self, values: tuple[float, ...], *, dated: bool = False) -> float | None:
         from rtamt.signals.samples import read_values
 
         if len(values) != len(self.input_names):
@@ -113,13 +118,14 @@ class CheckedSamples(OnlineMonitor):
         if self._finished:
             raise self._is_finished()
         named = dict(zip(self.input_names, values, strict=True))
-        numbers = read_values(named, self.input_names, self.samples, self._next_time(), self._types)
+        time = self._next_time()
+        numbers = read_values(named, self.input_names, self.samples, time, self._types, dated=dated)
         try:
             robustness: float | None = self._step(*numbers.values())
         except self._refused:
-            raise self._refusal(self._next_time()) from None
+            raise self._refusal(time, dated=dated) from None
         except self._undefined as error:
-            raise self._no_value(error) from None
+            raise self._no_value(error, dated=dated) from None
         return robustness
 
     def _note_sample(self, robustness: float | None) -> None:
@@ -141,8 +147,16 @@ class CheckedSamples(OnlineMonitor):
         return last
 
     def _next_time(self) -> float:
-        last = self._last_time
-        return 0.0 if last is None else last + float(self._period)
+        return float(self._next_times(1)[0])
+
+    def _next_times(self, n: int) -> arrays.FloatArray:
+        """Return the times of the next samples if they have none: those of a recording while none had."""
+        samples, last, period = self.samples, self._last_time, float(self._period)
+        if last is None or last == (samples - 1) * period:
+            first, start = samples, 0.0
+        else:
+            first, start = 1, last
+        return np.array(start + np.arange(first, first + n) * period, np.float64)
 
     # ---- timestamps that are not in seconds ------------------------------------------------------
 
@@ -170,7 +184,7 @@ class CheckedSamples(OnlineMonitor):
     ) -> tuple[Timestamps, list[arrays.FloatArray]]:
         last = self._last_time
         if timestamps is None:
-            times = np.array(self._next_time() + float(self._period) * np.arange(n), dtype=np.float64)
+            times = self._next_times(n)
             timestamps = Timestamps(times, times if self._times.plain else self._times.later(n))
         elif n:
             self._times.require_alike(timestamps, self.samples)
@@ -178,33 +192,35 @@ class CheckedSamples(OnlineMonitor):
             timestamps = Timestamps(timestamps.seconds, self._recent(0))
         times, ordered = timestamps.seconds, [columns[name] for name in self.input_names]
         if not self._backend.accepts(times, ordered):
-            dates = None if timestamps.original.dtype.kind != "M" else timestamps.original
-            if dates is not None and last is not None:
-                dates = np.concatenate((self._recent(1), dates))
-            check_increasing(times, last, self.samples, dates)
-            check_regular(times, self._period, self._tolerance, last, self.samples, dates)
+            dated = arrays.are_dates(timestamps.original)
+            check_increasing(times, last, self.samples, dated=dated)
+            check_regular(times, self._period, self._tolerance, last, self.samples, dated=dated)
             for name, column in columns.items():
-                arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
+                arrays.check_numbers(name, column, times, self.samples, self._types.get(name), dated=dated)
         return timestamps, ordered
 
     def _is_finished(self) -> UsageError:
         return UsageError("the monitor has finished its trace; call reset() before the next sample")
 
-    def _refusal(self, time: float) -> Exception:
+    def _refusal(self, time: float, *, dated: bool) -> Exception:
         """Return the error for a sample that the back end rejected."""
         from rtamt.signals.samples import read_time
 
         if self._finished:
             return self._is_finished()
         index, last = self.samples, self._last_time
-        read_time(time, index, last)
+        read_time(time, index, last, dated=dated)
         period = float(self._period)
         if last is None or abs(time - last - period) <= self._tolerance * period:
             return in_use()  # the cause has disappeared meanwhile
-        return irregular(index, time, last, self._period, self._tolerance)
+        return irregular(index, time, last, self._period, self._tolerance, dated=dated)
 
-    def _no_value(self, error: Any) -> Exception:
-        """Return the error for an undefined value, with its sub-formula and instant."""
+    def _no_value(self, error: Any, *, dated: bool | None = None) -> Exception:
+        """Return the error for an undefined value, with its sub-formula and instant.
+
+        ``dated``: whether the caller's times are dates, by default as before.
+        """
         from rtamt.language.undefined_value import at_sample, undefined
 
-        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
+        dated = arrays.are_dates(self._times.original) if dated is None else dated
+        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time, dated=dated))

@@ -208,7 +208,7 @@ def failed(
     if isinstance(error, RuntimeError):
         return creation_error(program, error)
     sample = error.args[1]
-    where = at_sample(sample, float(trace.times[sample]))
+    where = at_sample(sample, float(trace.times[sample]), dated=trace.dated)
     if program.metadata is not None:
         return undefined_text(program.metadata.meanings.get(error.args[0], UNNAMED), where)
     formula = culprit(error, program, asked, plan.original)
@@ -224,5 +224,7 @@ def defined(scan: Scan, operands: list[FloatArray], trace: DiscreteTrace, plan: 
     wrong = np.flatnonzero(np.isnan(values))
     if len(wrong):
         sample = int(wrong[0])
-        raise undefined(plan.original(scan.meaning), at_sample(sample, float(trace.times[sample])))
+        raise undefined(
+            plan.original(scan.meaning), at_sample(sample, float(trace.times[sample]), dated=trace.dated)
+        )
     return values

@@ -15,9 +15,10 @@ from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
 from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import TIME, columns_of
+from rtamt.signals.arrays import TIME, Timestamps, columns_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
@@ -104,14 +105,14 @@ class DiscreteFleet:
             raise UsageError(sentence(error)) from None
         return taken
 
-    def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[FloatArray, dict[str, FloatArray]]:
+    def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[Timestamps, dict[str, FloatArray]]:
         """Return a batch as arrays; raise :class:`TraceError` for data that is not one."""
         monitor = self._monitor
         given = [times, *(columns.get(name) for name in monitor.input_names)]
         if not monitor._types and len(given) == len(columns) + 1 and all(map(_is_column, given)):
             refuse_implausible(times, TIME)
             if all(len(column) == len(times) for column in given):
-                return times, dict(columns)
+                return Timestamps(times, times), dict(columns)
         for name in columns:
             if name not in monitor.input_names and name not in monitor._declared:
                 raise unknown_variable(name, monitor.input_names)
@@ -119,16 +120,20 @@ class DiscreteFleet:
             {**columns, "time": times}, monitor.input_names, None, monitor._types
         )
         assert timestamps is not None
-        return timestamps.seconds, found
+        return timestamps, found
 
-    def check(self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]) -> None:
-        """Raise :class:`TraceError` for a value that does not have its type."""
+    def check(
+        self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray], *, dated: bool = False
+    ) -> None:
+        """Raise :class:`TraceError` for a value that does not have its type; ``dated``: whether times are dates."""
         for name, type_ in self._monitor._types.items():
             require_truths(
                 name,
                 type_,
                 np.where(np.isnan(columns[name]), 0.0, columns[name]),
-                lambda i: f"index {i} of the batch, key {keys[i].item()!r}, time {times[i]:.15g} s",
+                lambda i: (
+                    f"index {i} of the batch, key {keys[i].item()!r}, time {time_text(times[i], dated=dated)}"
+                ),
             )
 
     def update(
@@ -137,11 +142,13 @@ class DiscreteFleet:
         times: FloatArray,
         columns: Mapping[str, FloatArray],
         place: Callable[[int], int | None] = int,
+        *,
+        dated: bool = False,
     ) -> list[Known]:
         """Take samples that :meth:`check` accepts; return what became known of each output.
 
-        ``place``: where in the batch of the caller a sample is; None for one that waited. Raises for wrong data, and
-        nothing has changed.
+        ``place``: where in the batch of the caller a sample is; None for one that waited. ``dated``: whether the
+        caller's times are dates. Raises for wrong data, and nothing has changed.
         """
         n = len(times)
         made = [
@@ -155,10 +162,12 @@ class DiscreteFleet:
         except ValueError as error:
             raise UsageError(sentence(error)) from None
         if rejected is not None:
-            raise self._error(keys, times, rejected, place(rejected[0]))
+            raise self._error(keys, times, rejected, place(rejected[0]), dated=dated)
         return made
 
-    def _error(self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None) -> Exception:
+    def _error(
+        self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None, *, dated: bool = False
+    ) -> Exception:
         """Return the error for a batch that the core rejected: that of a monitor, with key and index."""
         index, reason, sample, last, instruction, moment = rejected
         where = place_of(keys[index].item(), place)
@@ -167,20 +176,20 @@ class DiscreteFleet:
             return full(where, self.capacity)
         if reason == "undefined":
             failure = core().Undefined(instruction, sample)
-            culprit = undefined(self._session.culprit(failure), at_sample(sample, moment))
+            culprit = undefined(self._session.culprit(failure), at_sample(sample, moment, dated=dated))
             text = f"{where}: {culprit}"
             return EvaluationError(text) if place is not None else WaitedError(text, keys[index].item(), time)
         monitor = self._monitor
         error: Exception
         if reason == "value":
-            error = nan_error(monitor.input_names[instruction], sample, time)
+            error = nan_error(monitor.input_names[instruction], sample, time, dated=dated)
         elif reason == "gap":
-            error = irregular(sample, time, last, monitor.period, monitor._tolerance)
+            error = irregular(sample, time, last, monitor.period, monitor._tolerance, dated=dated)
             if place is None:
                 error = TraceError(f"{error}; or drop the key")
         else:
             try:
-                read_time(time, sample, last)
+                read_time(time, sample, last, dated=dated)
             except TraceError as wrong:
                 error = wrong
         variable = monitor.input_names[instruction] if reason == "value" else "time"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.quantifiers import QuantifierExecutor as Quantifier
 from rtamt.language.undefined_value import at_sample, undefined
+from rtamt.lazy.tuples import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,18 +23,29 @@ if TYPE_CHECKING:
 Sample = dict[str, float]
 
 
+class Moment(NamedTuple):
+    """Where a sample is in the trace, for errors: its index, its time, and whether that is a date of the caller."""
+
+    sample: int
+    seconds: float
+    dated: bool
+
+
+BEGIN = Moment(0, 0.0, False)
+
+
 class Executor(Monitor):
     """The monitor of a quantifier's formula over one member."""
 
-    #: The index and the time of its first sample, and the member in words.
-    origin: tuple[int, float, str] = (0, 0.0, "")
+    #: Where its first sample is, and the member in words.
+    origin: tuple[Moment, str] = (BEGIN, "")
 
-    def _no_value(self, error: Any) -> Exception:
-        begin, time, who = self.origin
+    def _no_value(self, error: Any, *, dated: bool | None = None) -> Exception:  # noqa: ARG002 - takes seconds
+        begin, who = self.origin
         index = error.args[1]
-        found = undefined(
-            self._session.culprit(error), at_sample(begin + index, time + index * float(self._period))
-        )
+        seconds = begin.seconds + index * float(self._period)
+        where = at_sample(begin.sample + index, seconds, dated=begin.dated)
+        found = undefined(self._session.culprit(error), where)
         return type(found)(f"{who}: {found}")
 
 
@@ -42,13 +54,11 @@ class QuantifierExecutor(Quantifier):
 
     running: dict[str, _Running]
 
-    def step(
-        self, present: Mapping[str, Mapping[str, Sample]], values: Sample, at: tuple[int, float]
-    ) -> float:
+    def step(self, present: Mapping[str, Mapping[str, Sample]], values: Sample, at: Moment) -> float:
         """Take a sample; return what the members gave together at the instant one lag ago.
 
         ``present``: the members of each group that are present, with their fields. ``values``: of all other variables.
-        ``at``: the index and the time of the sample.
+        ``at``: where the sample is.
         """
         plan = self.plan
         here = present[plan.group]
@@ -78,18 +88,18 @@ class QuantifierExecutor(Quantifier):
         """Go back to a state."""
         self.running = {}
         for member, each in state.items():
-            self.running[member] = _Running(self.plan, self.binding(member), (0, 0.0))
+            self.running[member] = _Running(self.plan, self.binding(member), BEGIN)
             self.running[member].restore(each)
 
 
 class _Running:
     """The executor of one member, and the quantifiers inside."""
 
-    def __init__(self, plan: Plan, bound: Mapping[str, str], at: tuple[int, float]) -> None:
+    def __init__(self, plan: Plan, bound: Mapping[str, str], at: Moment) -> None:
         self.plan = plan
         self.executor: Executor = copy(plan.template)
         who = ", ".join(f"{variable} is {member}" for variable, member in bound.items())
-        self.executor.origin = (*at, who)
+        self.executor.origin = at, who
         self.inside = [QuantifierExecutor(inner, bound) for inner in plan.inside]
         self.absent = 0
 
@@ -98,7 +108,7 @@ class _Running:
         present: Mapping[str, Mapping[str, Sample]],
         values: Sample,
         sample: Sample | None,
-        at: tuple[int, float],
+        at: Moment,
     ) -> float | None:
         plan = self.plan
         mine = dict(values)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 from rtamt.engine.discrete.backends import BACKENDS
 from rtamt.engine.discrete.checked_samples import CheckedSamples
 from rtamt.engine.native import MonitorBase
@@ -161,9 +163,8 @@ class Monitor(MonitorBase, CheckedSamples):
         if taken is not None:
             return taken
         regular = self.is_period_known(data)
-        return self._push(
-            *arrays.columns_of(data, self.input_names, self._times.unit, self._types, regular=regular)
-        )
+        names, unit, first = self.input_names, self._times.unit, self.samples
+        return self._push(*arrays.columns_of(data, names, unit, self._types, first=first, regular=regular))
 
     def is_period_known(self, data: Any) -> bool:
         """See :func:`rtamt.signals.assumed_period.is_known`."""
@@ -194,7 +195,7 @@ class Monitor(MonitorBase, CheckedSamples):
         try:
             known = self._backend.push(times, columns, samples)
         except self._undefined as error:
-            raise self._no_value(error) from None
+            raise self._no_value(error, dated=arrays.are_dates(original)) from None
         if not self._times.plain or (len(original) and original is not times):
             self._remember(original)
         every = np.concatenate((before, original)) if len(before) else original
@@ -306,6 +307,12 @@ def push_samples(
     return monitor._push(timestamps, columns, n)
 
 
-def last_settled_time(monitor: Monitor) -> float:
-    """Return the time that the value is for which the last sample made known."""
-    return float(monitor._recent(monitor._lags[0] + 1)[0])
+def last_settled_time(monitor: Monitor, *, known: bool) -> Any:
+    """Return the time that the value is for which the last sample made known, in the caller's format.
+
+    If no value is ``known``, NaN or NaT.
+    """
+    if known:
+        return arrays.plain(monitor._recent(monitor._lags[0] + 1)[0])
+    original = monitor._times.original
+    return nan if original is None or original.dtype.kind not in "mM" else original.dtype.type("NaT", "ns")

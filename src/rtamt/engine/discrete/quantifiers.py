@@ -8,12 +8,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.discrete.member_executors import Executor, QuantifierExecutor
+from rtamt.engine.discrete.member_executors import Executor, Moment, QuantifierExecutor
 from rtamt.engine.discrete.monitor import Monitor
 from rtamt.engine.quantifiers import Plan, QuantifierMonitor
 from rtamt.lazy.modules import np
 from rtamt.rewrite.quantifier_streams import RUNNING
 from rtamt.signals import arrays
+from rtamt.signals.arrays import Timestamps
 from rtamt.signals.data_errors import missing_field, missing_variable, nan_of_members
 from rtamt.signals.member_chunks import chunk
 from rtamt.signals.samples import read_values
@@ -75,20 +76,29 @@ class SampledMembers(QuantifierMonitor):
         for name in self.input_names:
             if name not in own:
                 raise missing_variable(name, tuple(values))
-        seconds = arrays.number_of(time)
-        timestamp = self._next_time() if seconds is None else seconds
-        numbers = read_values(own, self.input_names, self.samples, timestamp, self._types)
+        moment = self._moment(time)
+        numbers = read_values(
+            own, self.input_names, self.samples, moment.seconds, self._types, dated=moment.dated
+        )
         present = {}
         for name, (group, fields) in self._fields.items():
             present[name] = {
-                member: self._sample(member, sample, group, fields, timestamp)
+                member: self._sample(member, sample, group, fields, moment)
                 for member, sample in given.items()
                 if group.matches(member) and all(sample.get(field, 0.0) is not None for field in fields)
             }
         return numbers, present
 
+    def _moment(self, time: Any) -> Moment:
+        """Return where an update is in the trace, for errors; of an invalid time, as if it were the next one."""
+        seconds, dated = arrays.number_of(time), False
+        if arrays.is_moment(time):
+            stamps = arrays.timestamps([time])
+            seconds, dated = float(stamps.seconds[0]), arrays.are_dates(stamps.original)
+        return Moment(self.samples, self._next_time() if seconds is None else seconds, dated)
+
     def _sample(
-        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], timestamp: float
+        self, member: str, sample: Mapping[str, Any], group: Any, fields: Sequence[str], moment: Moment
     ) -> Sample:
         """Return the fields of a member as numbers."""
         for field in fields:
@@ -99,9 +109,10 @@ class SampledMembers(QuantifierMonitor):
         numbers = read_values(
             {name: sample[field] for field, name in names.items()},
             tuple(names.values()),
-            self.samples,
-            timestamp,
+            moment.sample,
+            moment.seconds,
             types,
+            dated=moment.dated,
         )
         return {field: numbers[name] for field, name in names.items()}
 
@@ -193,21 +204,23 @@ class MemberMonitor(SampledMembers):
         regular = self._outer.is_period_known(data)
         made = chunk(data, self._fields, self.input_names, regular=regular)
         names = [*self.input_names, *made.columns]
-        timestamps, columns, n = arrays.columns_of(made.data, names, None, {**self._types, **made.types})
+        timestamps, columns, n = arrays.columns_of(
+            made.data, names, None, {**self._types, **made.types}, first=self.samples
+        )
         if n == 0:
             return Signal(np.empty(0), np.empty(0))
-        times = np.array(self._next_time() + float(self.period) * np.arange(n), np.float64)
-        times = times if timestamps is None else timestamps.seconds
+        seconds, given = self._next_times(n) if timestamps is None else timestamps
+        dated = arrays.are_dates(given)
         with nan_of_members(self._fields):
             for name, column in columns.items():
-                arrays.check_numbers(name, column, times, self.samples, self._types.get(name))
+                arrays.check_numbers(name, column, seconds, self.samples, self._types.get(name), dated=dated)
         before = self._state()
         known = _NewValues(self._watched)
         try:
             for i in range(n):
                 numbers = {name: float(columns[name][i]) for name in self.input_names}
                 present = made.present(columns, i)
-                known.note(self._try_update(float(times[i]), numbers, present), self._outer)
+                known.note(self._try_update(arrays.plain(given[i]), numbers, present), self._outer)
         except Exception:
             self._restore(before)
             raise
@@ -224,7 +237,8 @@ class MemberMonitor(SampledMembers):
         known = _NewValues(self._watched)
         absent: dict[str, dict[str, Sample]] = {name: {} for name in self._fields}
         for _ in range(self._late if samples else 0):
-            known.note(self._advance(self._next_time(), numbers, absent, running=0.0), self._outer)
+            (time,) = self._next_times(1).original
+            known.note(self._advance(arrays.plain(time), numbers, absent, running=0.0), self._outer)
         last = self._outer._recent(self._late + 1)[0] if samples else None
         known.end(self._outer.finish(), self._outer)
         self._finished = True
@@ -235,8 +249,7 @@ class MemberMonitor(SampledMembers):
         self, time: Any, numbers: Sample, present: dict[str, dict[str, Sample]], running: float = 1.0
     ) -> float | None:
         values = {**numbers, RUNNING: running}
-        seconds = arrays.number_of(time)
-        at = self.samples, self._next_time() if seconds is None else seconds
+        at = self._moment(time)
         for each in self._quantifiers:
             values[each.plan.column] = each.step(present, numbers, at)
         outer = self._outer
@@ -245,6 +258,12 @@ class MemberMonitor(SampledMembers):
 
     def _next_time(self) -> float:
         return float(self._outer._next_time())
+
+    def _next_times(self, n: int) -> Timestamps:
+        """Return the times of the next samples, one period apart, in seconds and in the caller's format."""
+        seconds = self._outer._next_times(n)
+        times = self._outer._times
+        return Timestamps(seconds, seconds if times.plain else times.later(n))
 
     def __getitem__(self, name: str | Formula) -> float | Signal | None:
         """Return the new values of a watched formula after the last update; see ``Monitor``."""

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
 from rtamt.errors import TraceError, UsageError
+from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
+from rtamt.signals.data_errors import NAN_MEND
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -82,11 +84,12 @@ class ReorderBuffer:
             raise UsageError("this is not the state of a fleet: what waits is of other keys")
 
     def offer(
-        self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray]
+        self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray], *, dated: bool
     ) -> tuple[NDArray[np.bool_], Ready]:
         """Take a batch; return which samples are late, and what has waited long enough.
 
-        Raises for wrong data, and nothing has changed. Otherwise call :meth:`accept` or :meth:`withdraw` next.
+        ``dated``: whether the caller's times are dates. Raises for wrong data, and nothing has changed. Otherwise call
+        :meth:`accept` or :meth:`withdraw` next.
         """
         late = np.zeros(len(times), np.bool_)
         given = [columns[name] for name in self._inputs]
@@ -95,21 +98,21 @@ class ReorderBuffer:
         except ValueError as error:
             raise UsageError(sentence(error)) from None
         if rejected is not None:
-            raise self._error(keys[rejected[0]].item(), times, rejected)
+            raise self._error(keys[rejected[0]].item(), times, rejected, dated=dated)
         return late, self._ready()
 
-    def advance(self, watermark: float) -> tuple[list[Any], Ready]:
+    def advance(self, watermark: float, *, dated: bool) -> tuple[list[Any], Ready]:
         """Set the watermark of all keys; return what has waited long enough, and its keys. Then as :meth:`offer`."""
-        return self._without_samples(self._core.advance(watermark))
+        return self._without_samples(self._core.advance(watermark), dated=dated)
 
-    def release(self, keys: NDArray[Any]) -> tuple[list[Any], Ready]:
+    def release(self, keys: NDArray[Any], *, dated: bool) -> tuple[list[Any], Ready]:
         """Let all leave that waits of some keys, as if their watermarks had reached it. Then as :meth:`offer`."""
-        return self._without_samples(self._core.release(rows_of(keys)))
+        return self._without_samples(self._core.release(rows_of(keys)), dated=dated)
 
-    def _without_samples(self, rejected: Any) -> tuple[list[Any], Ready]:
+    def _without_samples(self, rejected: Any, *, dated: bool) -> tuple[list[Any], Ready]:
         if rejected is not None:
             (key,) = self._core.keys_at(np.array([rejected[0]]))
-            raise TraceError(f"{place_of(key, None)}: {self._long_gap(rejected)}")
+            raise TraceError(f"{place_of(key, None)}: {self._long_gap(rejected, dated=dated)}")
         ready = self._ready()
         return self._core.keys_at(ready.places), ready
 
@@ -125,30 +128,31 @@ class ReorderBuffer:
         """Forget the batch that was offered."""
         self._core.withdraw()
 
-    def _error(self, key: Any, times: FloatArray, rejected: Any) -> Exception:
+    def _error(self, key: Any, times: FloatArray, rejected: Any, *, dated: bool) -> Exception:
         index, reason, _, last, number, _ = rejected
         where, time = place_of(key, index), float(times[index])
         if reason == "full":
             return full(where, self._capacity)
         if reason == "value":
             name = self._inputs[number]
-            text = f"'{name}' is NaN at {time:.15g} s: fill the gap or leave the sample out"
+            text = f"'{name}' is NaN at {time_text(time, dated=dated)}: {NAN_MEND}"
             return TraceError(f"{where}: {text}", variable=name, index=index, time=time)
         if reason == "gap":
-            text = self._long_gap(rejected)
+            text = self._long_gap(rejected, dated=dated)
         elif last is None:
             text = f"time is {time:.15g}: give a finite number of seconds"
         else:
+            now, then = time_text(time, dated=dated), time_text(last, dated=dated)
             text = (
-                f"time does not increase: {time:.15g} s comes after {last:.15g} s; sort the samples and drop repeated "
+                f"time does not increase: {now} comes after {then}; sort the samples and drop repeated "
                 f"timestamps, or allow for lateness"
             )
         return TraceError(f"{where}: {text}", variable="time", index=index, time=time)
 
-    def _long_gap(self, rejected: Any) -> str:
-        last, time = rejected[3], rejected[5]
+    def _long_gap(self, rejected: Any, *, dated: bool) -> str:
+        last, time = (time_text(seconds, dated=dated) for seconds in (rejected[3], rejected[5]))
         return (
-            f"the gap from {last:.15g} s to {time:.15g} s is longer than the {self._filled} samples for which a value "
+            f"the gap from {last} to {time} is longer than the {self._filled} samples for which a value "
             f"is held; drop the key, or choose gaps='restart'"
         )
 

@@ -8,6 +8,7 @@ from itertools import takewhile
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.signals import arrays
@@ -28,6 +29,9 @@ class Timestamp(NamedTuple):
     seconds: float
     original: NDArray[Any] | None = None
 
+    def __str__(self) -> str:
+        return time_text(self.seconds, dated=arrays.are_dates(self.original))
+
 
 class CallerClock:
     """Converts times to seconds for the back end, and those that it reports back.
@@ -47,6 +51,15 @@ class CallerClock:
     def plain(self) -> bool:
         """Whether all times are numbers of seconds."""
         return self._times.plain
+
+    @property
+    def dated(self) -> bool:
+        """Whether the times so far are dates."""
+        return arrays.are_dates(self._times.original)
+
+    def text(self, seconds: float) -> str:
+        """Return a time in seconds, in the form of those so far, for a message."""
+        return time_text(seconds, dated=self.dated)
 
     def copied(self) -> CallerClock:
         """Return a clock that is independent of this one."""

@@ -154,7 +154,9 @@ class DiscreteEarlyCheck(EarlyCheck):
 
     def take(self, chunk: Any) -> bool:
         """See :class:`EarlyCheck`."""
-        timestamps, columns, n = arrays.columns_of(chunk, self._names, types=self._types, regular=self._given)
+        timestamps, columns, n = arrays.columns_of(
+            chunk, self._names, types=self._types, first=self._samples, regular=self._given
+        )
         if not n:
             return False
         if not self._given:
@@ -164,9 +166,10 @@ class DiscreteEarlyCheck(EarlyCheck):
         if not self._samples:
             self._begin(self._period)
         if timestamps is not None:
-            check_increasing(timestamps.seconds, self._last, self._samples)
-            check_regular(timestamps.seconds, self._period, self._tolerance, self._last, self._samples)
-            self._last = float(timestamps.seconds[-1])
+            seconds, last, dated = timestamps.seconds, self._last, arrays.are_dates(timestamps.original)
+            check_increasing(seconds, last, self._samples, dated=dated)
+            check_regular(seconds, self._period, self._tolerance, last, self._samples, dated=dated)
+            self._last = float(seconds[-1])
         step = float(self._period)
         self._times += (
             [i * step for i in range(self._samples, self._samples + n)]

@@ -9,6 +9,7 @@ from rtamt.engine import SlowPath, inner_of
 from rtamt.errors import TraceError, changed_state
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.durations import check_unit
+from rtamt.signals import arrays
 from rtamt.signals.data_errors import missing_variable, unknown_variable
 from rtamt.signals.samples import read_time
 from rtamt.signals.sampling_period import irregular, not_increasing
@@ -103,7 +104,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             self._clock.forget(self._backend.earliest)
 
     def _bounds_of(
-        self, values: Mapping[str, Any], index: int, time: float
+        self, values: Mapping[str, Any], index: int, stamp: Timestamp
     ) -> dict[str, tuple[float, float] | None]:
         """Return the bounds of a sample, None where it is missing; raise :class:`TraceError` for wrong data."""
         read: dict[str, tuple[float, float] | None] = {}
@@ -115,7 +116,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
                 if self._late is None:
                     raise missing_variable(name, tuple(values))
                 continue
-            read[name] = self._known_of(name, values[name], index, f"time {time:.15g} s")
+            read[name] = self._known_of(name, values[name], index, f"time {stamp}")
         return read
 
     def _row(self, known: Mapping[str, tuple[float, float] | None]) -> tuple[list[float], list[float]]:
@@ -131,10 +132,11 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             return
         last = backend.time(backend.newest)
         if time <= last:
-            raise not_increasing(self.samples, time, last)
+            raise not_increasing(self.samples, time, last, dated=self._clock.dated)
         place = backend.place(time)
         if place is None or not backend.newest < place <= max(backend.newest, backend.closed) + 1:
-            raise irregular(self.samples, time, last, self._step, self._tolerance)
+            dated = self._clock.dated
+            raise irregular(self.samples, time, last, self._step, self._tolerance, dated=dated)
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
         """Take the next sample in order, or raise an error."""
@@ -144,7 +146,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
                 raise self._is_finished()
             after = self.samples
             stamp = self._stamp(time)
-            known = self._bounds_of(flat, after, stamp.seconds)
+            known = self._bounds_of(flat, after, stamp)
             self._check_order(stamp.seconds)
             try:
                 found = self._backend.take(stamp.seconds, *self._row(known), after)
@@ -153,7 +155,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
             except self._refused:
                 raise in_use() from None
             except self._undefined as error:
-                raise self._no_value(error) from None
+                raise self._no_value(error, stamp) from None
 
     def _end(self) -> Any:
         """End the trace in the back end; all that is known then is final."""
@@ -168,6 +170,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         """Return a result of the back end with times in the caller's format."""
         return found
 
-    def _no_value(self, error: Any) -> Exception:
-        """Name the sub-formula and the instant of a value that does not exist."""
-        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time))
+    def _no_value(self, error: Any, stamp: Timestamp | None = None) -> Exception:
+        """Name the sub-formula and the instant of a value that does not exist; ``stamp``: of the new sample."""
+        dated = self._clock.dated or (stamp is not None and arrays.are_dates(stamp.original))
+        return undefined(self._session.culprit(error), at_sample(error.args[1], error.time, dated=dated))

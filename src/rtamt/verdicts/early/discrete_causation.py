@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rtamt.language.formula import Formula
+    from rtamt.verdicts.early.caller_clock import Timestamp
 
 
 class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMonitorBase):
@@ -50,12 +51,12 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
         return caused
 
     def _bounds_of(
-        self, values: Mapping[str, Any], index: int, time: float
+        self, values: Mapping[str, Any], index: int, stamp: Timestamp
     ) -> dict[str, tuple[float, float] | None]:
-        known = super()._bounds_of(values, index, time)
+        known = super()._bounds_of(values, index, stamp)
         for name, bounds in known.items():
             if bounds is None or bounds[0] != bounds[1]:
-                raise not_exact(name, values[name], index, f"time {time:.15g} s")
+                raise not_exact(name, values[name], index, f"time {stamp}")
         return known
 
     def causation(self, time: Any = None) -> Causation:
@@ -67,10 +68,10 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
             return Causation(*self._backend.causation_at_start())
         self._require_bounded_past()
         backend = self._backend
-        stamp = self._seconds(time)
-        sample = backend.place(stamp) if backend.newest >= 0 else None
+        stamp = self._stamp(time)
+        sample = backend.place(stamp.seconds) if backend.newest >= 0 else None
         if sample is None or sample < 0:
-            raise UsageError(f"there is no sample at {stamp:.15g} s")
+            raise UsageError(f"there is no sample at {stamp}")
         return Causation(*backend.causation(0, sample))
 
     def runs(self) -> list[CausationRun]:

@@ -36,10 +36,11 @@ class DiscreteIntervalMonitor(DiscreteIntervalSamples):
         if self.at == "start":
             raise self._start_only()
         backend = self._backend
-        stamp = self._seconds(time)
-        sample = backend.place(stamp) if backend.newest >= 0 else round(Fraction(stamp) / self._step)
+        stamp = self._stamp(time)
+        seconds = stamp.seconds
+        sample = backend.place(seconds) if backend.newest >= 0 else round(Fraction(seconds) / self._step)
         if sample is None or sample < 0:
-            raise UsageError(f"there is no sample at {stamp:.15g} s")
+            raise UsageError(f"there is no sample at {stamp}")
         if self._rest:
             first, values = self._rest[0]
             found = values[sample - first] if first <= sample < first + len(values) else None
@@ -47,7 +48,7 @@ class DiscreteIntervalMonitor(DiscreteIntervalSamples):
             found = backend.bounds(0, sample) if later is None else self._supposed(0, sample, later)
         if found is None:
             raise UsageError(
-                f"the bounds at {stamp:.15g} s are final and no longer kept; read them from changes() when they are"
+                f"the bounds at {stamp} are final and no longer kept; read them from changes() when they are"
             )
         return Interval(*found)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from rtamt.engine import SlowPath, inner_of
 from rtamt.engine.native import EarlyMonitorBase
+from rtamt.language.undefined_value import UndefinedByDefinitionError
 from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays
 from rtamt.signals.sampling_period import irregular
@@ -144,7 +145,7 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         index = self._count
         stamp = self._stamp(time)
         seconds = stamp.seconds
-        known = self._bounds_of(flat, index, seconds)
+        known = self._bounds_of(flat, index, stamp)
         begun = self._late is None or self._backend.newest >= 0
         try:
             if self._late is None:
@@ -161,7 +162,7 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         except self._refused:
             raise in_use() from None
         except self._undefined as error:
-            raise self._no_value(error) from None
+            raise self._no_value(error, stamp) from None
         self._remember(stamp, begun=begun)
 
     def _begin(self, time: float, known: dict[str, tuple[float, float] | None]) -> None:
@@ -197,6 +198,8 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
                 place = self._backend.place(each[0])
                 try:
                     self._learn(*each)
+                except UndefinedByDefinitionError:  # which counts samples from the earliest one
+                    raise
                 except self._undefined as error:
                     step, wrong = error.args
                     error.args = step, rehearsal.number(wrong, place)
@@ -244,7 +247,7 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         place = backend.place(time)
         last = backend.time(backend.newest)
         if place is None:
-            raise irregular(self.samples, time, last, self._step, self._tolerance)
+            raise irregular(self.samples, time, last, self._step, self._tolerance, dated=self._clock.dated)
         if place <= backend.closed:
             raise self._too_late(self.samples, time, backend.time(backend.closed))
 
@@ -260,14 +263,15 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if steps > closed:
             return
         if abs(time - last - steps * period) > self._tolerance * period:
-            raise irregular(self._count, time, last, self._step, self._tolerance)
+            raise irregular(self._count, time, last, self._step, self._tolerance, dated=self._clock.dated)
         raise self._too_late(self._count, time, last + closed * period)
 
     def _too_late(self, index: int, time: float, closed: float) -> LateSampleError:
         """Return the error for a sample; ``closed``: the last time at which none can arrive any more."""
+        at, until = map(self._clock.text, (time, closed))
         return LateSampleError(
-            f"sample {index}, at {time:.15g} s, is later than the lateness of "
-            f"{format_duration(self._lateness)} allows: everything up to {closed:.15g} s "
+            f"sample {index}, at {at}, is later than the lateness of "
+            f"{format_duration(self._lateness)} allows: everything up to {until} "
             f"is final; leave it out, or allow for more lateness",
             variable=arrays.TIME,
             index=index,
@@ -275,7 +279,7 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
 
     def _format_time(self, time: float) -> str:
         """Return a time in the form of the back end for a message."""
-        return f"time {time:.15g} s"
+        return f"time {self._clock.text(time)}"
 
     def _mark_at(self, time: Any, *, late: bool = False) -> None:
         if self._finished:
