@@ -261,7 +261,8 @@ def test_in_event_time_the_order_of_arrival_and_the_batches_do_not_matter(data: 
             fleet = rtamt.Fleet.restore(spec, fleet.snapshot())
         if data.draw(st.booleans()):
             twin = rtamt.Fleet.restore(spec, fleet.snapshot())
-            before = twin.snapshot()  # of the same state as that of the fleet, whose windows may lie elsewhere
+            # Of the same state as that of the fleet, whose windows may lie elsewhere.
+            before = twin.snapshot()
             with pytest.raises(TraceError):
                 twin.update_many([*names, names[0]], [0.5, 1e7, np.inf], {name: [1.0] * 3 for name in inputs})
             assert twin.snapshot() == before
