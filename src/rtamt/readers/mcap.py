@@ -29,9 +29,7 @@ _RECORD = struct.Struct("<BQ")  # kind, length
 _IN_MESSAGE = struct.Struct("<HIQQ")  # channel, number, time of recording, time of publication
 _IN_CHUNK = struct.Struct("<QQQII")  # first time, last time, size, checksum, length of the compression's name
 _LENGTH = struct.Struct("<Q")
-_END = struct.Struct(
-    "<BQQQI"
-)  # kind and length of the footer, the place of the summary, that of its offsets, checksum
+_END = struct.Struct("<BQQQI")  # kind, length, place of the summary, place of its offsets, checksum
 
 
 def salvage(path: str, copy: str) -> str:
