@@ -6,14 +6,13 @@ from functools import lru_cache
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine.fleet_keys import place_of
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.fleet.fleet_snapshot import FleetState, packed
 from rtamt.fleet.updates import FleetUpdate, Released
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import TIME, is_moment, is_truth, number_of, timestamps
-from rtamt.signals.caller_times import KINDS
+from rtamt.signals.arrays import is_moment, is_truth, number_of, timestamps
+from rtamt.signals.caller_times import other_kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,10 +22,6 @@ if TYPE_CHECKING:
     from rtamt.engine import OnlineMonitor
     from rtamt.fleet.gaps import Gaps
     from rtamt.signals.arrays import FloatArray
-
-
-#: How the error for a value that is no number ends.
-_NO_NUMBER = "expected a number"
 
 
 class Output(NamedTuple):
@@ -72,60 +67,35 @@ class InOrder:
 
     def _take_carefully(self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]) -> FleetUpdate:
         """Take a batch that has to be converted, checked or put in order first."""
-        try:
-            (seconds, given), found = self.records.columns(times, columns)
-        except TraceError as error:
-            raise _of_key(error, keys, columns) from None
+        (seconds, given), found = self.records.columns(keys, times, columns)
         if len(keys) != len(seconds):
             raise TraceError(
                 f"there are {len(keys)} keys and {len(seconds)} times: give one of each for every sample"
             )
         before = self._kind
         if len(seconds):
-            self._require_kind(given.dtype.kind)
-            self._kind = given.dtype.kind
+            kind = given.dtype.kind
+            if before not in (None, kind):
+                raise other_kind(kind, before)
+            self._kind = kind
         try:
             return self._updated(self.update(keys, seconds, found))
         except BaseException:
             self._kind = before
             raise
 
-    def _require_kind(self, kind: str) -> None:
-        """Raise :class:`TraceError` if times are of another kind than before."""
-        if self._kind not in (None, kind):
-            raise TraceError(
-                f"'{TIME}' is in {KINDS[kind]}, but before in {KINDS[self._kind or kind]}: use one of them for all",
-                variable=TIME,
-            )
-
-    def _expect(self, time: Any) -> None:
-        """Take the kind of times from a watermark after a restart: a state has seconds alone."""
-        if self._kind is None and is_moment(time):
-            self._kind = timestamps([time]).original.dtype.kind
-
     @property
     def _dated(self) -> bool:
         """Whether the caller's times are dates."""
         return self._kind == "M"
 
-    def _as_given(self, seconds: FloatArray) -> NDArray[Any]:
-        """Return times of samples in the caller's format; dates to the microsecond, which is what a double holds."""
-        if self._kind not in ("M", "m"):
-            return seconds
-        known = ~np.isnan(seconds)
-        times = np.full(seconds.shape, np.iinfo(np.int64).min)  # NaT
-        times[known] = np.rint(seconds[known] * 1e6).astype(np.int64) * 1000
-        return times.view(f"{self._kind}8[ns]")
-
     def watermark(self, time: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
         """Release what waits up to a time; ``arrays``: makes an array of keys."""
-        self._expect(time)
-        return self._updated(self.release(_seconds(time), arrays))
+        return self._updated(self.release(_seconds(time), arrays), time)
 
     def advance(self, now: Any, arrays: Callable[[Sequence[Any]], NDArray[Any]]) -> FleetUpdate:
         """Set the current time: release what waits up to the lateness before it."""
-        self._expect(now)
-        return self._updated(self.release(_seconds(now) - (self._lateness or 0.0), arrays))
+        return self._updated(self.release(_seconds(now) - (self._lateness or 0.0), arrays), now)
 
     def release_keys(
         self,
@@ -135,12 +105,16 @@ class InOrder:
         """Release all that waits of some keys."""
         raise _nothing_waits()
 
-    def _updated(self, taken: Taken) -> FleetUpdate:
+    def _updated(self, taken: Taken, watermark: Any = None) -> FleetUpdate:
+        """Return an update; its times are of the kind of the batches, after a restart of that of the ``watermark``."""
+        kind = self._kind
+        if kind is None and is_moment(watermark):
+            kind = timestamps([watermark]).original.dtype.kind
         outputs = taken.outputs
         released = (
             Released(
                 np.concatenate([each.keys for each in outputs]),
-                self._as_given(np.concatenate([each.at for each in outputs])),
+                _as_given(np.concatenate([each.at for each in outputs]), kind),
                 np.concatenate([each.found for each in outputs]),
                 np.repeat(np.arange(len(outputs)), [len(each.at) for each in outputs]),
             )
@@ -149,11 +123,11 @@ class InOrder:
         )
         if not self._requirements:
             (one,) = outputs
-            times = self._as_given(one.times)
+            times = _as_given(one.times, kind)
             return FleetUpdate(one.values, one.known, times, one.warming, taken.late, released)
         values = np.stack([each.values for each in outputs], axis=1)
         known = np.stack([each.known for each in outputs], axis=1)
-        times = self._as_given(np.stack([each.times for each in outputs], axis=1))
+        times = _as_given(np.stack([each.times for each in outputs], axis=1), kind)
         warming = np.stack([each.warming for each in outputs], axis=1)
         return FleetUpdate(values, known, times, warming, taken.late, released, self._requirements)
 
@@ -334,15 +308,14 @@ class Reordered(InOrder):
         return packed(FleetState(gaps, self._lateness, waiting, bytes(self.records.snapshot())))
 
 
-def _of_key(error: TraceError, keys: NDArray[Any], columns: Mapping[str, Any]) -> TraceError:
-    """Return the error for data of a sample with the key and the index in the batch."""
-    index, name = error.index, error.variable or ""
-    if index is None or index >= len(keys):
-        return error
-    text = str(error)
-    if name in columns and text.endswith(_NO_NUMBER):
-        text = f"'{name}' is {shown(list(columns[name])[index])}, {_NO_NUMBER}"
-    return TraceError(f"{place_of(keys[index].item(), index)}: {text}", variable=error.variable, index=index)
+def _as_given(seconds: FloatArray, kind: str | None) -> NDArray[Any]:
+    """Return times of samples as a dtype of this kind; dates to the microsecond, which is what a double holds."""
+    if kind not in ("M", "m"):
+        return seconds
+    known = ~np.isnan(seconds)
+    times = np.full(seconds.shape, np.iinfo(np.int64).min)  # NaT
+    times[known] = np.rint(seconds[known] * 1e6).astype(np.int64) * 1000
+    return times.view(f"{kind}8[ns]")
 
 
 def _all_in_order(keys: NDArray[Any], known: Iterable[Sequence[NDArray[Any]]]) -> Taken:

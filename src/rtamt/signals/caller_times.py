@@ -17,8 +17,18 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import Timestamps
 
 #: The names of time formats in messages, by the kind of their dtype.
-KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
+_KINDS = {"f": "seconds", "M": "datetimes", "m": "timedeltas"}
 _NUMBERS = {"f": "f8", "i": "i8", "M": "i8", "m": "i8"}
+
+
+def other_kind(kind: str, before: str, index: int | None = None) -> TraceError:
+    """Return the error for times of another kind than those before; ``index``: of the sample, None for a batch."""
+    where = "" if index is None else f" at sample {index}"
+    return TraceError(
+        f"'{arrays.TIME}' is in {_KINDS[kind]}{where}, but before in {_KINDS[before]}: use one of them for all",
+        variable=arrays.TIME,
+        index=index,
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +64,7 @@ class CallerTimes:
         if self.unit is None and samples:
             before = "f" if self.original is None else self.original.dtype.kind
             if timestamps.original.dtype.kind != before:
-                raise TraceError(
-                    f"'{arrays.TIME}' is in {KINDS[timestamps.original.dtype.kind]} at sample {samples}, but before "
-                    f"in {KINDS[before]}: use one of them for all",
-                    variable=arrays.TIME,
-                    index=samples,
-                )
+                raise other_kind(timestamps.original.dtype.kind, before, samples)
 
     def extended(self, original: NDArray[Any]) -> CallerTimes:
         """Return the timestamps after more samples."""

@@ -13,12 +13,12 @@ from rtamt.engine.discrete.backends import BACKENDS, SampleProgram
 from rtamt.engine.discrete.reorder_buffer import ReorderBuffer
 from rtamt.engine.fleet_keys import full, place_of, rows_of, sentence
 from rtamt.engine.native import core
-from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError
+from rtamt.errors import EvaluationError, TraceError, UsageError, WaitedError, shown
 from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import TIME, Timestamps, columns_of
+from rtamt.signals.arrays import TIME, Timestamps, columns_of, number_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
@@ -105,7 +105,9 @@ class DiscreteFleet:
             raise UsageError(sentence(error)) from None
         return taken
 
-    def columns(self, times: Any, columns: Mapping[str, Any]) -> tuple[Timestamps, dict[str, FloatArray]]:
+    def columns(
+        self, keys: NDArray[Any], times: Any, columns: Mapping[str, Any]
+    ) -> tuple[Timestamps, dict[str, FloatArray]]:
         """Return a batch as arrays; raise :class:`TraceError` for data that is not one."""
         monitor = self._monitor
         given = [times, *(columns.get(name) for name in monitor.input_names)]
@@ -116,11 +118,25 @@ class DiscreteFleet:
         for name in columns:
             if name not in monitor.input_names and name not in monitor._declared:
                 raise unknown_variable(name, monitor.input_names)
-        timestamps, found, _ = columns_of(
-            {**columns, "time": times}, monitor.input_names, None, monitor._types
-        )
+        try:
+            timestamps, found, _ = columns_of(
+                {**columns, TIME: times}, monitor.input_names, None, monitor._types
+            )
+        except TraceError as error:
+            raise self._of_key(error, keys, {**columns, TIME: times}) from None
         assert timestamps is not None
         return timestamps, found
+
+    def _of_key(self, error: TraceError, keys: NDArray[Any], columns: Mapping[str, Any]) -> TraceError:
+        """Return the error for a value of a batch with its key and index; the core has counted no sample yet."""
+        index, name = error.index, error.variable or ""
+        if index is None or index >= len(keys) or name not in columns or name in self._monitor._types:
+            return error
+        value = list(columns[name])[index]
+        text = (
+            str(error) if number_of(value) is not None else f"'{name}' is {shown(value)}, expected a number"
+        )
+        return TraceError(f"{place_of(keys[index].item(), index)}: {text}", variable=name, index=index)
 
     def check(
         self, keys: NDArray[Any], times: FloatArray, columns: Mapping[str, FloatArray], *, dated: bool = False
@@ -166,7 +182,7 @@ class DiscreteFleet:
         return made
 
     def _error(
-        self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None, *, dated: bool = False
+        self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None, *, dated: bool
     ) -> Exception:
         """Return the error for a batch that the core rejected: that of a monitor, with key and index."""
         index, reason, sample, last, instruction, moment = rejected
