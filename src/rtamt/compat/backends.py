@@ -105,7 +105,7 @@ class Stream:
         """
         try:
             robustness: float = self.monitor.update_pairs(timestamp, list(numbers.items()))
-        except UndefinedByDefinitionError:  # in seconds
+        except UndefinedByDefinitionError:  # whose text has seconds already
             raise
         except self._undefined as error:
             formula = self._session.culprit(error)

@@ -40,11 +40,11 @@ class Executor(Monitor):
     #: Where its first sample is, and the member in words.
     origin: tuple[Moment, str] = (BEGIN, "")
 
-    def _no_value(self, error: Any, *, dated: bool | None = None) -> Exception:  # noqa: ARG002 - takes seconds
+    def _no_value(self, error: Any, *, dated: bool | None = None) -> Exception:
         begin, who = self.origin
         index = error.args[1]
         seconds = begin.seconds + index * float(self._period)
-        where = at_sample(begin.sample + index, seconds, dated=begin.dated)
+        where = at_sample(begin.sample + index, seconds, dated=begin.dated or bool(dated))
         found = undefined(self._session.culprit(error), where)
         return type(found)(f"{who}: {found}")
 
