@@ -147,7 +147,8 @@ class _Topic:
     """A topic: its table, and where the numbers of its columns are in a message.
 
     ``from_zero``: whether a stamp of 0 is a time, the start of a simulation. ``behind``: nanoseconds from the stamp in
-    the header of its first message to its recording, 0 without a stamp. ``by_recording``: a note on why stamps in
+    the header of its first message to its recording, 0 without a stamp. ``arrays``: the arrays of messages in its first
+    message, and their lengths. ``by_recording``: a note on why stamps in
     headers are ignored; empty if they are used.
     """
 
@@ -156,6 +157,7 @@ class _Topic:
     steps: dict[str, Steps]
     from_zero: bool
     behind: int
+    arrays: dict[Steps, int]
     by_recording: str = ""
 
     @property
@@ -200,7 +202,8 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> _Topic | None:
 
     fields = [Field(column, column, "", "number") for column in steps]
     table = Table((time_field, *fields), load, time_field=time_field, has_unit=True)
-    made.append(_Topic(table, connections, steps, from_zero, recorded - stamp if stamp or from_zero else 0))
+    behind = recorded - stamp if stamp or from_zero else 0
+    made.append(_Topic(table, connections, steps, from_zero, behind, dict(_arrays(message))))
     return made[0]
 
 
@@ -232,8 +235,13 @@ class _Rows:
         self._timestamps: list[int] = []
         self._rows: list[list[Any]] = []
         self._recodings: dict[int, Recoding] = {}
+        #: Arrays of messages on the way to a column: their lengths in the first message of the topic, and the longest.
+        self._lengths = {way: (count, count) for way, count in topic.arrays.items() if self._reads(way)}
         self._last: tuple[int, list[Any]] | None = None
         self._count = self._others = 0
+
+    def _reads(self, way: Steps) -> bool:
+        return any(path[: len(way)] == way for path in self._paths)
 
     def take(self, recorded: int, message: Any) -> None:
         """Add a message; of several with the same timestamp the first."""
@@ -249,6 +257,9 @@ class _Rows:
             )
         if not self._count:
             self._recodings = self._recodings_of(message)
+        for way, (first, longest) in self._lengths.items():
+            elements = _at(message, way)
+            self._lengths[way] = first, max(longest, 0 if elements is None else len(elements))
         self._count += 1
         self._last = stamp, row
         self._timestamps.append(stamp)
@@ -267,7 +278,12 @@ class _Rows:
         """Return the messages since the last call."""
         table = self._topic.table
         repeated = _repeated_note(self._topic.name, self._others) if self._others else ""
-        table.losses[:] = [note for note in (self._topic.by_recording, repeated) if note]
+        longer = [
+            _longer_note(f"{self._topic.name}{_text(way)}", first, longest)
+            for way, (first, longest) in self._lengths.items()
+            if longest > first
+        ]
+        table.losses[:] = [note for note in (self._topic.by_recording, repeated, *longer) if note]
         assert table.time_field is not None
         rows = [list(row) for row in self._rows] if self._recodings else self._rows
         for place, recoding in self._recodings.items():
@@ -287,6 +303,13 @@ def _together(reader: Any, wanted: Sequence[tuple[_Topic, Sequence[Field]]]) -> 
         for known, recorded, data in some:
             rows[str(known.topic)].take(recorded, _message(reader, known, data))
         yield [each.columns() for each in rows.values()]
+
+
+def _longer_note(array: str, first: int, longest: int) -> str:
+    return (
+        f"{printable(array)} has up to {longest} elements, and {first} in the first message, which decides what is "
+        f"read: the others are left out"
+    )
 
 
 def _repeated_note(topic: str, count: int) -> str:
@@ -354,6 +377,18 @@ def _numbers(message: Any, before: Steps = ()) -> Iterator[Steps]:
     elif isinstance(message, (np.ndarray, list)) and len(message) <= _ELEMENTS:
         for index, item in enumerate(message):
             yield from _numbers(item, (*before, index))
+
+
+def _arrays(message: Any, before: Steps = ()) -> Iterator[tuple[Steps, int]]:
+    """Yield the way to every array of messages in a message, and its length."""
+    if hasattr(message, "__dataclass_fields__"):
+        for name in message.__dataclass_fields__:
+            yield from _arrays(getattr(message, name), (*before, name))
+    elif isinstance(message, list) and 0 < len(message) <= _ELEMENTS:
+        if hasattr(message[0], "__dataclass_fields__"):
+            yield before, len(message)
+        for index, item in enumerate(message):
+            yield from _arrays(item, (*before, index))
 
 
 def _holder(path: Steps) -> Steps:

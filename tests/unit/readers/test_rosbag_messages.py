@@ -147,3 +147,22 @@ def test_integers_that_no_double_holds_have_a_note(tmp_path, kind):
         "rounded to doubles: 1 integer of /c.count beyond 2^53, the first at 1 s",
         "rounded to doubles: 2 integers of /c.most beyond 2^53, the first at 0 s",
     )
+
+
+@pytest.mark.parametrize("kind", ["ros1", "mcap"])
+def test_elements_that_the_first_message_lacks_have_a_note(tmp_path, capsys, kind):
+    """What violates a requirement may be among them: that must not pass in silence."""
+    with Bag(tmp_path, kind) as bag:
+        for name, text in (("Ob", "float64 d\n"), ("Obs", "my_msgs/Ob[] obs\nfloat64 x\n")):
+            bag.store.register(get_types_from_msg(text, f"my_msgs/msg/{name}"))
+        types = bag.store.types
+        for at, row in enumerate(([5.0], [5.0, -3.0], [6.0])):
+            obs = [types["my_msgs/msg/Ob"](d=value) for value in row]
+            bag.write("/o", "my_msgs/msg/Obs", at * 10**9, types["my_msgs/msg/Obs"](obs=obs, x=1.0))
+    decides = "1 in the first message, which decides what is read"
+    note = f"/o.obs has up to 2 elements, and {decides}: the others are left out"
+    assert rtamt.read(bag.path).losses == (note,)
+    assert rtamt.read(bag.path, columns=["/o.x"]).losses == ()
+    group = 'group obs = "/o.obs[*]"\nalways(forall o in obs: o.d >= 0)'
+    assert main(["check", group, str(bag.path), "--time", "dense"]) == 0
+    assert note in capsys.readouterr().out
