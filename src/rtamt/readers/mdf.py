@@ -20,7 +20,6 @@ from rtamt.readers.source import Field, Source, Table, damage, library, printabl
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from rtamt.language.value_types import ValueType
     from rtamt.readers.source import Raw
 
 
@@ -31,8 +30,8 @@ _VIRTUAL = (3, 6)
 _VARIABLE_LENGTH = 1
 #: What a master channel of MDF 4 may hold other than time.
 _AXES = {2: "angle", 3: "distance", 4: "an index"}
-#: Types of conversions from numbers, or ranges of numbers, to texts, in MDF 4 and before.
-_TEXT_TABLES, _OLD_TEXT_TABLES = (7, 8), (11, 12)
+#: Types of conversions from numbers, ranges of numbers, or bits to texts, in MDF 4 and before.
+_TEXT_TABLES, _OLD_TEXT_TABLES = (7, 8, 11), (11, 12)
 #: The flag of an MDF 4 channel with a bit in each record that marks invalid samples.
 _HAS_FLAG = 2
 #: Types of data that are no numbers: texts, bytes, MIME, dates as bytes. Their lengths lie anywhere in the file.
@@ -51,7 +50,8 @@ def open_mdf(path: str) -> Source:
     """Open a measurement file; channels of one name in several groups are called ``group.name``.
 
     Channels whose values are texts for numbers (modes, states) are read as the numbers, or as the codes of an
-    enumeration, whose members are found by these texts.
+    enumeration, whose members are found by these texts. Where a conversion has texts for some numbers and scales the
+    others, samples that are texts are NaN.
     """
     asammdf = library("asammdf", "MDF")
     with _collect_warnings() as complaints:
@@ -100,7 +100,7 @@ def _table(file: Any, number: int, counts: Counter[str]) -> Table:
         return [
             np.asarray(file.get_master(number))
             if field == time_field
-            else _samples(file, number, places[field.column], field.type)
+            else _samples(file, number, places[field.column], field, losses)
             for field in wanted
         ]
 
@@ -227,6 +227,15 @@ def _has_texts(channel: Any) -> bool:
     return getattr(channel.conversion, "conversion_type", None) in tables
 
 
+def _has_numbers(conversion: Any) -> bool:
+    """Return whether a table of texts also scales some of its numbers; before MDF 4 none does."""
+    blocks = [block for block in (getattr(conversion, "referenced_blocks", None) or {}).values() if block]
+    return any(
+        not isinstance(block, bytes) and (block.conversion_type not in _TEXT_TABLES or _has_numbers(block))
+        for block in blocks
+    )
+
+
 def _members(values: Sequence[Any], type_: Enumeration) -> Iterator[Any]:
     """Yield texts of a value table, and for numbers without a text a number that is the code of no member."""
     codes = {code for _, code in type_.members}
@@ -239,15 +248,37 @@ def _unit(channel: Any) -> str:
     return str(channel.unit or getattr(conversion, "unit", "") or "").strip()
 
 
-def _samples(file: Any, group: int, index: int, type_: ValueType | None) -> Raw:
+def _samples(file: Any, group: int, index: int, field: Field, losses: list[str]) -> Raw:
     """Return the values of a channel; of an enumeration the texts that its value table has for numbers."""
+    channel = file.groups[group].channels[index]
     signal = file.get(group=group, index=index, ignore_invalidation_bits=True)
-    texts = signal.samples.dtype.kind in "SUO"
-    if isinstance(type_, Enumeration) and (texts or _has_texts(file.groups[group].channels[index])):
-        signal.samples = np.array([*_members(signal.samples.tolist(), type_), None], dtype=object)[:-1]
-    elif texts:
-        raw = file.get(group=group, index=index, ignore_invalidation_bits=True, raw=True)
-        signal = raw if raw.samples.dtype.kind in "fiub" else signal
     bits = signal.invalidation_bits
     missing = None if bits is None else np.asarray(bits, dtype=bool)
-    return signal.samples if missing is None else np.ma.masked_array(signal.samples, missing)
+    samples: Raw = signal.samples
+    has_texts, is_text = _has_texts(channel), samples.dtype.kind in "SUO"
+    if has_texts or is_text:
+        raw = file.get(group=group, index=index, ignore_invalidation_bits=True, raw=True).samples
+        coded = raw.dtype.kind in "fiub"
+        # Of texts and numbers, asammdf would return the numbers only.
+        values = (
+            channel.conversion.convert(raw, as_object=True) if coded and has_texts else samples
+        ).tolist()
+        if isinstance(field.type, Enumeration):
+            samples = np.array([*_members(values, field.type), None], dtype=object)[:-1]
+        elif coded and has_texts and _has_numbers(channel.conversion):
+            samples = _scaled(values, missing, field, losses)
+        elif coded:
+            samples = raw
+    return samples if missing is None else np.ma.masked_array(samples, missing)
+
+
+def _scaled(values: Sequence[Any], missing: Raw | None, field: Field, losses: list[str]) -> Raw:
+    """Return the numbers of a conversion with texts for some of them: NaN where a sample is a text."""
+    texts = np.array([isinstance(value, bytes) for value in values], dtype=bool)
+    found = np.flatnonzero(texts if missing is None else texts & ~missing)
+    if len(found):
+        losses.append(
+            f"NaN: {len(found):,} sample{'s' * (len(found) != 1)} of {printable(field.column)} where its conversion "
+            f"has a text, such as '{printable(_text(values[found[0]]))}', which an enumeration reads"
+        )
+    return np.array([np.nan if isinstance(value, bytes) else value for value in values], dtype=np.float64)
