@@ -49,6 +49,9 @@ _FUNCTIONS = frozenset(
 def open_mdf(path: str) -> Source:
     """Open a measurement file; channels of one name in several groups are called ``group.name``.
 
+    They are ``group[0].name`` and ``group[1].name`` where the groups have one name, too, and ``group[0].name[0]`` and
+    ``group[0].name[1]`` in one group.
+
     Channels whose values are texts for numbers (modes, states) are read as the numbers, or as the codes of an
     enumeration, whose members are found by these texts. Where a conversion has texts for some numbers and scales the
     others, samples that are texts are NaN.
@@ -66,21 +69,55 @@ def open_mdf(path: str) -> Source:
         for number, group in enumerate(file.groups):
             _check_group(path, number, group, most)
         stack.pop_all()
-    counts = Counter(channel.name for group in file.groups for channel in group.channels)
-    tables = tuple(_table(file, number, counts) for number in range(len(file.groups)))
+    tables = tuple(_table(file, number, names) for number, names in enumerate(_names(file.groups)))
     start = file.start_time
     origin = np.datetime64(start.astimezone(timezone.utc).replace(tzinfo=None), "ns")
     return Source(path, tables, origin=origin, losses=damage(complaints), close=file.close)
 
 
-def _table(file: Any, number: int, counts: Counter[str]) -> Table:
+def _group_name(group: Any, number: int) -> str:
+    return getattr(group.channel_group, "acq_name", "") or f"group{number}"
+
+
+def _names(groups: Sequence[Any]) -> list[list[str]]:
+    """Return the names of the channels of each group: of each the shortest that no other channel has."""
+    prefixes = [_group_name(group, number) for number, group in enumerate(groups)]
+    places = [(i, channel.name) for i, group in enumerate(groups) for channel in group.channels]
+    short = [name for _, name in places]
+    grouped = [f"{prefixes[i]}.{name}" for i, name in places]
+    counted = _counted(prefixes)
+    numbered = [f"{counted[i]}.{name}" for i, name in places]
+    forms = (short, grouped, numbered, _counted(numbered))
+    counts = [Counter(form) for form in forms]
+    names: list[list[str]] = [[] for _ in groups]
+    for (i, _), candidates in zip(places, zip(*forms, strict=True), strict=True):
+        names[i].append(
+            next(name for name, count in zip(candidates, counts, strict=True) if count[name] == 1)
+        )
+    return names
+
+
+def _counted(names: Sequence[str]) -> list[str]:
+    """Return each name with its place among those that equal it.
+
+    >>> _counted(["a", "b", "a"])
+    ['a[0]', 'b[0]', 'a[1]']
+    """
+    before: Counter[str] = Counter()
+    result = []
+    for name in names:
+        result.append(f"{name}[{before[name]}]")
+        before[name] += 1
+    return result
+
+
+def _table(file: Any, number: int, names: Sequence[str]) -> Table:
     group = file.groups[number]
     master = file.masters_db.get(number)
-    prefix = getattr(group.channel_group, "acq_name", "") or f"group{number}"
+    prefix = _group_name(group, number)
     places: dict[str, int] = {}
     fields, time_field, losses = [], None, []
-    for index, channel in enumerate(group.channels):
-        name = channel.name if counts[channel.name] == 1 else f"{prefix}.{channel.name}"
+    for index, (channel, name) in enumerate(zip(group.channels, names, strict=True)):
         kind = "text" if _is_text(channel) else ""
         field = Field(name, name, _unit(channel), kind)
         over = _AXES.get(getattr(channel, "sync_type", 1), "") if index == master else ""
