@@ -68,4 +68,6 @@ def test_what_is_abbreviated_says_so() -> None:
     assert f"{'1' * 60}… (abbreviated: 100000 characters) …{'1' * 60}" in str(caught.value)
     with pytest.raises(StlError) as caught:
         SPEC.monitor().update(0, x=NUMBER)
-    assert str(caught.value) == "'x' is <an int of about 6001 digits> at sample 0, expected a number"
+    assert str(caught.value) == (
+        "'x' is <an int of about 6001 digits> at sample 0, beyond the range of a double (1.8e308): use a larger unit"
+    )

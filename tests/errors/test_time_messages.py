@@ -57,8 +57,8 @@ TIMES: dict[str, tuple[Any, str, str, str]] = {
     "a longdouble": (
         np.array(["0", "1e400"], np.longdouble),
         "give a finite time",
-        "expected a number",
-        "expected a finite number",
+        "beyond the range of a double",
+        "beyond the range of a double",
     ),
     "infinity": ([0.0, float("inf")], "give a finite time", "give a finite", "expected a finite number"),
     "masked": (
@@ -119,11 +119,13 @@ def test_values_that_are_no_numbers(value: Any, backend: str, time: str) -> None
         ),
         lambda: spec.monitor(time=time).update(0.0, x=value),
     ):
-        with pytest.raises(rtamt.TraceError, match=r"expected a number|cannot be read as|has 2 dimensions"):
+        with pytest.raises(rtamt.TraceError, match=r"expected a number|range of a double|has 2 dimensions"):
             way()
     monitor = spec.monitor(time=time)
     monitor.update(0.0, x=1.0)
-    with pytest.raises(rtamt.TraceError, match=r"^'x' is .* at sample 1, expected a number$"):
+    with pytest.raises(
+        rtamt.TraceError, match=r"^'x' is .* at sample 1, (expected a number|beyond the range .*)$"
+    ):
         monitor.update(1.0, x=value)
     assert monitor.samples == 1
 

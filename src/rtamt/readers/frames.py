@@ -6,6 +6,7 @@ No library is imported for them: who has such an object has imported it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from decimal import InvalidOperation, localcontext
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
@@ -160,9 +161,11 @@ def _pandas(frame: Any) -> Source:
 def _pandas_column(series: Any) -> Raw:
     if getattr(series.dtype, "tz", None) is not None:
         series = series.dt.tz_convert("UTC").dt.tz_localize(None)
-    # NaN is how pandas writes that a value is missing.
-    missing = series.isna().to_numpy()
     kind = series.dtype.kind
+    # NaN is how pandas writes that a value is missing; a signaling one among decimals is no error.
+    with localcontext() as decimals:
+        decimals.traps[InvalidOperation] = False
+        missing = series.isna().to_numpy()
     if kind in "Mm":
         times: Raw = series.to_numpy()
         return times

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from decimal import Decimal
+from math import isinf, nan
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.value_types import Enumeration
 from rtamt.lazy.modules import np
-from rtamt.signals.arrays import is_masked, is_number
+from rtamt.signals.arrays import TOO_LARGE, is_masked, number_expected, number_of
 from rtamt.signals.coding import encoded_value
 
 if TYPE_CHECKING:
@@ -45,10 +46,30 @@ def numbers_of(raw: Raw, field: Field, source: str, before: int = 0, *, copy: bo
         value = encoded_value(
             plain[i], field.column, field.type, f"sample {before + i} of {source}", before + int(i)
         )
-        if not is_number(value) and not isinstance(value, Decimal):
+        number = double_of(value)
+        if number is None:
             raise _no_number(value, field, source, before + int(i))
-        values[i] = value
+        values[i] = number
     return values, missing
+
+
+def double_of(value: Any) -> float | None:
+    """Return a number as the nearest double, also a Decimal; None for anything else or if it is too large.
+
+    >>> double_of(Decimal("0.5")), double_of(Decimal("sNaN")), double_of(Decimal("1e400")), double_of("1")
+    (0.5, nan, None, None)
+    """
+    if not isinstance(value, Decimal):
+        return number_of(value)
+    if value.is_nan():
+        return nan  # float() rejects a signaling one
+    number = float(value)
+    return None if isinf(number) and value.is_finite() else number
+
+
+def problem_of(value: object, of: str = "") -> str:
+    """Return the problem of a value for which :func:`double_of` has no double; ``of``: what numbers are expected."""
+    return TOO_LARGE if isinstance(value, Decimal) else number_expected(value, of)
 
 
 def is_rounded(value: int) -> bool:
@@ -85,7 +106,7 @@ def rounded(raw: Raw) -> Any:
 
 def _no_number(value: Any, field: Field, source: str, row: int) -> TraceError:
     return TraceError(
-        f"'{field.column}' of {source} is {shown(value)} at sample {row}, expected a number",
+        f"'{field.column}' of {source} is {shown(value)} at sample {row}, {problem_of(value)}",
         variable=field.name,
         index=row,
     )

@@ -12,6 +12,7 @@ from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
+from rtamt.readers.numbers import double_of
 from rtamt.readers.source import CHUNK, Field, Table
 from rtamt.readers.timestamps import is_axis
 from rtamt.signals.arrays import is_number
@@ -40,7 +41,8 @@ def table_of_rows(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> Tabl
     if columns and not columns[0]:
         values = [row[0] for row in first]
         kind = _kind(values)
-        axis = kind == "number" and None not in values and is_axis(list(map(float, values)))
+        numbers = [number for number in map(double_of, values) if number is not None]
+        axis = kind == "number" and len(numbers) == len(values) and is_axis(numbers)
         if axis or kind == "time":
             fields.insert(0, replace(field_of("", kind), axis=axis))
             places[""] = 0
@@ -61,7 +63,7 @@ def _kind(values: Sequence[Any]) -> str:
     given = [value for value in values if value is not None]
     if not given:
         return ""
-    if all(is_number(value) or isinstance(value, Decimal) for value in given):
+    if all(isinstance(value, Decimal) or is_number(value) for value in given):
         return "number"
     if is_date(given[0]):
         return "time"

@@ -15,7 +15,8 @@ from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import NANOSECOND, UNITS, in_seconds
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
-from rtamt.signals.arrays import is_masked, is_number
+from rtamt.readers.numbers import double_of, problem_of
+from rtamt.signals.arrays import is_masked
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
 from rtamt.signals.time_columns import is_stamps, may_be_stamps, unit_called, unit_of
@@ -171,11 +172,14 @@ class TimestampColumn:
             )
         if raw.dtype.kind not in "fiubmMO" and len(raw):
             raise self._no_time(raw[0], before, "expected a number")
+        given = raw
         if raw.dtype.kind == "f" and raw.dtype.itemsize > 8:
             with np.errstate(over="ignore"):  # what is beyond every double is no finite time
                 raw = raw.astype(np.float64)
         if raw.dtype.kind == "f" and not np.isfinite(raw).all():
             row = int(np.argmin(np.isfinite(raw)))
+            if np.isfinite(given[row]):
+                raise self._no_time(given[row], before + row, problem_of(given[row]))
             raise self._no_time(float(raw[row]), before + row, "expected a finite number")
         return np.ma.getdata(raw) if is_masked(raw) else raw
 
@@ -189,9 +193,9 @@ class TimestampColumn:
             except DateError as error:
                 raise self._no_time(values[error.index], before + error.index, str(error)) from None
         for i, value in enumerate(values):
-            if not (value is None or is_number(value) or isinstance(value, Decimal)):
+            if value is not None and double_of(value) is None:
                 or_date = "" if self._exact is not None else f", or a date such as {EXAMPLE}"
-                raise self._no_time(value, before + i, f"expected a number{or_date}")
+                raise self._no_time(value, before + i, problem_of(value, or_date))
         return numbers_in(values)
 
     def _no_time(self, value: Any, row: int, problem: str) -> TraceError:
@@ -202,8 +206,11 @@ class TimestampColumn:
 
 def _objects(raw: Raw) -> list[Any]:
     """Return an array as a list, with None for missing values."""
-    whole = raw.astype(object)
-    return list(np.ma.filled(whole, None) if is_masked(whole) else whole)
+    values = list(np.ma.getdata(raw).astype(object))
+    if is_masked(raw):
+        missing = np.ma.getmaskarray(raw).tolist()
+        return [None if absent else value for value, absent in zip(values, missing, strict=True)]
+    return values
 
 
 def _missing(raw: Raw) -> NDArray[np.bool_] | None:
@@ -216,13 +223,20 @@ def _missing(raw: Raw) -> NDArray[np.bool_] | None:
 def numbers_in(values: Sequence[Any]) -> Raw:
     """Return numbers as int64 where all are integers, as integers of Python where int64 is too small, else as float64.
 
-    None is masked.
+    None is masked. Decimals without a fraction are integers: a double does not hold nanoseconds since 1970.
     """
-    whole = all(value is None or isinstance(value, Integral) for value in values)
-    plain = [value or 0 for value in values]
+    whole = all(value is None or _is_whole(value) for value in values)
+    as_number = int if whole else double_of
+    plain = [0 if value is None else as_number(value) for value in values]
     try:
         numbers = np.array(plain, dtype=np.int64 if whole else np.float64)
     except OverflowError:
         numbers = np.array(plain, dtype=object)
     missing = np.array([value is None for value in values], dtype=bool)
     return np.ma.masked_array(numbers, missing) if missing.any() else numbers
+
+
+def _is_whole(value: Any) -> bool:
+    if isinstance(value, Decimal):
+        return value.is_finite() and value == value.to_integral_value()
+    return isinstance(value, Integral)

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
 
+#: The problem of a finite number that no double is near.
+TOO_LARGE = "beyond the range of a double (1.8e308): use a larger unit"
+
 #: The key under which a trace holds its timestamps.
 TIME = "time"
 
@@ -219,6 +222,17 @@ def number_of(value: Any) -> float | None:
         return None
     # A longdouble beyond every double is finite itself.
     return None if isinf(number) and value not in (number, -number) else number
+
+
+def number_expected(value: Any, of: str = "") -> str:
+    """Return the problem of a value for which :func:`number_of` has no double; ``of``: what numbers are expected.
+
+    >>> number_expected("1"), number_expected(10**400)
+    ('expected a number', 'beyond the range of a double (1.8e308): use a larger unit')
+    """
+    if isinstance(value, np.timedelta64) or not isinstance(value, Real):
+        return f"expected a number{of}"
+    return TOO_LARGE
 
 
 def is_truth(value: Any) -> bool:
@@ -438,6 +452,6 @@ def _not_numbers(values: Any, name: str, first: int) -> TraceError:
     for i, value in items:
         if not is_number(value):
             return TraceError(
-                f"'{name}' is {shown(value)} at sample {i}, expected a number", variable=name, index=i
+                f"'{name}' is {shown(value)} at sample {i}, {number_expected(value)}", variable=name, index=i
             )
     return TraceError(f"'{name}' cannot be read as a sequence of numbers", variable=name)

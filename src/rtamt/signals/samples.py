@@ -40,7 +40,8 @@ def read_time(
     timestamp = arrays.number_of(time)
     if timestamp is None:
         raise TraceError(
-            f"time is {shown(time)} at sample {index}, expected a number of seconds", variable="time"
+            f"time is {shown(time)} at sample {index}, {arrays.number_expected(time, ' of seconds')}",
+            variable="time",
         )
     if is_implausible(timestamp):
         raise implausible("time", index, time if is_implausible(time) else timestamp)
@@ -76,7 +77,7 @@ def read_values(
         number = arrays.number_of(encoded_value(values[name], name, type_, where, index))
         if number is None:
             raise TraceError(
-                f"'{name}' is {shown(values[name])} at sample {index}, expected a number",
+                f"'{name}' is {shown(values[name])} at sample {index}, {arrays.number_expected(values[name])}",
                 variable=name,
                 index=index,
             )

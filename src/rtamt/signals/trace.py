@@ -165,7 +165,8 @@ class Trace(WithTimeBases):
         if found is None:
             if any(name in note.removeprefix(LEFT_OUT).split(", ") for note in self._notes):
                 raise TraceError(
-                    f"'{name}' of {self._source} was left out, because its values are not numbers",
+                    f"'{name}' of {self._source} was left out, because its values are not all numbers in the range "
+                    f"of doubles; columns=['{name}'] names the first that is none",
                     variable=name,
                 )
             raise TraceError(

@@ -397,7 +397,10 @@ def test_a_column_without_numbers_is_said_to_be_left_out():
     trace = rtamt.read({"time": [0, 1], "x": ["a", "b"], "y": ["c", "d"], "z": [1, 2]})
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("always(y > 0)").evaluate(trace)
-    assert str(error.value) == "'y' of a dict was left out, because its values are not numbers"
+    assert str(error.value) == (
+        "'y' of a dict was left out, because its values are not all numbers in the range of doubles; "
+        "columns=['y'] names the first that is none"
+    )
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("always(left > 0)").evaluate(trace)
     assert str(error.value) == "a dict has no 'left'; signals: z"

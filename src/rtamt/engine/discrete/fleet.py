@@ -18,7 +18,7 @@ from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import TIME, Timestamps, columns_of, number_of
+from rtamt.signals.arrays import TIME, Timestamps, columns_of, number_expected, number_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
@@ -133,9 +133,9 @@ class DiscreteFleet:
         if index is None or index >= len(keys) or name not in columns or name in self._monitor._types:
             return error
         value = list(columns[name])[index]
-        text = (
-            str(error) if number_of(value) is not None else f"'{name}' is {shown(value)}, expected a number"
-        )
+        text = str(error)
+        if number_of(value) is None:
+            text = f"'{name}' is {shown(value)}, {number_expected(value)}"
         return TraceError(f"{place_of(keys[index].item(), index)}: {text}", variable=name, index=index)
 
     def check(
