@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.chunks import Chunks
 from rtamt.cli.outcome import Outcome, moment_of, plain_time
-from rtamt.cli.reading_options import choice_for, is_resampled, notes_on, oldest_held, on_time_base
+from rtamt.cli.reading_options import (
+    choice_for,
+    is_read_alike,
+    is_resampled,
+    notes_on,
+    oldest_held,
+    on_time_base,
+)
 from rtamt.errors import StlError
 from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.read import opened
@@ -43,12 +50,13 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
         period is None or not requirement.spec.domain.sampled or TIME in requirement.spec.input_names
     )
     if resampled and requirement.rows:
-        found = [early_outcomes(row, trace, reading) for row in requirement.rows]
-        return None if None in found else [o for each in found if each is not None for o in each]
+        return _each(rows, trace, reading)
     spec = requirement.spec
     try:
         check: EarlyCheck = make(specs)
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            if not is_read_alike(source, specs, trace, reading):
+                return _each(rows, trace, reading)
             if as_it_comes and source.in_chunks:
                 chunks = Chunks(spec, chunks_of(source, choice_for([spec], trace, reading)))
                 taken = _sample(chunks, specs[0], period, reading) if resampled else chunks
@@ -84,6 +92,12 @@ def early_outcomes(requirement: Requirement, trace: str, reading: Reading) -> li
         )
         for row, part in zip(rows, check.decided, strict=True)
     ]
+
+
+def _each(rows: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome] | None:
+    """Check each requirement alone; None where one needs the whole recording."""
+    found = [early_outcomes(row, trace, reading) for row in rows]
+    return None if None in found else [o for each in found if each is not None for o in each]
 
 
 def _sample(

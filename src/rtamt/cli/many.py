@@ -19,6 +19,9 @@ from rtamt.extras import library
 from rtamt.files import replacing
 from rtamt.fleet.suite import Suite
 from rtamt.fleet.verdict_table import VerdictTable, arrow_fields
+from rtamt.lazy.dataclasses import replace
+from rtamt.readers.formats import is_bag
+from rtamt.ros.bags import columns_of
 from rtamt.scale.engines import check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
@@ -60,8 +63,10 @@ def run(args: argparse.Namespace) -> int:
         "recover": args.recover,
     }
     given = {name: value for name, value in options.items() if value not in (None, (), False)}
-    job = Job(Suite(specs), **given)
     recordings = recordings_of(patterns)
+    if all(is_bag(recording.path) for recording in recordings):
+        specs = [replace(spec, columns={**columns_of(spec), **spec.columns}) for spec in specs]
+    job = Job(Suite(specs), **given)
     summary = _Summary([requirement.name for requirement in job.suite.requirements])
     with Progress() as progress, _row_writer(args.output) as write:
         counter = _Counter(progress)

@@ -18,15 +18,14 @@ from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
-from rtamt.readers.assemble import select, trace_of
+from rtamt.readers.assemble import has_one_clock, select, trace_of, with_clock_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
-from rtamt.signals.arrays import TIME, timestamps
+from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import FILE_MENDS, missing_sample
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch
-from rtamt.signals.sampling_period import check_regular, infer_period
 
 if TYPE_CHECKING:
     import argparse
@@ -34,6 +33,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from rtamt.readers.assemble import Choice
+    from rtamt.readers.source import Source
     from rtamt.results import Result
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
@@ -207,16 +207,48 @@ def recording(args: argparse.Namespace, source: str) -> Trace:
 
 
 def read_for(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace:
-    """Read the variables of some requirements from a recording."""
+    """Read the variables of some requirements from a recording.
+
+    Raises :class:`TraceError` also where one of the requirements reads the recording differently if it is alone.
+    """
     with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+        if not is_read_alike(source, specs, trace, reading):
+            raise TraceError("the specifications read topics with different clocks")
         return trace_of(source, choice_for(specs, trace, reading))
 
 
+def completed_for(source: Source, specs: Sequence[Specification]) -> Source:
+    """Return a source with all columns that requirements may read, also those that only later rows have."""
+    if source.complete is None:
+        return source
+    from rtamt.ros.bags import columns_of
+
+    names: list[str] = []
+    for spec in specs:
+        names += (*spec.binding.recorded, *columns_of(spec).values())
+        names += (group.beginning for group, _ in spec.groups.values())
+    return source.completed(names)
+
+
+def is_read_alike(source: Source, specs: Sequence[Specification], trace: str, reading: Reading) -> bool:
+    """Return whether samples have the same times where requirements are read together as where each is read alone."""
+    if len(specs) == 1 or source.align is None:
+        return True
+    together, *alone = (choice_for(some, trace, reading) for some in (specs, *([spec] for spec in specs)))
+    return has_one_clock(source.completed(together.recorded), together, alone)
+
+
 def whole_recording(specs: Sequence[Specification], trace: str, reading: Reading) -> Trace | None:
-    """Read all signals of a recording without NaN, under the requirements' names; None if these read all of them."""
+    """Read all signals of a recording without NaN, under the requirements' names; None if these read all of them.
+
+    Topics that would change the clock of the requirements are left out.
+    """
     read = {name for spec in specs for name in spec.input_names}
-    every = replace(choice_for(specs, trace, reading), columns=None, gaps=True, hold_for=None, skip_nan=())
-    with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+    mine = choice_for(specs, trace, reading)
+    every = replace(mine, columns=None, gaps=True, hold_for=None, skip_nan=())
+    with opened(trace, reading.sheet, reading.query, reading.recover) as opening:
+        source = opening.completed(None)
+        every = with_clock_of(source, mine, every)
         names = tuple(name for table in select(source, every) for name, _ in table.signals)
         return None if read.issuperset(names) else trace_of(source, replace(every, skip_nan=names))
 
@@ -303,16 +335,9 @@ def on_time_base(data: Trace, spec: Specification, trace: str, reading: Reading)
     mine = data.select(set(spec.input_names) & set(data.names)) if spec.input_names else data
     if period is not None:
         return mine.resample(period, reading.how, oldest_held(spec, reading))
-    try:
-        times = timestamps(mine.on_one_time_base(mine.names)[TIME]).seconds
-        check_regular(times, infer_period(times))
-    except TraceError as error:
-        raise TraceError(
-            "the messages of this bag are not samples one period apart: choose a sampling period, such as "
-            "--period 100ms, or use --time dense, which reads every message at its own time",
-            variable=error.variable,
-        ) from None
-    return mine
+    from rtamt.signals.sampling import sampled_messages
+
+    return sampled_messages(mine, None)
 
 
 def with_stamps(data: Trace, spec: Specification) -> Trace:

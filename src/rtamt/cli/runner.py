@@ -21,6 +21,7 @@ from rtamt.cli.outcome import (
 )
 from rtamt.cli.reading_options import (
     choice_for,
+    completed_for,
     has_own_time_bases,
     how_to_mend,
     is_resampled,
@@ -122,7 +123,9 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
         return _check_requirements(requirements, trace, reading)
     try:
         with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            kept, unchecked = applicable(requirements, source.signals, trace)
+            specs = [requirement.spec for requirement in requirements]
+            signals = completed_for(source, specs).signals
+            kept, unchecked = applicable(requirements, signals, trace)
             # A source that is read in chunks is opened quickly; any other is not opened a second time.
             if kept and not source.in_chunks:
                 whole = trace_of(
@@ -140,27 +143,19 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
     """Check a requirement over the members of groups that a recording has."""
+    from rtamt.readers.member_columns import choice_of_members
     from rtamt.signals import members
 
     begin = time.perf_counter()
     spec = requirement.spec
     try:
-        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as opening:
+            source = completed_for(opening, [spec])
             kept, unchecked = applicable([requirement], source.signals, trace)
             if unchecked:
                 found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
                 return list(together(found, unchecked).values())
-            names = members.members_of(spec.groups, sorted(source.signals), source.aliases)
-            fields = members.declared_fields(names, spec.groups)
-            choice = choice_for([spec.over(names)], trace, reading)
-            # A cell that is empty ends the presence of a member, also that of a field that no formula reads.
-            choice = replace(
-                choice,
-                columns=tuple(dict.fromkeys((*(choice.columns or ()), *fields))) or None,
-                types={name: each.values for name, each in fields.items() if each.values}
-                | dict(choice.types),
-                gaps=True,
-            )
+            choice = choice_of_members(spec, source, lambda over: choice_for([over], trace, reading))
             whole = spec.binding.applied(trace_of(source, choice))
         if not has_own_time_bases(spec, trace, reading):
             require_all_samples(whole, spec.input_names)
@@ -206,8 +201,9 @@ def _all_of(requirements: Sequence[Requirement], trace: str, reading: Reading) -
         if found is not None:
             return found
     whole: Trace | None
+    every = [row.spec for requirement in requirements for row in requirement.rows or (requirement,)]
     try:
-        whole = read_for([requirement.spec for requirement in requirements], trace, reading)
+        whole = read_for(every, trace, reading)
     except StlError:  # each reads what it needs, and reports what is wrong with that
         whole = None
     return [o for requirement in requirements for o in _check(requirement, trace, whole, reading)]
@@ -317,7 +313,8 @@ def _check(requirement: Requirement, trace: str, data: Trace | None, reading: Re
     whole = recorded
     try:
         place = ""
-        whole = recorded = recorded or read_for([spec], trace, reading)
+        rows = requirement.rows or (requirement,)
+        whole = recorded = recorded or read_for([row.spec for row in rows], trace, reading)
         place = f"{shown(trace)}: "
         whole = on_time_base(spec.binding.applied(with_stamps(whole, spec)), spec, trace, reading)
         alone = len(spec.requirements) == 1

@@ -21,14 +21,17 @@ from rtamt.specification_recorded import Optional
 from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from typing_extensions import Unpack
 
     from rtamt.engine import OnlineMonitor, Query
+    from rtamt.fleet.groups import Group
     from rtamt.settings import EvaluationSettings
     from rtamt.signals.time_domain_interface import DomainTrace
     from rtamt.verdicts.prepared import Found
+
+    Read = Callable[[Way, Specification | None], tuple[Specification | None, Trace]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,12 +98,7 @@ class Suite:
         name in the table. Wrong data and undefined values become the error in the rows of the requirements that
         they concern.
         """
-        rows: dict[int, Row] = {}
-        signals = data if isinstance(data, Trace) else _names_of(data)
-        for number, requirement in enumerate(self.requirements):
-            reason = requirement.optional.unchecked(signals) if requirement.optional.columns else ""
-            if reason:
-                rows[number] = Row(recording, requirement.name, unchecked=f"not checked: {reason}")
+        rows = self._unchecked(recording, data if isinstance(data, Trace) else _names_of(data))
         for group in self._groups:
             kept = [number for number in group.inputs if number not in rows]
             if kept:
@@ -110,6 +108,41 @@ class Suite:
             if number not in rows:
                 rows[number] = self._row_apart(recording, number, spec, data)
         return VerdictTable([rows[number] for number in range(len(self.requirements))], self.select)
+
+    def evaluate_apart(self, signals: Collection[str], read: Read, *, recording: str = "") -> VerdictTable:
+        """Evaluate each requirement on a trace of its own; rows as of :meth:`evaluate`.
+
+        ``signals``: the names in the recording. ``read``: returns the specification to evaluate and its trace from the
+        way in which a requirement reads recordings and its specification; both are None where a common program holds
+        the requirement.
+        """
+        rows = self._unchecked(recording, signals)
+        for number, requirement in enumerate(self.requirements):
+            if number not in rows:
+                try:
+                    rows[number] = self._row_of(recording, number, read)
+                except StlError as error:
+                    rows[number] = Row(recording, requirement.name, error=str(error))
+        return VerdictTable([rows[number] for number in range(len(self.requirements))], self.select)
+
+    def _row_of(self, recording: str, number: int, read: Read) -> Row:
+        if number in self._apart:
+            spec, _ = self._apart[number]
+            over, data = read(way_of(spec), spec)
+            return self._row_apart(recording, number, over or spec, data)
+        group = self._group_of(number)
+        _, data = read(group.way, None)
+        ((_, found, trace),) = group.evaluate(data)
+        return self._row(recording, number, found, trace)
+
+    def _unchecked(self, recording: str, signals: Collection[str] | Trace) -> dict[int, Row]:
+        """Return the rows of the requirements whose optional variables a recording lacks."""
+        rows = {}
+        for number, requirement in enumerate(self.requirements):
+            reason = requirement.optional.unchecked(signals) if requirement.optional.columns else ""
+            if reason:
+                rows[number] = Row(recording, requirement.name, unchecked=f"not checked: {reason}")
+        return rows
 
     def _row(self, recording: str, number: int, found: Found | StlError, trace: DomainTrace | None) -> Row:
         name = self.requirements[number].name
@@ -264,6 +297,25 @@ class Suite:
         """The reading settings of recordings for the requirements."""
         apart = [way_of(spec) for spec, _ in self._apart.values()]
         return (*(group.way for group in self._groups), *apart)
+
+    @property
+    def each_way(self) -> tuple[Way, ...]:
+        """The reading settings of recordings for each requirement alone."""
+        return tuple(
+            way_of(self._apart[number][0]) if number in self._apart else self._group_of(number).way
+            for number in range(len(self.requirements))
+        )
+
+    def _group_of(self, number: int) -> Group:
+        """Return the group of a requirement alone."""
+        return next(group for group in self._groups if number in group.inputs).of([number])
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """All names in recordings that the requirements may read; of members of groups their beginnings."""
+        groups = [group for spec, _ in self._apart.values() for group, _ in spec.groups.values()]
+        names = (name for way in self.ways for name in way.binding.recorded)
+        return tuple(dict.fromkeys((*names, *(group.beginning for group in groups))))
 
     @property
     def reads_everything(self) -> bool:

@@ -71,6 +71,11 @@ class Group:
     role: Literal["input", "output"] | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
+    @property
+    def beginning(self) -> str:
+        """The text with which the names of its members begin."""
+        return self.pattern.partition("*")[0]
+
     def member(self, column: str) -> tuple[str, str] | None:
         """Return the member and the field of a recorded name; None for other names.
 

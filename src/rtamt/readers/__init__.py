@@ -9,6 +9,7 @@ source               the interface that every reader implements
 ahead                chunks read in a thread while others are evaluated
 assemble             a source to a trace: columns, names, time base
 numbers              the values of a column
+member_columns       the columns of the members of groups
 first_column         a first column that may hold the timestamps
 timestamps           the time column, its unit and its values
 dates                dates as text or objects to numpy dates
@@ -27,6 +28,8 @@ sql                  databases
 ulog                 PX4 flight logs
 mdf                  ASAM MDF files
 rosbag               ROS bags
+bag_topic            a topic of a bag: its columns, its clock, its messages as rows
+message_fields       where the numbers are in a message
 mcap                 recovery of damaged MCAP files, and refusal of those that are not of ROS 2
 message_definitions  the definitions of messages in a bag
 ===================  ===================================================================

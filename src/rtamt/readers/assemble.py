@@ -49,6 +49,17 @@ class Choice:
         column = self.names.get(name, name)
         return next((each for each in (column, *self.others.get(name, ())) if has(each)), column)
 
+    @property
+    def recorded(self) -> tuple[str, ...] | None:
+        """All columns that may be read; None: those of the whole source."""
+        if self.columns is None:
+            return None
+        return tuple(
+            column
+            for name in self.columns
+            for column in (self.names.get(name, name), *self.others.get(name, ()))
+        )
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Selection:
@@ -77,6 +88,7 @@ class Selection:
 
 def trace_of(source: Source, choice: Choice) -> Trace:
     """Read a source whole."""
+    source = source.completed(choice.recorded)
     channels: dict[str, Channel] = {}
     notes, losses = list(source.notes), list(source.losses)
     silences = Silences()
@@ -114,6 +126,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
 
 def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
     """Read a source in chunks: consecutive traces; the notes of each refer to all so far."""
+    source = source.completed(choice.recorded)
     selections = _aligned(source, choice)
     timestamps = [timestamps_of(source, selection, choice) for selection in selections]
     gaps = [_gaps(source, selection, choice) for selection in selections]
@@ -166,6 +179,31 @@ def _aligned(source: Source, choice: Choice) -> list[Selection]:
     if source.align is not None:
         source.align(_places(source, selections))
     return selections
+
+
+def has_one_clock(source: Source, choice: Choice, parts: Sequence[Choice]) -> bool:
+    """Return whether tables have the same clock where they are read together as where parts of them are read alone."""
+    if source.align is None:
+        return True
+    together = source.align(_places(source, select(source, choice)))
+    alone = [_places(source, select(source, part)) for part in parts]
+    return all(source.align(places) == together.intersection(places) for places in alone)
+
+
+def with_clock_of(source: Source, read: Choice, every: Choice) -> Choice:
+    """Return what ``every`` selects of the tables that do not change the clock of those of ``read``."""
+    if source.align is None:
+        return every
+    own, selections = _places(source, select(source, read)), select(source, every)
+    clock = source.align(own)
+    kept = [
+        selection
+        for place, selection in zip(_places(source, selections), selections, strict=True)
+        if source.align([*own, place]).intersection(own) == clock
+    ]
+    if len(kept) == len(selections):
+        return every
+    return dataclasses.replace(every, columns=tuple(name for each in kept for name, _ in each.signals))
 
 
 def _first_column(selections: Sequence[Selection]) -> FirstColumn | None:

@@ -19,7 +19,7 @@ from rtamt.files import nearest_file
 from rtamt.lazy.dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
     from contextlib import AbstractContextManager
 
     import numpy as np
@@ -92,8 +92,16 @@ class Source:
     #: Places of tables, with fields of each, to the values of all of them, some at a time, in the order in which they
     #: were recorded; None where tables cannot be read side by side.
     in_one_pass: Callable[[Sequence[tuple[int, Sequence[Field]]]], Iterator[list[list[Raw]]]] | None = None
-    #: Gives the tables at some places the same clock, before they are read; None where they always have one.
-    align: Callable[[Sequence[int]], None] | None = None
+    #: Gives the tables at some places the same clock, before they are read, and returns the places of those that have
+    #: another one than when they are read alone; None where they always have one.
+    align: Callable[[Sequence[int]], frozenset[int]] | None = None
+    #: The tables with all columns that begin with one of some texts, None: with all, also those that only later rows
+    #: have; None where the tables have all from the beginning.
+    complete: Callable[[Collection[str] | None], tuple[Table, ...]] | None = None
+
+    def completed(self, names: Collection[str] | None) -> Source:
+        """Return the source with all its columns of these names, or beginnings of names; None: with all columns."""
+        return self if self.complete is None else replace(self, tables=self.complete(names))
 
     @property
     def signals(self) -> set[str]:
@@ -159,7 +167,12 @@ def missing_file(path: str) -> TraceError:
 
 def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -> Source:
     """Return a source that reads its tables under ``guard``: libraries read most of a file only then."""
-    in_one_pass = source.in_one_pass
+    in_one_pass, complete = source.in_one_pass, source.complete
+
+    def completed(names: Collection[str] | None) -> tuple[Table, ...]:
+        assert complete is not None
+        with guard():
+            return tuple(_guard(table, guard) for table in complete(names))
 
     def side_by_side(wanted: Sequence[tuple[int, Sequence[Field]]]) -> Iterator[list[list[Raw]]]:
         assert in_one_pass is not None
@@ -170,6 +183,7 @@ def guarded(source: Source, guard: Callable[[], AbstractContextManager[None]]) -
         source,
         tables=tuple(_guard(table, guard) for table in source.tables),
         in_one_pass=None if in_one_pass is None else side_by_side,
+        complete=None if complete is None else completed,
     )
 
 

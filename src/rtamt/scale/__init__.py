@@ -9,6 +9,7 @@ module                purpose
 ====================  =====================================================================
 recordings            the recordings that patterns and addresses name, each with its version
 job                   what is done with one recording, on every engine
+bags                  the same with a bag, of which each requirement reads its own topics
 manifest              the results so far, in a file: nothing is computed twice
 local                 the engine on this machine: a process pool
 spark                 the engine on Apache Spark

@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from rtamt.errors import StlError, UsageError, choices
 from rtamt.fleet.verdict_table import Row, VerdictTable
 from rtamt.readers.assemble import trace_of
+from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
+from rtamt.scale.bags import table_of_bag
 from rtamt.scale.recordings import fetched
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from typing_extensions import Unpack
 
+    from rtamt.fleet.groups import Way
     from rtamt.fleet.suite import Suite
-    from rtamt.signals.trace import Trace
+    from rtamt.readers.assemble import Choice
 
 #: Increased with every change of what an operator means: results of other versions are computed again.
-SEMANTICS_VERSION = 1
+SEMANTICS_VERSION = 2
 
 
 class ReaderOptions(TypedDict, total=False):
@@ -69,19 +73,19 @@ class Job:
     def table(self, path: str) -> VerdictTable:
         """Return the rows of a recording in a file, local or remote; what is wrong becomes the error in all of them."""
 
-        def source() -> Trace:
+        def found() -> VerdictTable:
             with fetched(path) as local:
-                return self._read(local)
+                return self._evaluate(path, local)
 
-        return self._table(path, source)
+        return self._table(path, found)
 
     def table_of(self, name: str, source: Callable[[], Any]) -> VerdictTable:
         """Return the rows of a recording in memory; ``source`` returns it, as :func:`rtamt.read` takes it."""
-        return self._table(name, lambda: self._read(source()))
+        return self._table(name, lambda: self._evaluate(name, source()))
 
-    def _table(self, name: str, read: Callable[[], Trace]) -> VerdictTable:
+    def _table(self, name: str, evaluate: Callable[[], VerdictTable]) -> VerdictTable:
         try:
-            return self.suite.evaluate(read(), recording=name)
+            return evaluate()
         except StlError as error:
             return self.failed(name, str(error))
         except Exception as error:  # noqa: BLE001 - one recording of many, which must not end the job
@@ -92,38 +96,43 @@ class Job:
         rows = [Row(path, each.name, error=error) for each in self.suite.requirements]
         return VerdictTable(rows, self.suite.select)
 
-    def _read(self, data: Any) -> Trace:
-        """Read what the requirements read of a recording, under the names that it has there."""
-        options = self.options
+    def _evaluate(self, name: str, data: Any) -> VerdictTable:
+        """Evaluate all requirements on what they read of a recording, under the names that it has there."""
+        options, suite = self.options, self.suite
         with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
-            columns: dict[str, None] = {}
-            skipped: dict[str, None] = {}
-            types: dict[str, Any] = {}
-            whole = self.suite.reads_everything
-            for way in self.suite.ways:
-                places = way.binding.found_in({*source.signals, *source.aliases})
-                for name in way.inputs:
-                    column = places.get(name, name)
-                    if column not in source.signals and column not in source.aliases:
-                        whole = True  # messages then list what there is
-                    columns[column] = None
-                    if name in way.types:
-                        types[column] = way.types[name]
-                    if name in options.get("skip_nan", ()) or (way.rule is not None and way.rule.skip_nan):
-                        skipped[column] = None
-            return trace_of(
-                source,
-                choice(
-                    options.get("time"),
-                    None if whole else columns,
-                    None,
-                    None,
-                    [column for column in skipped if column in source.signals],
-                    options.get("hold_for"),
-                    options.get("time_unit"),
-                    types,
-                ),
-            )
+            if isinstance(data, (str, os.PathLike)) and is_bag(os.fspath(data)):
+                return table_of_bag(suite, source, self._choice, name)
+            signals = source.signals
+            read = [name for way in suite.ways for name in way.binding.found_in(signals).values()]
+            # Of a recording without one of them all is read: messages then list what there is.
+            whole = suite.reads_everything or not signals.issuperset(read)
+            return suite.evaluate(trace_of(source, self._choice(signals, suite.ways, whole)), recording=name)
+
+    def _choice(self, signals: Collection[str], ways: Iterable[Way], whole: bool = False) -> Choice:
+        """Return what some requirements read of a recording with these signals; ``whole``: all of it."""
+        options = self.options
+        columns: dict[str, None] = {}
+        skipped: dict[str, None] = {}
+        types: dict[str, Any] = {}
+        for way in ways:
+            places = way.binding.found_in(signals)
+            for name in way.inputs:
+                column = places.get(name, name)
+                columns[column] = None
+                if name in way.types:
+                    types[column] = way.types[name]
+                if name in options.get("skip_nan", ()) or (way.rule is not None and way.rule.skip_nan):
+                    skipped[column] = None
+        return choice(
+            options.get("time"),
+            None if whole else columns or None,
+            None,
+            None,
+            [column for column in skipped if column in signals],
+            options.get("hold_for"),
+            options.get("time_unit"),
+            types,
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _job, (*self.suite.sent(), dict(self.options))

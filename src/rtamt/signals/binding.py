@@ -37,6 +37,12 @@ class Binding:
         columns, units = dict(self.columns), dict(self.units)
         return {name: (columns.get(name, name), units.get(name, "")) for name in self.names}
 
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Every recorded name of the variables."""
+        columns, others = dict(self.columns), dict(self.others)
+        return tuple(each for name in self.names for each in (columns.get(name, name), *others.get(name, ())))
+
     def found_in(self, known: Container[Any]) -> dict[str, str]:
         """Return the recorded name of each variable in a recording with these signals."""
         others = dict(self.others)

@@ -1,6 +1,7 @@
 """Sample signals with arbitrary timestamps in discrete time: each variable has its latest value.
 
-Of a whole recording with :func:`sampled`, of a stream with :class:`HeldSampler`: the same samples.
+Of a whole recording with :func:`sampled`, of messages with :func:`sampled_messages`, of a stream with
+:class:`HeldSampler`: the same samples.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.resampling import Sampler
-from rtamt.signals.sampling_period import check_increasing
+from rtamt.signals.sampling_period import check_increasing, check_regular, infer_period
 from rtamt.signals.trace import Channel, Trace
 
 if TYPE_CHECKING:
@@ -53,6 +54,25 @@ def sampled(
         return data
     channels = {name: _channel(name, *columns[name]) for name in names}
     return _held(Trace(channels, source="the data"), rule, period)
+
+
+def sampled_messages(data: Trace, period: Fraction | None) -> Trace:
+    """Return the messages of a bag as samples of discrete time: every ``period`` the latest, as a node has them.
+
+    Without a period, each message is a sample. Raises :class:`TraceError` unless they are then one period apart.
+    """
+    if period is not None:
+        return data.resample(period)
+    try:
+        times = arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME]).seconds
+        check_regular(times, infer_period(times))
+    except TraceError as error:
+        raise TraceError(
+            "the messages of this bag are not samples one period apart: choose a sampling period, such as "
+            "--period 100ms, or use --time dense, which reads every message at its own time",
+            variable=error.variable,
+        ) from None
+    return data
 
 
 def _held(trace: Trace, rule: Sampling, period: Fraction) -> Trace:

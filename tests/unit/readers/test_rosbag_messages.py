@@ -76,6 +76,23 @@ def test_stamps_that_were_left_at_0_at_first_are_times_of_recording(tmp_path):
     assert rtamt.read(bag.path)["/x.value"].times.tolist() == [(START + i) * 10**9 for i in range(5)]
 
 
+@pytest.mark.parametrize("zero", [0, 2, 4])
+def test_a_message_without_a_time_among_simulated_stamps_was_at_the_time_of_its_recording(tmp_path, zero):
+    with Bag(tmp_path, "mcap") as bag:
+        for i in range(5):
+            at = 0 if i == zero else 100 + i
+            bag.stamped("/x", at, i, late=START + i - at)
+            bag.plain("/y", START + i, i)
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(bag.path, columns=["/x.value"])
+    assert str(caught.value) == (
+        "a message on /x has the stamp 0, so that it has no time: the other stamps are of another clock than that of "
+        "the recording; leave the message out of the bag"
+    )
+    both = rtamt.read(bag.path, columns=["/x.value", "/y.data"])
+    assert both["/x.value"].times.tolist() == both["/y.data"].times.tolist()
+
+
 #: A type as two nodes define it: of the same name and size, with fields in another order.
 OLD, NEW = "float64 speed\nfloat64 limit\n", "float64 limit\nfloat64 speed\n"
 
@@ -147,22 +164,3 @@ def test_integers_that_no_double_holds_have_a_note(tmp_path, kind):
         "rounded to doubles: 1 integer of /c.count beyond 2^53, the first at 1 s",
         "rounded to doubles: 2 integers of /c.most beyond 2^53, the first at 0 s",
     )
-
-
-@pytest.mark.parametrize("kind", ["ros1", "mcap"])
-def test_elements_that_the_first_message_lacks_have_a_note(tmp_path, capsys, kind):
-    """What violates a requirement may be among them: that must not pass in silence."""
-    with Bag(tmp_path, kind) as bag:
-        for name, text in (("Ob", "float64 d\n"), ("Obs", "my_msgs/Ob[] obs\nfloat64 x\n")):
-            bag.store.register(get_types_from_msg(text, f"my_msgs/msg/{name}"))
-        types = bag.store.types
-        for at, row in enumerate(([5.0], [5.0, -3.0], [6.0])):
-            obs = [types["my_msgs/msg/Ob"](d=value) for value in row]
-            bag.write("/o", "my_msgs/msg/Obs", at * 10**9, types["my_msgs/msg/Obs"](obs=obs, x=1.0))
-    decides = "1 in the first message, which decides what is read"
-    note = f"/o.obs has up to 2 elements, and {decides}: the others are left out"
-    assert rtamt.read(bag.path).losses == (note,)
-    assert rtamt.read(bag.path, columns=["/o.x"]).losses == ()
-    group = 'group obs = "/o.obs[*]"\nalways(forall o in obs: o.d >= 0)'
-    assert main(["check", group, str(bag.path), "--time", "dense"]) == 0
-    assert note in capsys.readouterr().out

@@ -1,0 +1,110 @@
+"""Requirements over one bag, each of which reads topics with other clocks: every one is as if it were alone."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import rtamt
+from rtamt.cli import main
+from tests.unit.readers.bags import Bag
+
+START = 1_700_000_000
+SIMULATED = "always(/x.value < 0 -> eventually[2s:3s](/x.value >= 0))"
+RECORDED = "always(/y.data >= 0)"
+#: Both in one file, in two files, and in a file with a third that reads both topics.
+TOGETHER = {
+    "file": [f"require A: {SIMULATED}\nrequire B: {RECORDED}\n"],
+    "files": [f"require A: {SIMULATED}\n", f"require B: {RECORDED}\n"],
+    "third": [
+        f'require A: {SIMULATED}\nrequire B: {RECORDED}\nrequire C: always("/x.value" + "/y.data" >= 0)\n'
+    ],
+}
+
+
+@pytest.fixture
+def bag(tmp_path):
+    """Simulated time runs evenly, and the recording has a pause of 19 s in it."""
+    with Bag(tmp_path, "mcap") as made:
+        for i, (recorded, value) in enumerate(zip([0, 1, 20, 21, 22, 23], [5, -1, 5, 5, 5, 5], strict=True)):
+            made.stamped("/x", 1000 + i, value, late=START + recorded - 1000 - i)
+        for i in range(24):
+            made.plain("/y", START + i, 0.0)
+    return str(made.path)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--time", "dense"],
+        ["--time", "dense", "--early"],
+        ["--time", "dense", "--engine", "local"],
+        ["--period", "500ms"],
+        ["--period", "500ms", "--early"],
+        ["--period", "500ms", "--engine", "local"],
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("texts", TOGETHER.values(), ids=TOGETHER)
+def test_another_requirement_changed_the_times_and_the_verdict_of_a_requirement(
+    tmp_path, capsys, bag, options, texts
+):
+    specs = []
+    for number, text in enumerate(texts):
+        specs.append(tmp_path / f"{number}.stl")
+        specs[-1].write_text(text)
+    main(["check", *map(str, specs), bag, "--json", *options])
+    rows = {
+        row["requirement"].split(": ")[-1]: row
+        for row in map(json.loads, capsys.readouterr().out.splitlines())
+    }
+    assert (rows["A"]["satisfied"], rows["B"]["satisfied"]) == (True, True)
+    if "C" in rows:  # by the times of recording: -1 from 1 s on
+        assert (rows["C"]["satisfied"], rows["C"]["first_violation"]) == (False, START + 1)
+
+
+def test_the_page_of_a_report_has_no_topics_that_would_change_the_clock(tmp_path, bag):
+    page = tmp_path / "report.html"
+    assert main(["check", SIMULATED, bag, "--time", "dense", "--html", str(page)]) == 0
+    assert "/y.data" not in page.read_text()
+    assert main(["check", RECORDED, bag, "--time", "dense", "--html", str(page)]) == 0
+    assert "/x.value" in page.read_text()
+
+
+@pytest.mark.parametrize("engine", [[], ["--engine", "local"]], ids=["one", "many"])
+def test_messages_are_sampled_every_period_also_where_many_recordings_are_checked(tmp_path, capsys, engine):
+    """Message 20, the only violation, is between two samples."""
+    with Bag(tmp_path, "mcap") as made:
+        for i in range(200):
+            made.stamped("/x", START + i / 10, -1.0 if i == 20 else 1.0)
+    for period, code in (("105ms", 0), ("100ms", 1)):
+        assert (
+            main(["check", "always(/x.value >= 0)", str(made.path), "--json", "--period", period, *engine])
+            == code
+        )
+        assert json.loads(capsys.readouterr().out)["robustness"] == (1 if code == 0 else -1)
+
+
+@pytest.mark.parametrize("engine", [[], ["--engine", "local"]], ids=["one", "many"])
+def test_messages_that_are_no_samples_need_a_period(tmp_path, capsys, engine):
+    with Bag(tmp_path, "mcap") as made:
+        for i in (0, 1, 5, 6):
+            made.stamped("/x", START + i, 1.0)
+    assert main(["check", "always(/x.value >= 0)", str(made.path), "--json", *engine]) == 2
+    assert "choose a sampling period, such as --period 100ms" in json.loads(capsys.readouterr().out)["error"]
+
+
+def test_fields_of_declared_messages_are_found_where_many_bags_are_checked(tmp_path, capsys, bag):
+    text = "from std_msgs.msg import Float64\ninput Float64 v @ topic(v, /y)\nalways(v.data >= 1)\n"
+    (tmp_path / "a.stl").write_text(text)
+    for engine in ([], ["--engine", "local"]):
+        assert main(["check", str(tmp_path / "a.stl"), bag, "--json", "--time", "dense", *engine]) == 1
+        assert json.loads(capsys.readouterr().out)["robustness"] == -1
+
+
+def test_a_whole_bag_has_one_clock_and_a_note(bag):
+    trace = rtamt.read(bag)
+    assert trace["/x.value"].times[0] == trace["/y.data"].times[0]
+    (note,) = trace.losses
+    assert note.startswith("the stamps in the headers on /x are ")
