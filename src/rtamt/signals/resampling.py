@@ -28,6 +28,9 @@ HOW = ("hold", "linear")
 #: always rounding, since clocks count nanoseconds.
 ROUNDINGS, LEAST = 4, 4e-10
 
+#: How many instants are made at once: 2 GiB for the values of a signal.
+MOST_INSTANTS = 2**28
+
 
 def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) -> Times:
     """Return instants ``period`` apart, from the first at which all signals have a value; see ``Trace.resample``."""
@@ -199,7 +202,14 @@ def _nearness(time: Fraction, step: Fraction, dtype: np.dtype[Any]) -> Fraction:
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
-    """Return ``count`` timestamps of kind ``dtype``, each correctly rounded."""
+    """Return ``count`` timestamps of kind ``dtype``, each correctly rounded; raise :class:`TraceError` at too many."""
+    if count > MOST_INSTANTS:
+        since, until = (_time_of(start + i * step, dtype) for i in (0, count - 1))
+        raise TraceError(
+            f"from {show_time(since)} to {show_time(until)} there are {count:,} samples {format_duration(step)} apart, "
+            f"more than the {MOST_INSTANTS:,} that resampling makes at once: divide the recording at its gaps, or "
+            f"resample with a longer period"
+        )
     if dtype.kind == "f":
         scale = step.denominator * start.denominator
         zero, gap = int(start * scale), int(step * scale)
@@ -213,6 +223,10 @@ def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> 
         )
     timestamps = int(first) + int(each) * np.arange(count, dtype=np.int64)
     return timestamps.astype(dtype)
+
+
+def _time_of(instant: Fraction, dtype: np.dtype[Any]) -> Any:
+    return float(instant) if dtype.kind == "f" else np.array(int(instant * 10**9)).astype(dtype)[()]
 
 
 def _plain(gaps: Times) -> FloatArray:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rtamt
+from rtamt.cli import main
 from tests.support import strategies
 
 
@@ -136,3 +137,32 @@ def test_resampling_says_how_many_samples_it_passed_over():
     assert trace.resample(1, "linear").losses == trace.resample(1).losses
     assert trace.resample("400ms", "linear").losses == ()
     assert trace.resample("250ms").losses == trace.hold().losses == ()
+
+
+@pytest.mark.parametrize("how", ["hold", "linear"])
+@pytest.mark.parametrize(
+    ("times", "since", "until"),
+    [
+        ([0.0, 1.0, 1e9], "0 s", "2001-09-09 01:46:40"),
+        (np.array([0, 10**18], "m8[ns]"), "0 ns", "2001-09-09 01:46:40"),
+        (np.array([0, 10**18], "M8[ns]"), "1970-01-01T00:00:00", "2001-09-09T01:46:40"),
+    ],
+    ids=["seconds", "nanoseconds", "dates"],
+)
+def test_resampling_over_a_huge_gap_is_an_error_and_no_lack_of_memory(times, since, until, how):
+    """Such as the first messages of a clock that was not set; numpy had a MemoryError."""
+    trace = rtamt.read({"time": times, "x": np.arange(len(times))})
+    with pytest.raises(rtamt.TraceError) as caught:
+        trace.resample("1ms", how=how)
+    assert str(caught.value) == (
+        f"from {since} to {until} there are 1,000,000,000,001 samples 1 ms apart, more than the 268,435,456 that "
+        f"resampling makes at once: divide the recording at its gaps, or resample with a longer period"
+    )
+    assert len(trace.resample("1000h", how=how)["x"].values) == 278
+
+
+@pytest.mark.parametrize("early", [(), ("--early",)])
+def test_commands_resample_no_huge_gap(tmp_path, capsys, early):
+    (tmp_path / "log.csv").write_text("time,x\n0,1\n1,2\n1e9,3\n", encoding="utf-8")
+    assert main(["check", "always(x <= 2)", str(tmp_path / "log.csv"), "--resample", "1ms", *early]) == 2
+    assert "there are 1,000,000,000,001 samples 1 ms apart" in capsys.readouterr().err
