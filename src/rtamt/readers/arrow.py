@@ -157,14 +157,17 @@ def _fields(schema: Any, arrow: Any, dated: Collection[str]) -> tuple[Field, ...
         type_ = column.type
         if types.is_dictionary(type_) or types.is_run_end_encoded(type_):
             type_ = type_.value_type
+        extended = isinstance(type_, arrow.BaseExtensionType)  # such as bool8: a byte for a Boolean
+        if extended:
+            type_ = type_.storage_type
         kind = ""
-        if column.name in dated or (types.is_temporal(type_) and not types.is_time(type_)):
+        if column.name in dated or (types.is_temporal(type_) and not types.is_time(type_) and not extended):
             kind = "time"
         elif any(
             test(type_) for test in (types.is_integer, types.is_floating, types.is_decimal, types.is_boolean)
         ):
             kind = "number"
-        elif not types.is_null(type_):
+        elif extended or not types.is_null(type_):
             kind = "text"
         field = field_of(column.name, kind)
         said = column.metadata or {}

@@ -218,3 +218,45 @@ def test_decimals_are_the_nearest_doubles(tmp_path):
         trace = rtamt.read(tmp_path / "log.parquet")
         assert trace["x"].times.tolist() == [at / 10 for at in range(len(numbers))]
         assert trace["x"].values.tolist() == [float(number) for number in numbers]
+
+
+class Celsius(pa.ExtensionType):
+    """A type of a program of its own: numbers with a name."""
+
+    def __init__(self):
+        super().__init__(pa.float32(), "example.celsius")
+
+    def __arrow_ext_serialize__(self):
+        return b""
+
+    @classmethod
+    def __arrow_ext_deserialize__(cls, storage_type, serialized):
+        return cls()
+
+
+def extended(type_, values):
+    return pa.ExtensionArray.from_storage(type_, pa.array(values, type_.storage_type))
+
+
+@pytest.mark.parametrize("write", [None, parquet.write_table, feather.write_feather, stream])
+def test_columns_of_extension_types_are_those_of_their_storage(tmp_path, write):
+    """Without columns=, they were left out as no numbers; a byte of bool8 that is not 0 is true."""
+    table = pa.table(
+        {
+            "time": [0.0, 1.0, 2.0, 3.0],
+            "armed": extended(pa.bool8(), [1, 0, None, 5]),
+            "temperature": extended(Celsius(), [20.5, 21.5, 22.5, None]),
+            "id": extended(pa.uuid(), [bytes(16)] * 4),
+        }
+    )
+    suffix = {parquet.write_table: "parquet"}.get(write, "arrow")
+    path = tmp_path / f"log.{suffix}"
+    if write is not None:
+        write(table, path)
+    trace = rtamt.read(table if write is None else path)
+    assert trace["armed"].values.tolist() == [1, 0, 1]
+    assert trace["armed"].times.tolist() == [0, 1, 3]
+    assert trace["temperature"].values.tolist() == [20.5, 21.5, 22.5]
+    assert trace.notes == ("left out, not numbers: id",)
+    spec = rtamt.parse("bool armed  float temperature  always(armed or temperature >= 21)", time="dense")
+    assert spec.evaluate(trace).satisfied
