@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from contextlib import ExitStack
 from itertools import chain, repeat
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
@@ -15,7 +16,7 @@ from rtamt.readers.source import Source, library
 from rtamt.signals.time_columns import column_name, is_stamps, may_be_stamps, split_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
 
 #: Bytes of a workbook's parts, unpacked: a few MB of a zip file can expand to any number of GB.
@@ -24,7 +25,10 @@ MOST_BYTES = 2**30
 MOST_ROWS = 2**20
 #: The limit on cells up to the last one of each row: a lone cell far to the right implies thousands of empty ones.
 MOST_CELLS = 2**28
-
+#: Milliseconds of a day, in which Excel counts.
+_MILLISECONDS = 86_400_000
+#: How far, in milliseconds, a date of 15 digits, as they are saved, lies from what it stands for.
+_SAVED = 0.01
 
 #: Bytes of a sheet that are examined at a time.
 _BLOCK = 2**20
@@ -48,6 +52,7 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
             page.reset_dimensions()  # what the file claims them to be, not what they are
         name = _choose(path, found, sheet)
         _check_formulas(path, found[name])
+        losses = _rounded_dates(found[name], book._date_formats)
         rows = _filled_rows(found[name], path)
         header = next(rows, None)
         if header is None:
@@ -63,7 +68,9 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         if _is_timed(columns, first or ()):
             rows = (row for row in rows if _is_filled(row))
         notes = (f"sheet '{name}'",) if len(found) > 1 else ()
-        return Source(path, (table_of_rows(columns, rows),), notes=notes, close=stack.pop_all().close)
+        return Source(
+            path, (table_of_rows(columns, rows),), notes=notes, losses=losses, close=stack.pop_all().close
+        )
 
 
 def _check_size(path: str, file: Any) -> None:
@@ -79,18 +86,56 @@ def _check_size(path: str, file: Any) -> None:
 
 def _check_formulas(path: str, page: Any) -> None:
     """Raise :class:`TraceError` at a formula without its value, which nothing has computed since it was written."""
+    for text in _pieces(page):
+        found = _NO_VALUE.search(text) if b"<f" in text else None
+        if found is not None:
+            cell = found["cell"].decode("ascii", "replace")
+            raise TraceError(
+                f"the cell {cell} in the sheet '{page.title}' of {path} is a formula without its value: open the "
+                f"workbook in a spreadsheet and save it"
+            )
+
+
+def _pieces(page: Any) -> Iterator[bytes]:
+    """Yield the text of a sheet in pieces that end between two cells."""
     rest = b""
     with page._get_source() as source:
         while block := source.read(_BLOCK):
             text = rest + block
-            found = _NO_VALUE.search(text) if b"<f" in text else None
-            if found is not None:
-                cell = found["cell"].decode("ascii", "replace")
-                raise TraceError(
-                    f"the cell {cell} in the sheet '{page.title}' of {path} is a formula without its value: open the "
-                    f"workbook in a spreadsheet and save it"
-                )
-            rest = text[max(text.rfind(b"<c "), len(text) - _BLOCK, 0) :]
+            end = max(text.rfind(b"<c "), len(text) - _BLOCK, 0)
+            yield text[:end]
+            rest = text[end:]
+    yield rest
+
+
+def _rounded_dates(page: Any, styles: Collection[int]) -> tuple[str, ...]:
+    """Return a note on dates and durations between two milliseconds, to which openpyxl rounds them.
+
+    ``styles``: those of dates and durations.
+    """
+    if not styles:
+        return ()
+    numbers = "|".join(map(str, sorted(styles))).encode()
+    dates = re.compile(
+        rb'<c r="(?P<cell>[A-Z0-9]+)"[^>]* s="(?:' + numbers + rb')"[^>]*>\s*'
+        rb"(?:<f\b(?:[^>]*/>|[^>]*>[^<]*</f>)\s*)?<v>(?P<days>[-+.0-9Ee]+)</v>"
+    )
+    count, first = 0, ""
+    for text in _pieces(page):
+        for found in dates.finditer(text):
+            try:
+                milliseconds = float(found["days"]) * _MILLISECONDS
+            except ValueError:  # not a number: openpyxl has the error
+                continue
+            if isfinite(milliseconds) and abs(milliseconds - round(milliseconds)) > _SAVED:
+                count += 1
+                first = first or found["cell"].decode("ascii")
+    if not count:
+        return ()
+    return (
+        f"rounded to 1 ms: {count:,} date{'s' * (count != 1)} of the sheet '{page.title}', the first in cell "
+        f"{first}; save finer timestamps as numbers of seconds",
+    )
 
 
 def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:
