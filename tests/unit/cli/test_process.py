@@ -122,7 +122,7 @@ UNUSED = (
     "rtamt.ros rtamt.fleet.groups rtamt.compiler.stored rtamt.engine.user_operators rtamt.reference "
     "rtamt.rewrite.quantifiers "
     "rtamt.readers.ahead rtamt.readers.arrow rtamt.readers.rows rtamt.signals.resampling rtamt.signals.sampling "
-    "rtamt.verdicts.prepared"
+    "rtamt.verdicts.prepared numpy.ma"
 ).split()
 
 
