@@ -18,10 +18,11 @@ from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, positive_period
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
-from rtamt.readers.assemble import has_one_clock, select, trace_of, with_clock_of
+from rtamt.readers.assemble import trace_of
 from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
+from rtamt.readers.selection import has_one_clock, select, with_clock_of
 from rtamt.signals.arrays import TIME
 from rtamt.signals.data_errors import FILE_MENDS, missing_sample
 from rtamt.signals.datetimes import nanoseconds_of
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from fractions import Fraction
 
-    from rtamt.readers.assemble import Choice
+    from rtamt.readers.selection import Choice
     from rtamt.readers.source import Source
     from rtamt.results import Result
     from rtamt.signals.trace import Trace

@@ -11,8 +11,8 @@ from rtamt.cli.stream_csv import CsvSamples
 from rtamt.cli.stream_json import JsonSamples
 from rtamt.cli.stream_times import StreamTimestamps
 from rtamt.errors import TraceError
-from rtamt.readers.assemble import Choice
 from rtamt.readers.csv import separator
+from rtamt.readers.selection import Choice
 from rtamt.signals.arrays import TIME
 from rtamt.signals.binding import Binding
 from rtamt.signals.coding import NO_TYPES

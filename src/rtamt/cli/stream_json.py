@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rtamt.cli.json_lines import Known
     from rtamt.cli.stream_members import StreamMembers
     from rtamt.cli.stream_times import Sample, StreamTimestamps
-    from rtamt.readers.assemble import Choice
+    from rtamt.readers.selection import Choice
     from rtamt.signals.coding import Types
 
 

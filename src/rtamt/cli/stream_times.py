@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from rtamt.cli.json_lines import STDIN, line_error
 from rtamt.errors import TraceError
 from rtamt.lazy.dataclasses import replace
-from rtamt.readers.assemble import Choice, select, timestamps_of
+from rtamt.readers.assemble import timestamps_of
 from rtamt.readers.csv import Header, is_number
 from rtamt.readers.csv_cells import Cells
 from rtamt.readers.dates import is_date
 from rtamt.readers.frames import field_of
+from rtamt.readers.selection import Choice, select
 from rtamt.readers.source import Source, Table
 from rtamt.readers.timestamps import CHOICES
 from rtamt.signals.arrays import TIME
@@ -23,7 +24,7 @@ from rtamt.signals.trace import in_seconds
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from rtamt.readers.assemble import Selection
+    from rtamt.readers.selection import Selection
     from rtamt.readers.source import Field, Raw
     from rtamt.readers.timestamps import TimestampColumn
 

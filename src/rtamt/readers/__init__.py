@@ -7,7 +7,8 @@ read                 ``rtamt.read`` and ``rtamt.scan``
 formats              the list of file formats
 source               the interface that every reader implements
 ahead                chunks read in a thread while others are evaluated
-assemble             a source to a trace: columns, names, time base
+selection            which columns are read, under which names, and which are timestamps
+assemble             a source to a trace, whole or in chunks
 numbers              the values of a column
 member_columns       the columns of the members of groups
 first_column         a first column that may hold the timestamps

@@ -10,7 +10,7 @@ from rtamt.signals import members
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rtamt.readers.assemble import Choice
+    from rtamt.readers.selection import Choice
     from rtamt.readers.source import Source
     from rtamt.specification import Specification
 

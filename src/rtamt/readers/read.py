@@ -10,8 +10,9 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.files import is_device, is_pipe
 from rtamt.language.units.durations import check_unit, positive_period
 from rtamt.readers import frames
-from rtamt.readers.assemble import Choice, chunks_of, trace_of
+from rtamt.readers.assemble import chunks_of, trace_of
 from rtamt.readers.formats import FORMATS, format_of
+from rtamt.readers.selection import Choice
 from rtamt.readers.sql import is_url, open_sql
 from rtamt.signals.arrays import TIME
 from rtamt.signals.coding import NO_TYPES

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError
 from rtamt.fleet.groups import way_of
-from rtamt.readers.assemble import has_one_clock, trace_of
+from rtamt.readers.assemble import trace_of
 from rtamt.readers.member_columns import choice_of_members
+from rtamt.readers.selection import has_one_clock
 from rtamt.signals.members import bound
 from rtamt.signals.sampling import sampled_messages
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from rtamt.fleet.groups import Way
     from rtamt.fleet.suite import Suite
     from rtamt.fleet.verdict_table import VerdictTable
-    from rtamt.readers.assemble import Choice
+    from rtamt.readers.selection import Choice
     from rtamt.readers.source import Source
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification

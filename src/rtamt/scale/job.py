@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from rtamt.fleet.groups import Way
     from rtamt.fleet.suite import Suite
-    from rtamt.readers.assemble import Choice
+    from rtamt.readers.selection import Choice
 
 #: Increased with every change of what an operator means: results of other versions are computed again.
 SEMANTICS_VERSION = 2
