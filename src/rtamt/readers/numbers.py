@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from math import isinf, nan
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
@@ -72,6 +73,17 @@ def problem_of(value: object, of: str = "") -> str:
     return TOO_LARGE if isinstance(value, Decimal) else number_expected(value, of)
 
 
+def is_whole(value: object) -> bool:
+    """Return whether a number is an integer, also a Decimal without a fraction.
+
+    >>> is_whole(1), is_whole(Decimal("1.00")), is_whole(Decimal("0.5")), is_whole(1.0)
+    (True, True, False, False)
+    """
+    if isinstance(value, Decimal):
+        return value.is_finite() and value == value.to_integral_value()
+    return isinstance(value, Integral)
+
+
 def is_rounded(value: int) -> bool:
     """Return whether no double holds an integer, which is in the range of doubles.
 
@@ -91,7 +103,7 @@ def rounded(raw: Raw) -> Any:
     if not len(plain):
         return None
     if plain.dtype.kind == "O":
-        large = [type(value) is int and is_rounded(value) for value in plain]
+        large = [is_whole(value) and is_rounded(int(value)) for value in plain]
         return np.array(large, dtype=bool) if any(large) else None
     if plain.dtype.kind not in "iu" or plain.dtype.itemsize < 8:
         return None

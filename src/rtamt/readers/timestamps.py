@@ -6,16 +6,14 @@ column follows from its first timestamp, which every one of them has.
 
 from __future__ import annotations
 
-from decimal import Decimal
 from itertools import pairwise
-from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import NANOSECOND, UNITS, in_seconds
 from rtamt.lazy.modules import np
 from rtamt.readers.dates import EXAMPLE, DateError, Dates, is_date
-from rtamt.readers.numbers import double_of, problem_of
+from rtamt.readers.numbers import double_of, is_whole, problem_of
 from rtamt.signals.arrays import is_masked
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.datetimes import in_nanoseconds
@@ -225,7 +223,7 @@ def numbers_in(values: Sequence[Any]) -> Raw:
 
     None is masked. Decimals without a fraction are integers: a double does not hold nanoseconds since 1970.
     """
-    whole = all(value is None or _is_whole(value) for value in values)
+    whole = all(value is None or is_whole(value) for value in values)
     as_number = int if whole else double_of
     plain = [0 if value is None else as_number(value) for value in values]
     try:
@@ -234,9 +232,3 @@ def numbers_in(values: Sequence[Any]) -> Raw:
         numbers = np.array(plain, dtype=object)
     missing = np.array([value is None for value in values], dtype=bool)
     return np.ma.masked_array(numbers, missing) if missing.any() else numbers
-
-
-def _is_whole(value: Any) -> bool:
-    if isinstance(value, Decimal):
-        return value.is_finite() and value == value.to_integral_value()
-    return isinstance(value, Integral)

@@ -2,6 +2,7 @@
 
 import sqlite3
 from contextlib import closing
+from decimal import Decimal
 
 import numpy as np
 import pandas as pd
@@ -50,8 +51,10 @@ def test_a_database_with_such_integers_has_the_same_note(tmp_path) -> None:
         pl.DataFrame(ROWS),
         pl.DataFrame(ROWS).to_arrow(),
         pd.DataFrame(ROWS).astype({"x": "uint64"}),
+        {**ROWS, "x": [1, Decimal(ODD), Decimal(f"{ODD}.00")]},
+        {**ROWS, "x": np.array([None, np.int64(ODD), np.uint64(ODD)], dtype=object)},
     ],
-    ids=["dict", "pandas", "polars", "arrow", "unsigned"],
+    ids=["dict", "pandas", "polars", "arrow", "unsigned", "decimals", "objects"],
 )
 def test_data_in_memory_that_is_read_has_the_same_note(data) -> None:
     assert rtamt.read(data).remarks == (NOTE,)
