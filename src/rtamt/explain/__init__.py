@@ -14,7 +14,11 @@ propagate    required truth values, from the verdict down to the predicates
 necessary    intervals that every implicant contains
 witnesses    choose between several sufficient operands or times
 shares       choose instants for a share of each of many windows
+spare        windows of a share that have no cell to spare
+intervals    intervals of predicates, and groups of them
+forcing      whether intervals force the verdict
 minimise     remove intervals while the verdict is still forced
+moves        how the robustness follows the values of predicates
 readings     the samples that a predicate depends on
 attained     where windows attain their values
 description  intervals of predicates and the samples they read, as data and in words

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rtamt.engine import TimeAxis
     from rtamt.explain.explanation import CriticalPoint
-    from rtamt.explain.minimise import Interval
+    from rtamt.explain.intervals import Interval
     from rtamt.language.formula import Formula
     from rtamt.rewrite.structure import Structure
     from rtamt.signals.instants import StepFunction

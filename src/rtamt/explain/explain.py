@@ -11,16 +11,19 @@ from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description
 from rtamt.explain.explanation import CriticalPoint, Explanation, Listed
-from rtamt.explain.minimise import Forcing, Intervals, minimal
+from rtamt.explain.forcing import Forcing
+from rtamt.explain.intervals import Interval, Intervals
+from rtamt.explain.minimise import minimal
+from rtamt.explain.moves import Moves
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
-from rtamt.explain.signals import Signals, truths
+from rtamt.explain.signals import Signals, near, truths
 from rtamt.explain.wording import cause, predicate_text, summary
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import PAGE
 from rtamt.lazy.modules import np
 from rtamt.rewrite.semantics import boolean, no_verdict
-from rtamt.rewrite.structure import Structure, literal
+from rtamt.rewrite.structure import Structure, reaches
 from rtamt.signals.instants import Cells, StepFunction, two_valued
 from rtamt.verdicts.offline import first_violation
 from rtamt.verdicts.robustness_and_truth import outputs_of
@@ -52,11 +55,11 @@ def explain(
     formula whose value counts as that of a predicate. Raises :class:`UsageError` if ``at`` is not in the
     recording.
     """
-    return _Explainer(formula, recording, backend, text, semantics).at(at)
+    return _Explainer(formula, recording, backend, text, semantics, at).explanation()
 
 
 class _Explainer:
-    """One formula over one recording."""
+    """One formula over one recording, at one instant."""
 
     def __init__(
         self,
@@ -65,6 +68,7 @@ class _Explainer:
         backend: str,
         text: str | None,
         semantics: Callable[[Formula], Formula],
+        at: Any,
     ) -> None:
         (formula,) = recording.domain.ground(formula)
         self._formula = formula
@@ -81,8 +85,16 @@ class _Explainer:
             self._truth = self._measure([boolean(predicate) for predicate in predicates])
         except EvaluationError as error:
             raise no_verdict(error) from error
-        self._signals = Signals(self._structure, self._line, self._values)
-        self._holds = truths(self._structure.order, self._line, self._truth)
+        self._cell = 0 if at is None else self._line.cell(at)
+        # What the formula reads at the instant: nothing else is evaluated.
+        behind, ahead = reaches(self._structure.order, self._line.period)[self._structure.core]
+        window = self._cell - behind, self._cell + ahead + 1
+        read = {name: near(steps, *window) for name, steps in self._values.items()}
+        holds = {name: near(steps, *window) for name, steps in self._truth.items()}
+        self._signals = Signals(self._structure, self._line, read)
+        self._holds = truths(self._structure.order, self._line, holds)
+        self._robustness = self._signals.at(self._structure.core, self._cell)
+        self._moves = Moves(self._structure, self._line, read, self._signals, self._cell, dense=self._dense)
         self._walk = Walk(self._signals, self._line.period, self._line.end)
 
     def _measure(self, formulas: list[Formula]) -> dict[str, StepFunction]:
@@ -90,13 +102,11 @@ class _Explainer:
         steps = self._line.measured(formulas) if formulas else []
         return dict(zip(self._structure.leaves, steps, strict=True))
 
-    def at(self, at: Any) -> Explanation:
-        cell = 0 if at is None else self._line.cell(at)
-        core = self._structure.core
-        satisfied = cell in self._holds[core]
-        robustness = self._signals.at(core, cell)
-        implicant = self._implicant(cell, satisfied)
-        critical, point = self._critical(cell, implicant)
+    def explanation(self) -> Explanation:
+        cell, robustness = self._cell, self._robustness
+        satisfied = cell in self._holds[self._structure.core]
+        implicant = self._implicant(satisfied=satisfied)
+        critical, point = self._critical(implicant)
         description = Description(self._formula, self._text, self._structure, self._line, self._values, cell)
         critical, source = description.with_source(critical, point)
         stretches = Listed(len(implicant), lambda k: description.stretch(implicant[k], satisfied=satisfied))
@@ -128,41 +138,38 @@ class _Explainer:
 
     # ---- the critical point ------------------------------------------------------------------------
 
-    def _critical(self, cell: int, implicant: Intervals) -> tuple[CriticalPoint, int]:
+    def _critical(self, implicant: Intervals) -> tuple[CriticalPoint, int]:
         """Return the critical point, and its cell.
 
         Where several places have the value of the robustness it is, if there is one, a place that overturns
         the verdict alone; such a place is in every implicant.
         """
-        first = self._describe(self._walk.down(self._structure.core, cell), cell)
+        first = self._describe(self._walk.down(self._structure.core, self._cell))
         if overturns(first[0]):
             return first
-        others = self._places(implicant, self._signals.at(self._structure.core, cell))
-        found = self._alone(list(islice(others, _TRIED)), cell)
-        return first if found is None else self._describe(found, cell)
+        found = self._alone(list(islice(self._places(implicant), _TRIED)))
+        return first if found is None else self._describe(found)
 
-    def _alone(self, points: Sequence[Point], cell: int) -> Point | None:
+    def _alone(self, points: Sequence[Point]) -> Point | None:
         """Return the first of some places that overturns the verdict alone.
 
         Where all together do not, none does; so most are excluded at once.
         """
         if not points:
             return None
-        robustness = self._signals.at(self._structure.core, cell)
-        moved = self._move_values(points, -inf if robustness > 0 else inf, cell)
-        if not (moved < 0 if robustness > 0 else moved > 0):
+        if not self._moves.overturn(list(map(self._moving, points))):
             return None
         if len(points) == 1:
             return points[0]
         half = len(points) // 2
-        return self._alone(points[:half], cell) or self._alone(points[half:], cell)
+        return self._alone(points[:half]) or self._alone(points[half:])
 
-    def _places(self, implicant: Intervals, robustness: float) -> Iterator[Point]:
+    def _places(self, implicant: Intervals) -> Iterator[Point]:
         """Yield the places of an implicant that have the value of the robustness."""
         found: list[tuple[int, int, int]] = []
         for (name, sign), numbers in implicant.numbers():
             begins, stops = implicant.starts[numbers], implicant.ends[numbers]
-            starts, ends = self._values[name].stretches(sign * robustness)
+            starts, ends = self._values[name].stretches(sign * self._robustness)
             firsts = np.searchsorted(ends, begins, side="right")
             lasts = np.searchsorted(starts, stops, side="left")
             for which in np.flatnonzero(firsts < lasts).tolist():
@@ -179,11 +186,11 @@ class _Explainer:
             name, sign = implicant.literals[implicant.of[number]]
             yield from (Point(there, sign, name) for there in cells)
 
-    def _describe(self, point: Point, cell: int) -> tuple[CriticalPoint, int]:
+    def _describe(self, point: Point) -> tuple[CriticalPoint, int]:
         """Return a place that has the value of the robustness as a critical point, and its cell."""
         start, end = point.cell, point.cell + 1
-        value = point.sign * self._signals.at(self._structure.core, cell)
-        lowest = highest = self._signals.at(self._structure.core, cell)
+        value = point.sign * self._robustness
+        lowest = highest = self._robustness
         words, leaf = None, None
         decided_by = point.decided_by
         if point.name:
@@ -192,8 +199,9 @@ class _Explainer:
             words = predicate_text(leaf.formula, self._text)
             decided_by = "constant" if leaf.fixed else "predicate"
         if leaf is not None and not leaf.fixed:
-            start, end = self._stretch(point)
-            lowest, highest = (self._move_values([point], toward, cell) for toward in (-inf, inf))
+            moving = self._moving(point)
+            start, end = moving.start, moving.end
+            lowest, highest = (self._moves.extreme(moving, toward) for toward in (-inf, inf))
         found = CriticalPoint(
             words,
             None if leaf is None else leaf.formula,
@@ -208,29 +216,18 @@ class _Explainer:
         )
         return found, point.cell
 
-    def _stretch(self, point: Point) -> tuple[int, int]:
+    def _moving(self, point: Point) -> Interval:
         """Return the cells on which a value moves: in dense time those of its segment."""
-        return self._values[point.name].around(point.cell) if self._dense else (point.cell, point.cell + 1)
-
-    def _move_values(self, points: Sequence[Point], toward: float, cell: int) -> float:
-        """Return the robustness when the values at some places go, up to sign, to -inf or to +inf."""
-        run = self._line.runner((self._structure.polar[self._structure.core, 1],))
-        signals = {name: self._values[name] for name, leaf in self._structure.leaves.items() if leaf.fixed}
-        for name, leaf in self._structure.leaves.items():
-            if not leaf.fixed:
-                signals[literal(name, 1)] = signals[literal(name, -1)] = self._values[name]
-        for name, sign in {(point.name, point.sign) for point in points}:
-            cells = Cells.of([self._stretch(p) for p in points if (p.name, p.sign) == (name, sign)])
-            signals[literal(name, sign)] = self._values[name].changed(cells, sign * toward)
-        return run(signals)[0].at(cell)
+        cells = self._values[point.name].around(point.cell) if self._dense else (point.cell, point.cell + 1)
+        return Interval(*cells, point.name, point.sign)
 
     # ---- the implicant -----------------------------------------------------------------------------
 
-    def _implicant(self, cell: int, satisfied: bool) -> Intervals:
+    def _implicant(self, *, satisfied: bool) -> Intervals:
         period, end = self._line.period, self._line.end
         given = (self._structure, self._holds, self._signals, self._walk, period, end)
         demands = Demands(*given, dense=self._dense)
-        here = Cells.of([(cell, cell + 1)])
+        here = Cells.of([(self._cell, self._cell + 1)])
         demands.ask(here, satisfied=satisfied)
         fixed = {
             leaf.name: _infinite(self._truth[leaf.name])

@@ -12,13 +12,14 @@ from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
 from rtamt.explain.propagate import Asked, Demands
+from rtamt.explain.spare import ShareWindows
 from rtamt.language.formula import Var
 from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import NEVER
 from rtamt.signals.instants import NONE, Cells
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -29,13 +30,13 @@ if TYPE_CHECKING:
 class Needs(Demands):
     """The demands of a verdict on every place. ``leaves``: cells of intervals that cannot be left out."""
 
-    def given(self, support: Mapping[Place, Cells]) -> Needs:
-        """Set where each place is known to have the required truth."""
+    def given(self, support: Callable[[Place], Cells]) -> Needs:
+        """Set where a place is known to have the required truth."""
         self._known = support
         return self
 
     def _support(self, node: Formula, sign: int) -> Cells:
-        return self._known[node, sign]
+        return self._known((node, sign))
 
     def _choose_operands(self, node: Apply, sign: int, cells: Cells) -> None:
         shares = [self._having(arg, sign) for arg in node.args]
@@ -45,20 +46,21 @@ class Needs(Demands):
     def _witnesses(self, node: Apply, reduce: str, sign: int, cells: Cells) -> Cells:
         del reduce  # whichever it is
         having = self._having(node.args[0], sign)
-        return _needed_cells(node.args[0], only_stretches(cells, having, *self._offsets(node)), having)
+        return _needed_cells(node.args[0], only_stretches(cells, having, *self.offsets(node)), having)
 
     def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
         need, found = self._share(node, sign)
-        before, after = self._offsets(node)
-        needed = only_share(cells, found, before, after, need, ends=self._ends(sign))
+        before, after = self.offsets(node)
+        tight = ShareWindows(cells, before, after, need, self.both(sign)).tight(found)
+        needed = only_share(tight, found, before, after, need, ends=self._ends(sign))
         window = self._ticks(sign, cells, before, after, need)
         if window is None or not isinstance(node.args[0], Var):
             return needed
         return needed | window.needed(found & cells.widened(before, after)).within(0, self._end)
 
     def _ends(self, sign: int) -> Callable[..., NDArray[np.int64]] | None:
-        # In dense time the cells at both ends of a window count as one, which holds where both do.
-        return (np.minimum if self.truth(sign) else np.maximum) if self._dense else None
+        both = self.both(sign)
+        return None if both is None else np.minimum if both else np.maximum
 
     def _until(
         self, node: Apply, sign: int, cells: Cells, having: tuple[Cells, Cells], window: tuple[int, int]

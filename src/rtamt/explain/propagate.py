@@ -88,6 +88,13 @@ class Demands:
         """Return the required truth at places of a sign."""
         return self._satisfied == (sign > 0)
 
+    def both(self, sign: int) -> bool | None:
+        """Return whether the cell at both ends of a window counts where both do, or where one does.
+
+        In dense time they are one; in discrete time None.
+        """
+        return self.truth(sign) if self._dense else None
+
     def _add(self, node: Formula, sign: int, asked: Asked) -> None:
         asked = Asked(self._within(asked.cells), self._within(asked.surely))
         place = node, sign
@@ -102,7 +109,10 @@ class Demands:
 
     def _having(self, node: Formula, sign: int) -> Cells:
         """Return where a sub-formula has the truth required of places of a sign."""
-        having = self._support(node, sign)
+        return self.lasting(self._support(node, sign))
+
+    def lasting(self, having: Cells) -> Cells:
+        """Return cells with those after the recording: in dense time what is so at its end remains so."""
         if self._dense and len(having) and having.ends[-1] >= self._end:
             having = having | Cells.of([(int(having.starts[-1]), 4 * NEVER)])
         elif self._dense:
@@ -127,7 +137,7 @@ class Demands:
             for arg in node.args:
                 self._add(arg, sign, asked)
         elif isinstance(kernel, Window) and self.truth(sign) == (kernel.reduce == CHOOSING[0]):
-            before, after = self._offsets(node)
+            before, after = self.offsets(node)
             self._add(
                 node.args[0],
                 sign,
@@ -197,7 +207,7 @@ class Demands:
     def _witnesses(self, node: Apply, reduce: str, sign: int, cells: Cells) -> Cells:
         """Choose instants of a window's operand; for a single cell, where its robustness is largest."""
         found = self._having(node.args[0], sign)
-        before, after = self._offsets(node)
+        before, after = self.offsets(node)
         cell = cells.lone
         if cell is not None:
             begin, end = around(
@@ -215,9 +225,12 @@ class Demands:
 
         Those outside the trace are among them if they count.
         """
+        return self.share_of(node, sign, self._having(node.args[0], sign))
+
+    def share_of(self, node: Apply, sign: int, found: Cells) -> tuple[int, Cells]:
+        """Return the same where these cells have it."""
         k, outside = rank_of(node.interval, self._period, continuous=self._dense)
         first, last = window_of(node, self._period)
-        found = self._having(node.args[0], sign)
         if (outside > 0) == self.truth(sign):
             found = found | Cells.of([(-2 * NEVER, 0)])
             if not self._dense:
@@ -228,7 +241,7 @@ class Demands:
     def _deciding(self, node: Apply, sign: int, cells: Cells) -> Cells:
         """Choose instants of the operand for a share of a window: in discrete time as few as possible."""
         need, found = self._share(node, sign)
-        before, after = self._offsets(node)
+        before, after = self.offsets(node)
         found = found & cells.widened(before, after)
         window = self._ticks(sign, cells, before, after, need)
         if window is not None:
@@ -252,7 +265,7 @@ class Demands:
             return None
         return TickWindow(cell + before, cell + after, need, both=self.truth(sign))
 
-    def _offsets(self, node: Apply) -> tuple[int, int]:
+    def offsets(self, node: Apply) -> tuple[int, int]:
         """Return the ends of a window, counted from the present cell on."""
         first, last = window_of(node, self._period)
         return (-last, -first) if node.op.tense is Tense.PAST else (first, last)

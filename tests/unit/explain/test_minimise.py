@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import rtamt
-from rtamt.explain.minimise import Groups
+from rtamt.explain.intervals import Groups
 from rtamt.signals.instants import Cells
 
 

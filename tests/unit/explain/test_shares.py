@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.explain import shares
 from rtamt.explain.explanation import Listed
-from rtamt.explain.minimise import Forcing
+from rtamt.explain.forcing import Forcing
 from rtamt.explain.shares import sharing
 from rtamt.signals.instants import Cells
 
