@@ -6,6 +6,7 @@ Times are those of the process, because calls of microseconds are disturbed by w
 from __future__ import annotations
 
 import time
+from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -117,6 +118,24 @@ def dense_points(signals: int) -> Callable[[], float]:
     return measure
 
 
+def explained(text: str, time: str) -> Callable[[], float]:
+    """``explain`` over 10^6 samples: s."""
+    random = np.random.default_rng(1)
+    a, b = random.normal(size=(2, 10**6))
+    stamps = np.arange(10.0**6)
+    data = {"a": (stamps, a), "b": (stamps, b)} if time == "dense" else {"a": a, "b": b}
+    result = rtamt.parse(text).evaluate(data, time=time)
+    return each(1, result.explain, unit=1e9)
+
+
+#: Formulas whose verdicts are explained, the shares with one and with thousands of causes.
+EXPLAINED = (
+    "always(a >= 1 -> eventually[0:20](b >= 1))",
+    "atleast[0:1000](90%, a >= 1)",
+    "always(atleast[0:10](10%, a >= 1))",
+    "eventually(atleast[0:1000](90%, a >= 1))",
+)
+
 #: Name, unit, upper limit, and what prepares the measurement.
 CALLS: tuple[tuple[str, str, float | None, Callable[[], Callable[[], float]]], ...] = (
     ("evaluate, 100 samples", "µs/call", 3, short),
@@ -140,6 +159,11 @@ CALLS: tuple[tuple[str, str, float | None, Callable[[], Callable[[], float]]], .
     ("evaluate(a >= 3), 10^7 samples", "ns/sample", 4, lambda: long(10**7)),
     ("dense online update(t, x=v).points()", "ns/call", 300, lambda: dense_points(1)),
     ("dense online update(t, x0=v).points(), 64 signals", "ns/call", None, lambda: dense_points(64)),
+    *(
+        (f"explain, 10^6 samples, {time}, {text}", "s", 0.3, partial(explained, text, time))
+        for text in EXPLAINED
+        for time in ("discrete", "dense")
+    ),
 )
 
 

@@ -104,7 +104,7 @@ class Moves:
     def extreme(self, place: Interval, toward: float) -> float:
         """Return the robustness when the values at a place go, up to sign, to -inf or to +inf."""
         found = self._robustness
-        for limit in (self._beyond(toward), toward):
+        for limit in dict.fromkeys((self._beyond(toward), toward)):  # once where they are equal
             low, high = sorted((self._robustness, limit))
             found = self._moved([place], toward, (low, high))
             if found != limit:

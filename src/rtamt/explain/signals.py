@@ -138,6 +138,8 @@ def evaluated(
 
 def near(steps: StepFunction, begin: int, end: int) -> StepFunction:
     """Return a function with the same values in [begin, end), and constant before and after."""
+    if begin <= 0 and end > steps.changes[-1]:
+        return steps
     begin, end = max(begin, 0), min(end, steps.end)
     changes, values = steps.between(begin, end)  # a copy of the changes
     changes[0] = 0
