@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from itertools import product
 from types import MappingProxyType
 
 from rtamt.errors import UsageError, choices
@@ -34,6 +35,8 @@ class QuantifiedText(RecordedSpecification):
     def groups(self) -> Mapping[str, tuple[Group, tuple[str, ...]]]:
         """The groups that quantifiers range over, each with the fields of its members: those declared, or those read.
 
+        Of one requirement of several those that it reads, with the fields that any of them reads.
+
         >>> import rtamt
         >>> spec = rtamt.parse('group cars = "car_*"; always forall v in cars: v.x - ego > 5')
         >>> {name: fields for name, (_, fields) in spec.groups.items()}
@@ -41,10 +44,24 @@ class QuantifiedText(RecordedSpecification):
         """
         if self.resolved is not None:
             return MappingProxyType({})
-        if not self.document.replaced:
-            # Without a declared group there is no quantifier to look for.
-            return self.document.quantified_groups if self.document.groups else MappingProxyType({})
-        return groups_in(*self._all_formulas)
+        if not self.document.groups and not self.document.replaced:
+            return MappingProxyType({})  # without a declared group there is no quantifier to look for
+        every = groups_in(*self._all_formulas) if self.document.replaced else self.document.quantified_groups
+        if self.document.selected:
+            every = MappingProxyType({name: every[name] for name in groups_in(self.formula)})
+        self._refuse_recorded_fields(every)
+        return every
+
+    def _refuse_recorded_fields(self, groups: Mapping[str, tuple[Group, tuple[str, ...]]]) -> None:
+        """Raise :class:`UsageError` for a variable that is recorded under the name of a field of a member."""
+        recorded = ((name, column) for name, columns in self._recorded_names.items() for column in columns)
+        for (name, column), (group, fields) in product(recorded, groups.values()):
+            member = group.member(column)
+            if name != column and member is not None and member[1] in fields:
+                raise UsageError(
+                    f"'{column}' is the recorded name of '{name}', and a field of '{member[0]}' of the group "
+                    f"'{group.name}': read '{column}' in formulas in place of '{name}'"
+                )
 
     @property
     def _all_formulas(self) -> list[Formula]:

@@ -40,7 +40,7 @@ def episodes_in_steps(result: Result, *, certain: bool = False) -> list[Episode]
             end = None if formula.interval.end is None else int(formula.interval.end / trace.step)
         formula = formula.args[0]
     applied = spec._apply_semantics(formula, result.semantics)
-    (signal,) = spec._signals_of((applied,), trace.in_steps())
+    (signal,) = spec._signals_of((applied,), trace.in_steps().held_until(trace.latest))
     values = signal.upper if certain and isinstance(signal, BoundedSignal) else signal.values
     positions = trace.positions(signal)
     tracker = WindowTracker(begin, end, continuous=trace.domain.continuous)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rtamt
-from rtamt.errors import TraceError
+from rtamt.errors import TraceError, UsageError
 
 inf = float("inf")
 
@@ -69,6 +69,82 @@ def test_in_dense_time_a_missing_sample_ends_presence_until_the_next_one(text, e
     spec = rtamt.parse(f'group cars = "car_*"; {text}', time="dense")
     data = {"ego": ([0, 6], [0, 0]), "car_1.x": ([0, 1, 2, 3], [1, None, 5, 2])}
     assert list(spec.evaluate(data).signal.points()) == expected
+
+
+VERDICTS = [
+    ("always(forall v in cars: v.x > ego)", 7),
+    ("not eventually(exists v in cars: v.x <= ego)", 0),
+    ("always[0:20](ego < 9 -> not exists v in cars: v.x <= ego)", 7),
+]
+
+
+@pytest.mark.parametrize(("text", "violated"), VERDICTS, ids=[text for text, _ in VERDICTS])
+def test_a_violation_by_a_member_after_the_last_sample_of_the_variables_was_satisfied(text, violated):
+    spec = rtamt.parse(f'group cars = "car_*"; {text}', time="dense")
+    data = {"ego": ([0, 5], [0, 0]), "car_1.x": ([0, 7, 8], [4, -3, 4])}
+    result = spec.evaluate(data)
+    assert (result.robustness, result.satisfied) == (-3, False)
+    assert rtamt.first_violation(result) == violated
+    if text.startswith("always("):
+        (episode,) = result.episodes()
+        assert (episode.begin, episode.end, episode.worst) == (7, 8, -3)
+    (row,) = rtamt.Suite(spec).evaluate(data)
+    assert (row.robustness, row.satisfied, row.first_violation) == (-3, False, violated)
+
+
+def test_each_of_several_requirements_reads_its_own_groups():
+    spec = rtamt.parse(
+        'group cars = "car_*"; group dogs = "dog_*"\n'
+        "require A: always(forall v in cars: v.x > 0)\n"
+        "require B: always(forall v in dogs: v.x > 0)\n"
+        "require C: always(ego > 0)"
+    )
+    data = {"ego": [1, 2], "car_1.x": [3, 4]}
+    assert {name: list(each.groups) for name, each in spec.requirements.items()} == {
+        "A": ["cars"],
+        "B": ["dogs"],
+        "C": [],
+    }
+    assert [spec.requirements[name].evaluate(data).robustness for name in "AC"] == [3, 1]
+    with pytest.raises(TraceError, match="no member of the group 'dogs'"):
+        spec.requirements["B"].evaluate(data)
+    rows = rtamt.Suite(spec).evaluate(data).rows
+    assert [row.robustness for row in rows] == [3, None, 1]
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize("read", [lambda data: data, rtamt.read], ids=["mapping", "trace"])
+def test_a_field_that_is_read_outside_of_quantifiers_was_1_where_it_is_missing(time, read):
+    spec = rtamt.parse('group cars = "car_*"; always(forall v in cars: v.x - car_1.x >= -0.5)', time=time)
+    data = {"time": [0, 1, 2], "car_1.x": [5, None, 5], "car_2.x": [5, 9, 5]}
+    with pytest.raises(TraceError) as caught:
+        spec.evaluate(read(data))
+    assert str(caught.value) == (
+        "'car_1.x' is missing at sample 1, and the formula reads it outside of its quantifiers, where it needs a "
+        "value: fill the gap, or read it of the members alone"
+    )
+    data = {"time": [0, 1, 2], "car_1.x": [5, 4, 5], "car_2.x": [5, None, 5]}
+    assert spec.evaluate(read(data)).robustness == 0.5
+
+
+def test_a_field_is_its_own_value_outside_of_quantifiers_also_where_its_member_is_absent():
+    spec = rtamt.parse(
+        'group cars = "car_*" { float x; float y }; always(car_1.x >= 3 or exists v in cars: v.y > 9)'
+    )
+    data = {"time": [0, 1], "car_1.x": [5, 4], "car_1.y": [5, None], "car_2.x": [5, 5], "car_2.y": [0, 0]}
+    assert spec.evaluate(data).robustness == 1
+
+
+def test_a_variable_that_is_recorded_as_a_field_of_a_member_took_the_member_away():
+    spec = rtamt.parse(
+        'input float e = "car_1.x"; group cars = "car_*"; always(forall v in cars: v.x - e >= 0.5)'
+    )
+    with pytest.raises(UsageError) as caught:
+        spec.evaluate({"car_1.x": [0, 0], "car_2.x": [5, 5]})
+    assert str(caught.value) == (
+        "'car_1.x' is the recorded name of 'e', and a field of 'car_1' of the group 'cars': read 'car_1.x' in formulas "
+        "in place of 'e'"
+    )
 
 
 def test_members_move_neither_the_start_nor_the_end_of_a_dense_trace():

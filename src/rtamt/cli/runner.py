@@ -112,13 +112,14 @@ def _processes(traces: Sequence[str]) -> int:
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
-    quantified = [requirement for requirement in requirements if requirement.spec.groups]
-    if quantified:
-        plain = [requirement for requirement in requirements if not requirement.spec.groups]
+    if any(requirement.spec.groups for requirement in requirements):
+        # Each reads its own groups.
+        each = [row for requirement in requirements for row in requirement.rows or (requirement,)]
+        plain = [row for row in each if not row.spec.groups]
         several = [evaluate(plain, trace, reading)] if plain else []
-        several += [_over_members(requirement, trace, reading) for requirement in quantified]
-        known = {outcome.requirement: outcome for each in several for outcome in each}
-        return [known[row.label] for each in requirements for row in each.rows or (each,)]
+        several += [_over_members(row, trace, reading) for row in each if row.spec.groups]
+        known = {outcome.requirement: outcome for found in several for outcome in found}
+        return [known[row.label] for row in each]
     if not any(requirement.spec.optional for requirement in requirements):
         return _check_requirements(requirements, trace, reading)
     try:
@@ -142,7 +143,7 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
-    """Check a requirement over the members of groups that a recording has."""
+    """Check one requirement over the members of groups that a recording has."""
     from rtamt.readers.member_columns import choice_of_members
     from rtamt.signals import members
 
@@ -153,7 +154,7 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
             source = completed_for(opening, [spec])
             kept, unchecked = applicable([requirement], source.signals, trace)
             if unchecked:
-                found = [outcome for each in kept for outcome in _over_members(each, trace, reading)]
+                found = [outcome for each in kept for outcome in evaluate([each], trace, reading)]
                 return list(together(found, unchecked).values())
             choice = choice_of_members(spec, source, lambda over: choice_for([over], trace, reading))
             whole = spec.binding.applied(trace_of(source, choice))
@@ -161,12 +162,9 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
             require_all_samples(whole, spec.input_names)
         bound = members.bound(whole, spec.groups, spec.input_names, own_time_bases=True, source=shown(trace))
         over = spec.over(bound.members)
-        rows = tuple(
-            replace(row, spec=over.select(row.spec.document.requirements[0].name)) for row in requirement.rows
-        )
     except StlError as error:
-        return [failed(row, trace, str(error), begin) for row in requirement.rows or (requirement,)]
-    return _check(replace(requirement, spec=over, rows=rows), trace, bound.data, reading)
+        return [failed(requirement, trace, str(error), begin)]
+    return _check(replace(requirement, spec=over), trace, bound.data, reading)
 
 
 def _early(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome] | None:

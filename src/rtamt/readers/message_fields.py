@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 #: The longest array whose elements become columns; longer ones are images and point clouds.
 ELEMENTS = 1000
+#: The most numbers in the elements of an array that become columns; more are those of grids.
+NUMBERS = 10_000
 #: Scans have a column for the nearest obstacle: the least valid range, inf if there is none, and -inf where a ray hit
 #: something that is too close to measure (REP 117).
 SCAN, NEAREST = "sensor_msgs/msg/LaserScan", "ranges.min"
@@ -28,6 +30,7 @@ class Shape:
     """What messages have at one place: a number, fields, or elements of an array; of some messages in any of them.
 
     ``short``, ``long``: whether a message has an array here that is short enough for columns, or one that is longer.
+    ``count``: how many numbers there are.
     """
 
     is_number: bool = False
@@ -35,6 +38,7 @@ class Shape:
     elements: list[Shape] = field(default_factory=list)
     short: bool = False
     long: bool = False
+    count: int = 0
 
     def numbers(self, before: Steps = ()) -> Iterator[Steps]:
         """Yield the way to every number, in the order of the definition of the message."""
@@ -56,7 +60,7 @@ class Shape:
             yield from inside.left_out((*before, index))
 
 
-_NOTHING, _NUMBER = Shape(), Shape(is_number=True)
+_NOTHING, _NUMBER = Shape(), Shape(is_number=True, count=1)
 
 
 def shape_of(message: Any) -> Shape:
@@ -65,28 +69,36 @@ def shape_of(message: Any) -> Shape:
         return _NUMBER
     names = getattr(message, "__dataclass_fields__", None)
     if names is not None:
-        return Shape(fields={name: shape_of(getattr(message, name)) for name in names})
+        return _message({name: shape_of(getattr(message, name)) for name in names})
     if not isinstance(message, (np.ndarray, list)):
         return _NOTHING
     if len(message) > ELEMENTS:
-        return Shape(long=True)
-    return Shape(elements=[shape_of(item) for item in message], short=True)
+        return _array([], short=False, long=True)
+    return _array([shape_of(item) for item in message], short=True, long=False)
 
 
 def union(a: Shape, b: Shape) -> Shape:
     """Return where the numbers of some messages are, from where they are in two parts of them."""
-    if a == b:
+    if a is b or b is _NOTHING or a == b:
         return a
-    return Shape(
-        a.is_number or b.is_number,
-        {
-            name: union(a.fields.get(name, _NOTHING), b.fields.get(name, _NOTHING))
-            for name in a.fields or b.fields
-        },
-        [union(*pair) for pair in zip_longest(a.elements, b.elements, fillvalue=_NOTHING)],
-        a.short or b.short,
-        a.long or b.long,
-    )
+    if a is _NOTHING:
+        return b
+    if a.fields:
+        return _message({name: union(inside, b.fields[name]) for name, inside in a.fields.items()})
+    elements = [union(*pair) for pair in zip_longest(a.elements, b.elements, fillvalue=_NOTHING)]
+    return _array(elements, short=a.short or b.short, long=a.long or b.long)
+
+
+def _message(fields: dict[str, Shape]) -> Shape:
+    return Shape(fields=fields, count=sum(each.count for each in fields.values()))
+
+
+def _array(elements: list[Shape], *, short: bool, long: bool) -> Shape:
+    """Return the shape of an array, of which messages have ``short`` and ``long`` ones."""
+    count = sum(each.count for each in elements)
+    if count > NUMBERS:  # in one message, or in all together
+        return Shape(short=short and long, long=True)
+    return Shape(elements=elements, short=short, long=long, count=count)
 
 
 def has_arrays(kind: str, definitions: Mapping[str, Any], typesys: Any) -> bool:

@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
+from rtamt.language.document import groups_in
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, located
 from rtamt.language.operators import STL, Operator, Sort, Tense
 from rtamt.language.quantifiers import JOINS, FieldOf
@@ -60,13 +61,19 @@ def resolve(formula: Formula, members: Members) -> Formula:
 def resolved_document(
     document: Document, members: Members, declarations: tuple[Declaration, ...]
 ) -> Document:
-    """Return the document over these members; ``declarations``: also of their fields."""
+    """Return the document over these members; ``declarations``: also of their fields.
+
+    Formulas over other groups, which the selected requirement does not read, are left out.
+    """
     scope, done = Scope(members), dict[int, Formula]()
 
     def formula(of: Formula) -> Formula:
         if id(of) not in done:
             done[id(of)] = scope.resolved(of)
         return done[id(of)]
+
+    def known(of: Formula) -> bool:
+        return groups_in(of).keys() <= members.names.keys()
 
     declared = {each.name: None for each in declarations if each.kind == "var"}
     types = {
@@ -78,9 +85,15 @@ def resolved_document(
     }
     return replace(
         document,
-        assertions=tuple(replace(each, formula=formula(each.formula)) for each in document.assertions),
+        assertions=tuple(
+            replace(each, formula=formula(each.formula))
+            for each in document.assertions
+            if known(each.formula)
+        ),
         requirements=tuple(replace(each, formula=formula(each.formula)) for each in document.requirements),
-        definitions=MappingProxyType({name: formula(each) for name, each in document.definitions.items()}),
+        definitions=MappingProxyType(
+            {name: formula(each) for name, each in document.definitions.items() if known(each)}
+        ),
         declarations=declarations,
         variables=tuple({**dict.fromkeys(document.variables), **declared}) if document.variables else (),
         types=MappingProxyType({**document.types, **types}),

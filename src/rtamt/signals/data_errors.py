@@ -79,6 +79,16 @@ def missing_sample(name: str, index: int, source: str | None, mends: str) -> Tra
     )
 
 
+def missing_outside(name: str, index: int) -> TraceError:
+    """Return the error for a field of a member that is missing at a sample, and that a formula reads as a variable."""
+    return TraceError(
+        f"'{name}' is missing at sample {index}, and the formula reads it outside of its quantifiers, where it needs a "
+        f"value: fill the gap, or read it of the members alone",
+        variable=name,
+        index=index,
+    )
+
+
 def missing_field(member: str, field: str, index: int | None = None) -> TraceError:
     """Return the error for a field that a member of a stream lacks at a sample; without ``index``, at all of them."""
     where = "at any sample" if index is None else f"at sample {index}"

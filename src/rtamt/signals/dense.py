@@ -131,6 +131,11 @@ class DenseTrace(DomainTrace):
         )
 
     @property
+    def latest(self) -> int:
+        """See :class:`DomainTrace`: the latest last tick of any variable."""
+        return max(int(ticks[-1]) for ticks, _ in self.columns.values())
+
+    @property
     def domain(self) -> Dense:
         """See :class:`DomainTrace`."""
         return Dense(self.scale.tick)

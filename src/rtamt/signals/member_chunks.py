@@ -64,7 +64,7 @@ def chunk(data: Any, groups: Fields, names: Collection[str], *, regular: bool) -
     data = with_aliases(data, known)
     if isinstance(data, Trace):
         data = with_absences(data, [each.column(field) for each in known for field in each.fields])
-    made, throughout = on_one_time_base(data, known, ())
+    made, throughout = on_one_time_base(data, known, names)
     channels = {each.name: channel_of(each.name) for each in known if each.name not in throughout}
     types = {
         each.column(field): type_

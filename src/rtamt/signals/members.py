@@ -28,6 +28,7 @@ from rtamt.signals.arrays import (
     not_a_mapping,
 )
 from rtamt.signals.assumed_period import require_times
+from rtamt.signals.data_errors import missing_outside
 from rtamt.signals.inexact import gaps_of, items_of
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
@@ -196,9 +197,12 @@ def with_aliases(data: Any, members: Sequence[Member]) -> Any:
 
 
 def on_one_time_base(
-    data: Any, members: Sequence[Member], _names: Collection[str]
+    data: Any, members: Sequence[Member], names: Collection[str]
 ) -> tuple[dict[str, Any], list[str]]:
-    """Return samples with the fields and channels of members, and the members that are present throughout."""
+    """Return samples with the fields and channels of members, and the members that are present throughout.
+
+    ``names``: the variables that formulas read outside of quantifiers, which may be fields of members.
+    """
     if not is_mapping(data):
         check_frame(data, TIME, [each.column(field) for each in members for field in each.fields])
         data = {name: data[name] for name in data.columns}
@@ -211,11 +215,21 @@ def on_one_time_base(
             absent = None
         else:
             made[channel_of(each.name)] = np.where(absent, 0.0, 1.0)
-        made |= {
-            each.column(field): filled(values, absent, each.fields[field])
-            for field, values in columns.items()
-        }
+        for field, values in columns.items():
+            column = each.column(field)
+            if column in names:
+                _require_values(column, values)
+                made[column] = values
+            else:
+                made[column] = filled(values, absent, each.fields[field])
     return made, throughout
+
+
+def _require_values(name: str, values: Any) -> None:
+    """Raise :class:`TraceError` for a missing value of a field that a formula reads outside of quantifiers."""
+    gaps = gaps_of(values)
+    if gaps is not None and gaps.any():
+        raise missing_outside(name, int(gaps.argmax()))
 
 
 def _field_values(data: Mapping[str, Any], member: Member, field: str) -> Any:
@@ -291,7 +305,13 @@ def _on_own_time_bases(
             throughout.append(each.name)
         else:
             made[channel_of(each.name)] = times, present
-        made |= {each.column(field): (times, column) for field, column in values.items()}
+        for field, column_values in values.items():
+            column = each.column(field)
+            if column in names:
+                _require_values(column, own[field][1])
+                made[column] = own[field]
+            else:
+                made[column] = times, column_values
     return made, throughout
 
 
@@ -360,11 +380,13 @@ def _trace(trace: Trace, members: Sequence[Member], names: Collection[str]) -> t
             throughout.append(each.name)
             continue
         made[channel_of(each.name)] = Channel(times, present)
-        for field, column in values.items():
-            full = np.array(column, float)
-            made[each.column(field)] = replace(
-                channels[field], times=times, values=full, first_gap=None, table=None
-            )
+        for field, column_values in values.items():
+            column = each.column(field)
+            if column in names:
+                _require_values(column, recorded[field][1])
+            else:
+                full = np.array(column_values, float)
+                made[column] = replace(channels[field], times=times, values=full, first_gap=None, table=None)
     return trace.with_channels(made), throughout
 
 

@@ -166,14 +166,17 @@ class DomainTrace(ABC):
         """The last instant at which a variable has a sample, in samples or ticks."""
 
     @property
+    def latest(self) -> int:
+        """The last instant at which a variable may change: later than the end where other variables end the recording.
+
+        A window without an end is read until then.
+        """
+        return self.end
+
+    @property
     def last(self) -> int:
         """The position of the last sample."""
         return self.end - self.start
-
-    @property
-    def extent(self) -> tuple[int, int]:
-        """The begin and end of the recording; signals from one program have the same extent."""
-        return self.start, self.end
 
     @property
     @abstractmethod

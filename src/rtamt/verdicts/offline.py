@@ -167,11 +167,11 @@ def _evaluate_settled(
 ) -> tuple[list[Signal], dict[Leaf, Signal]]:
     """Return the same, of leaves in steps and as far as each is read after the last sample."""
     in_steps = trace.in_steps()
-    start, end = trace.extent
+    start, end, latest = trace.start, trace.end, trace.latest
     ends: dict[int, list[Tracker]] = {end: []}
     if trace.domain.held_at_end:
         for tracker in trackers:
-            ends.setdefault(end_of(tracker.leaf, start, end, trace.step), []).append(tracker)
+            ends.setdefault(end_of(tracker.leaf, start, latest, trace.step), []).append(tracker)
     try:
         signals, leaves = _signals(formulas, trackers, in_steps.held_until(max(ends)), evaluate)
     except EvaluationError:

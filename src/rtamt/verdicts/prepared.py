@@ -313,8 +313,8 @@ def _first(signal: Any) -> float:
 def _end_of(window: Window, trace: DomainTrace) -> int:
     """Return the last tick at which a leaf is read."""
     if window.end is None:
-        return trace.end + window.settled
-    return max(trace.end, trace.start + window.end)
+        return trace.latest + window.settled
+    return max(trace.latest, trace.start + window.end)
 
 
 def _reduce(window: Window, values: FloatArray) -> Reduced:

@@ -96,6 +96,45 @@ def test_a_group_of_elements_of_an_array_that_is_too_long_in_some_messages_has_n
     assert "has no member of the group 'obs'" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("options", [["--time", "dense"], ["--period", "1s"]], ids=" ".join)
+@pytest.mark.parametrize("engine", [[], ["--engine", "local"]], ids=["one", "many"])
+def test_a_requirement_over_members_began_with_the_first_sample_of_another_requirement(
+    tmp_path, capsys, options, engine
+):
+    with Bag(tmp_path, "mcap") as bag:
+        for name, text in (("Ob", "float64 d"), ("Obs", "my_msgs/Ob[] obs")):
+            bag.store.register(get_types_from_msg(text, f"my_msgs/msg/{name}"))
+        types = bag.store.types
+        for at, value in enumerate([-5.0, 5, 5, 5, 5]):
+            message = types["my_msgs/msg/Obs"](obs=[types["my_msgs/msg/Ob"](d=value)])
+            bag.write("/o", "my_msgs/msg/Obs", (START + at) * SECOND, message)
+            if at > 1:
+                bag.plain("/late", START + at, 1.0)
+    specification = (
+        'group obs = "/o.obs[*]"\ngroup others = "/p.obs[*]"\nrequire A: always(forall o in obs: o.d >= 0)\n'
+        'require B: always("/late.data" >= 0)\nrequire C: always(forall o in others: o.d >= 0)\n'
+    )
+    (tmp_path / "a.stl").write_text(specification)
+    assert main(["check", str(tmp_path / "a.stl"), str(bag.path), "--json", *options, *engine]) == 2
+    a, b, c = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (a["robustness"], a["first_violation"]) == (-5, START)
+    assert b["robustness"] == 1
+    assert "no member of the group 'others'" in c["error"]
+
+
+def test_an_array_of_arrays_with_many_numbers_has_no_columns(tmp_path):
+    with Bag(tmp_path, "mcap") as bag:
+        for name, text in (("Row", "float64[] v"), ("Grid", "my_msgs/Row[] rows\nfloat64 x")):
+            bag.store.register(get_types_from_msg(text, f"my_msgs/msg/{name}"))
+        types = bag.store.types
+        for topic, count in (("/large", 101), ("/small", 3)):
+            rows = [types["my_msgs/msg/Row"](v=np.zeros(100)) for _ in range(count)]
+            bag.write(topic, "my_msgs/msg/Grid", START * SECOND, types["my_msgs/msg/Grid"](rows=rows, x=1.0))
+    names = rtamt.read(bag.path).names
+    assert [name for name in names if name.startswith("/large")] == ["/large.x"]
+    assert "/small.rows[2].v[99]" in names
+
+
 def test_topics_that_no_requirement_reads_are_not_searched(tmp_path, monkeypatch):
     """Point clouds and images are most of a bag."""
     with Bag(tmp_path, "mcap") as bag:

@@ -17,6 +17,10 @@ RECORDED = "always(/y.data >= 0)"
 TOGETHER = {
     "file": [f"require A: {SIMULATED}\nrequire B: {RECORDED}\n"],
     "files": [f"require A: {SIMULATED}\n", f"require B: {RECORDED}\n"],
+    "group": [
+        f'group floats = "/*"\nrequire A: {SIMULATED}\nrequire B: {RECORDED}\n'
+        "require G: always(forall f in floats: f.data >= 0)\n"
+    ],
     "third": [
         f'require A: {SIMULATED}\nrequire B: {RECORDED}\nrequire C: always("/x.value" + "/y.data" >= 0)\n'
     ],
