@@ -47,15 +47,14 @@ class QuantifiedText(RecordedSpecification):
         if not self.document.groups and not self.document.replaced:
             return MappingProxyType({})  # without a declared group there is no quantifier to look for
         every = groups_in(*self._all_formulas) if self.document.replaced else self.document.quantified_groups
-        if self.document.selected:
-            every = MappingProxyType({name: every[name] for name in groups_in(self.formula)})
-        self._refuse_recorded_fields(every)
-        return every
+        if not self.document.selected:
+            return every
+        return MappingProxyType({name: every[name] for name in groups_in(self.formula)})
 
-    def _refuse_recorded_fields(self, groups: Mapping[str, tuple[Group, tuple[str, ...]]]) -> None:
+    def refuse_recorded_fields(self) -> None:
         """Raise :class:`UsageError` for a variable that is recorded under the name of a field of a member."""
         recorded = ((name, column) for name, columns in self._recorded_names.items() for column in columns)
-        for (name, column), (group, fields) in product(recorded, groups.values()):
+        for (name, column), (group, fields) in product(recorded, self.groups.values()):
             member = group.member(column)
             if name != column and member is not None and member[1] in fields:
                 raise UsageError(
@@ -97,6 +96,7 @@ class QuantifiedText(RecordedSpecification):
         from rtamt.rewrite.presence import channel_of
         from rtamt.rewrite.quantifiers import resolved_document
 
+        self.refuse_recorded_fields()
         roles = dict(self.roles)
         declarations = {each.name: each for each in self.document.declarations}
         for group, fields in self.groups.values():

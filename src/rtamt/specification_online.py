@@ -174,6 +174,7 @@ class OnlineSpecification(QuantifiedText):
         mode = mode_of(verdict, settings)
         asked, semantics = semantics, semantics_in(mode, self._semantics(semantics))
         if self.groups:
+            self.refuse_recorded_fields()
             return self._member_monitor(
                 verdict, settings, time, period, tolerance, resolution, asked, watched_of(watch), time_unit
             )

@@ -141,6 +141,8 @@ def test_a_variable_that_is_recorded_as_a_field_of_a_member_took_the_member_away
     )
     with pytest.raises(UsageError) as caught:
         spec.evaluate({"car_1.x": [0, 0], "car_2.x": [5, 5]})
+    with pytest.raises(UsageError, match=r"read 'car_1\.x' in formulas in place of 'e'"):
+        spec.monitor(period=1)
     assert str(caught.value) == (
         "'car_1.x' is the recorded name of 'e', and a field of 'car_1' of the group 'cars': read 'car_1.x' in formulas "
         "in place of 'e'"

@@ -112,9 +112,8 @@ def _processes(traces: Sequence[str]) -> int:
 
 def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) -> list[Outcome]:
     """Check requirements over one recording, which is read once if that goes well; an outcome for each row."""
-    if any(requirement.spec.groups for requirement in requirements):
-        # Each reads its own groups.
-        each = [row for requirement in requirements for row in requirement.rows or (requirement,)]
+    each = [row for requirement in requirements for row in requirement.rows or (requirement,)]
+    if any(row.spec.groups for row in each):  # its own
         plain = [row for row in each if not row.spec.groups]
         several = [evaluate(plain, trace, reading)] if plain else []
         several += [_over_members(row, trace, reading) for row in each if row.spec.groups]

@@ -38,6 +38,23 @@ def test_the_members_are_the_columns_of_each_file(capsys, time):
     assert (beside["requirement"], beside["robustness"]) == ("B", 0)
 
 
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_variable_that_is_recorded_as_a_field_of_a_member_is_read_by_other_requirements(run, write, time):
+    text = (
+        'input float e = "car_1.x"; group cars = "car_*"\nrequire A: always(e >= 3)\n'
+        "require B: always(forall v in cars: v.x >= 3)\n"
+    )
+    rows = run(
+        "check",
+        write("f.stl", text),
+        write("f.csv", "time,car_1.x,car_2.x\n0,4,5\n1,5,1\n"),
+        "--json",
+        "--time",
+        time,
+    )
+    assert [json.loads(row)["robustness"] for row in rows.out.splitlines()] == [1, -2]
+
+
 @pytest.mark.usefixtures("files")
 def test_explanations_and_reports_name_the_members(capsys):
     main(["explain", "forall.stl", "f.csv"])
