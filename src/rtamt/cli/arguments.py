@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import PACK, CommandError, read_specifications
 from rtamt.cli.outcome import Requirement
 from rtamt.cli.parser import complain
-from rtamt.cli.reading_options import names_of, reading_of, require_time_base
+from rtamt.cli.reading_options import is_read_alike, names_of, reading_of, require_time_base
 from rtamt.cli.runner import evaluate
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
+from rtamt.readers.read import opened
 from rtamt.readers.sql import shown
 from rtamt.specification_loader import packs
 
@@ -181,6 +182,13 @@ class Evaluated(NamedTuple):
 def result_of_one(args: Namespace, command: str) -> tuple[Evaluated, Result]:
     """Evaluate one specification over one recording as a whole; return what is known, and the result."""
     requirement, trace, reading = _one(args, command)
+    if requirement.rows:
+        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
+            if not is_read_alike(source, [row.spec for row in requirement.rows], trace, reading):
+                raise CommandError(
+                    f"{shown(trace)}: the requirements read topics with different clocks, so that they have no "
+                    f"{command} in common; 'rtamt report' plots each of them"
+                )
     evaluated = _results([replace(requirement, rows=())], trace, reading)
     ((_, result),) = evaluated.results.items()
     return evaluated, result

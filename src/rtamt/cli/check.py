@@ -331,6 +331,12 @@ def _says_more(outcome: Outcome) -> bool:
 
 def _write(results: Mapping[str, Result], path: str) -> None:
     """Write a column of robustness for each result; a cell is empty where one has no sample."""
+    kinds = {result.signal.times.dtype.kind for result in results.values()}
+    if len(kinds) > 1:
+        raise CommandError(
+            f"'{path}' cannot have the robustness of requirements that read topics with different clocks: write "
+            f"one file for each requirement"
+        )
     times = merged([result.signal.times for result in results.values()])
     columns = [_cells(result.signal, times) for result in results.values()]
     rows = zip(map(stamp_text, times), *columns, strict=True)

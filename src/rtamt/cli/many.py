@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.arguments import is_specification, prepared_specs, specification_files
-from rtamt.cli.command import CommandError, json_text, short, warn, warnings_of
+from rtamt.cli.command import CommandError, json_number, json_text, short, warn, warnings_of
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import Progress, say, table, use_color, width_of
 from rtamt.errors import UsageError, escaped
@@ -196,7 +196,7 @@ def _as_json(row: Row) -> str:
         return json_text({**known, "unchecked": row.unchecked})
     values = {
         "satisfied": row.satisfied,
-        "robustness": row.robustness,
+        "robustness": None if row.robustness is None else json_number(row.robustness),
         "first_violation": row.first_violation,
     }
     return json_text({**known, **values})

@@ -11,6 +11,7 @@ from rtamt.lazy.modules import np
 from rtamt.readers.message_fields import (
     ELEMENTS,
     NEAREST,
+    NUMBERS,
     Shape,
     Steps,
     header_time,
@@ -62,8 +63,8 @@ class Topic:
             return stamp
         if abs(self.behind) > SAME_CLOCK:
             raise TraceError(
-                f"a message on {printable(self.name)} has the stamp 0, so that it has no time: the other stamps are "
-                f"of another clock than that of the recording; leave the message out of the bag"
+                f"a message on {printable(self.name)} has the timestamp 0, so that its time is unknown: the other "
+                f"timestamps on this topic are not from the clock of the recording; leave the message out of the bag"
             )
         return recorded
 
@@ -86,7 +87,8 @@ class Topic:
         fields = (Field(column, column, "", "number") for column in self.steps)
         self.table = replace(self.table, fields=(time_field, *fields))
         self.left_out = tuple(
-            f"left out: {printable(self.name)}{text_of(path)}, which has more than {ELEMENTS} elements in some messages"
+            f"left out: {printable(self.name)}{text_of(path)}, which is too long in some messages: more than "
+            f"{ELEMENTS} elements, or {NUMBERS} numbers"
             for path in shape.left_out()
         )
 

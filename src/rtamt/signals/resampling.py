@@ -132,7 +132,7 @@ class Sampler:
                 if before is None
                 else (np.concatenate((before[0], times)), np.concatenate((before[1], values)))
             )
-        if any(name not in self._pending for name in self._names):
+        if not all(name in self._pending and len(self._pending[name][0]) for name in self._names):
             return []
         timed = [times for times, _ in self._pending.values()]
         if self._start is None:

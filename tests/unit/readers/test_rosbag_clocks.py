@@ -76,6 +76,47 @@ def test_the_page_of_a_report_has_no_topics_that_would_change_the_clock(tmp_path
     assert "/x.value" in page.read_text()
 
 
+@pytest.mark.parametrize("time", [["--time", "dense"], ["--period", "500ms"]], ids=" ".join)
+def test_what_requirements_with_different_clocks_have_in_common_is_refused(tmp_path, capsys, bag, time):
+    """The plot had the verdict of both by the times of recording, and the file was an internal error."""
+    spec, plot, table = tmp_path / "a.stl", tmp_path / "a.svg", tmp_path / "a.csv"
+    spec.write_text(TOGETHER["file"][0])
+    assert main(["plot", str(spec), bag, "-o", str(plot), *time]) == 2
+    assert capsys.readouterr().err == (
+        f"rtamt: {bag}: the requirements read topics with different clocks, so that they have no plot in common; "
+        "'rtamt report' plots each of them\n"
+    )
+    assert main(["check", str(spec), bag, "-o", str(table), *time]) == 2
+    assert capsys.readouterr().err == (
+        f"rtamt: '{table}' cannot have the robustness of requirements that read topics with different clocks: write "
+        "one file for each requirement\n"
+    )
+    assert not plot.exists()
+    assert not table.exists()
+
+
+@pytest.mark.parametrize("early", [[], ["--early"]], ids=["whole", "early"])
+def test_a_signal_that_is_nan_throughout_was_an_internal_error_of_early_checks(tmp_path, capsys, early):
+    with Bag(tmp_path, "mcap") as made:
+        for i in range(3):
+            made.plain("/x", START + i, float("nan"))
+            made.plain("/y", START + i, 1.0)
+    text = "require A: always(/x.data >= 0)\nrequire B: always(/y.data >= 0)\n"
+    assert (
+        main(["check", text, str(made.path), "--json", "--period", "1s", "--skip-nan", "/x.data", *early])
+        == 2
+    )
+    a, b = map(json.loads, capsys.readouterr().out.splitlines())
+    assert a["error"].endswith("'/x.data' has no samples: give at least one")
+    assert b["satisfied"]
+
+
+def test_infinities_are_strings_where_many_recordings_are_checked(capsys, bag):
+    for engine in ([], ["--engine", "local"]):
+        main(["check", "always(/y.data >= 0 or true)", bag, "--json", "--time", "dense", *engine])
+        assert json.loads(capsys.readouterr().out, parse_constant=pytest.fail)["robustness"] == "inf"
+
+
 @pytest.mark.parametrize("engine", [[], ["--engine", "local"]], ids=["one", "many"])
 def test_messages_are_sampled_every_period_also_where_many_recordings_are_checked(tmp_path, capsys, engine):
     """Message 20, the only violation, is between two samples."""

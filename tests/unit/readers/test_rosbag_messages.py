@@ -86,8 +86,8 @@ def test_a_message_without_a_time_among_simulated_stamps_was_at_the_time_of_its_
     with pytest.raises(TraceError) as caught:
         rtamt.read(bag.path, columns=["/x.value"])
     assert str(caught.value) == (
-        "a message on /x has the stamp 0, so that it has no time: the other stamps are of another clock than that of "
-        "the recording; leave the message out of the bag"
+        "a message on /x has the timestamp 0, so that its time is unknown: the other timestamps on this topic are not "
+        "from the clock of the recording; leave the message out of the bag"
     )
     both = rtamt.read(bag.path, columns=["/x.value", "/y.data"])
     assert both["/x.value"].times.tolist() == both["/y.data"].times.tolist()
