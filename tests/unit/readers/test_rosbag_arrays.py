@@ -154,3 +154,16 @@ def test_topics_that_no_requirement_reads_are_not_searched(tmp_path, monkeypatch
     assert read.count("/scan") == 2 + 50
     rtamt.read(bag.path, columns=["/scan.ranges[49]"])
     assert read.count("/scan") == 3 + 50 + 100
+
+
+@pytest.mark.parametrize("engine", [[], ["--engine", "local"]], ids=["one", "many"])
+def test_topics_with_headers_are_members_without_their_timestamps(tmp_path, capsys, engine):
+    """The pattern also matched "/s/a stamp", the name of the timestamps, so that "/s/a stamp.value" was missing."""
+    with Bag(tmp_path, "mcap") as made:
+        for i in range(3):
+            made.stamped("/s/a", 1 + i, 2.0)
+            made.stamped("/s/b", 1 + i, 1.0)
+    text, spec = 'group g = "/s/*"\nalways(forall f in g: f.value >= 0)\n', tmp_path / "a.stl"
+    spec.write_text(text)
+    assert main(["check", str(spec), str(made.path), "--json", "--time", "dense", *engine]) == 0
+    assert json.loads(capsys.readouterr().out)["robustness"] == 1
