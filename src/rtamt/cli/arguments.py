@@ -7,13 +7,22 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import PACK, CommandError, read_specifications
-from rtamt.cli.outcome import Requirement
+from rtamt.cli.outcome import Requirement, applicable
 from rtamt.cli.parser import complain
-from rtamt.cli.reading_options import is_read_alike, names_of, reading_of, require_time_base
+from rtamt.cli.reading_options import (
+    completed_for,
+    is_read_alike,
+    names_of,
+    reading_of,
+    require_time_base,
+)
 from rtamt.cli.runner import evaluate
+from rtamt.errors import StlError
 from rtamt.language.units.durations import positive_period
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
+from rtamt.readers.formats import is_bag
+from rtamt.readers.member_columns import members_in
 from rtamt.readers.read import opened
 from rtamt.readers.sql import shown
 from rtamt.specification_loader import packs
@@ -182,16 +191,29 @@ class Evaluated(NamedTuple):
 def result_of_one(args: Namespace, command: str) -> tuple[Evaluated, Result]:
     """Evaluate one specification over one recording as a whole; return what is known, and the result."""
     requirement, trace, reading = _one(args, command)
-    if requirement.rows:
-        with opened(trace, reading.sheet, reading.query, reading.recover) as source:
-            if not is_read_alike(source, [row.spec for row in requirement.rows], trace, reading):
-                raise CommandError(
-                    f"{shown(trace)}: the requirements read topics with different clocks, so that they have no "
-                    f"{command} in common; 'rtamt report' plots each of them"
-                )
+    if not has_one_clock(requirement, trace, reading):
+        raise CommandError(
+            f"{shown(trace)}: the requirements read topics with different clocks, so that they have no {command} in "
+            f"common; 'rtamt report' plots each of them"
+        )
     evaluated = _results([replace(requirement, rows=())], trace, reading)
     ((_, result),) = evaluated.results.items()
     return evaluated, result
+
+
+def has_one_clock(requirement: Requirement, trace: str, reading: Reading) -> bool:
+    """Return whether the requirements of a specification have times of one clock, as far as they can be checked."""
+    if not is_bag(trace) or not requirement.rows:
+        return True
+    try:
+        with opened(trace, recover=reading.recover) as opening:
+            source = completed_for(opening, [row.spec for row in requirement.rows])
+            kept, _ = applicable([requirement], source.signals, trace)
+            specs = [row.spec for each in kept for row in each.rows or (each,)]
+            bound = [spec.over(members_in(source, spec)) if spec.groups else spec for spec in specs]
+            return not bound or is_read_alike(source, bound, trace, reading)
+    except StlError:  # the evaluation reports what is wrong
+        return True
 
 
 def results_of_one(args: Namespace, command: str) -> Evaluated:

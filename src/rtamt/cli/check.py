@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.arguments import each_requirement, requirements_and_traces, variables_of
+from rtamt.cli.arguments import each_requirement, has_one_clock, requirements_and_traces, variables_of
 from rtamt.cli.command import (
     OUTPUT,
     CommandError,
@@ -201,6 +201,7 @@ def run(args: argparse.Namespace) -> int:
         )
     explained = args.junit is not None or args.sarif is not None
     reading = reading_of(args, variables_of(requirements), whole=whole, early=args.early, explained=explained)
+    _check_clocks(args.output, given[0], traces[0], reading)
     page = None if args.html is None else _page(given, requirements, traces, reading)
     found: list[Outcome] = []
     complaints = {""}  # several requirements may have one reason
@@ -222,15 +223,13 @@ def run(args: argparse.Namespace) -> int:
         say(_as_table(requirements, found, color), color=color)
     results = {outcome.requirement: outcome.result for outcome in found if outcome.result is not None}
     if args.output is not None and results and not any(outcome.error for outcome in found):
-        if args.output.lower().endswith(".mcap"):
-            from rtamt.cli.bag import write_bag
-
-            write_bag(given[0], traces[0], reading, results, args.output)
-        else:
+        if _is_table(args.output):
             names = {
                 label: row.written.name if len(rows) > 1 else "robustness" for label, row in rows.items()
             }
             _write({names[label]: result for label, result in results.items()}, args.output)
+        else:
+            _write_bag(given[0], traces[0], reading, results, args.output)
     for kind, (_, at_end) in REPORTS.items():
         path = getattr(args, kind)
         if at_end is not None and path is not None:
@@ -253,6 +252,19 @@ def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequ
             else f"{len(given)} requirements and {len(traces)} traces"
         )
         raise CommandError(f"--output takes the robustness of one trace, got {what}")
+
+
+def _check_clocks(output: str | None, requirement: Requirement, trace: str, reading: Reading) -> None:
+    """Raise where a table cannot have the robustness of all requirements, because their times have no order."""
+    if output is not None and _is_table(output) and not has_one_clock(requirement, trace, reading):
+        raise CommandError(
+            f"'{output}' cannot have the robustness of requirements that read topics with different clocks: write "
+            f"one file for each requirement"
+        )
+
+
+def _is_table(output: str) -> bool:
+    return not output.lower().endswith(".mcap")
 
 
 def _as_json(outcome: Outcome, requirement: Requirement) -> str:
@@ -331,17 +343,19 @@ def _says_more(outcome: Outcome) -> bool:
 
 def _write(results: Mapping[str, Result], path: str) -> None:
     """Write a column of robustness for each result; a cell is empty where one has no sample."""
-    kinds = {result.signal.times.dtype.kind for result in results.values()}
-    if len(kinds) > 1:
-        raise CommandError(
-            f"'{path}' cannot have the robustness of requirements that read topics with different clocks: write "
-            f"one file for each requirement"
-        )
     times = merged([result.signal.times for result in results.values()])
     columns = [_cells(result.signal, times) for result in results.values()]
     rows = zip(map(stamp_text, times), *columns, strict=True)
     lines = [",".join(["time", *results]), *(",".join(row) for row in rows)]
     write_output(path, "".join(f"{line}\n" for line in lines))
+
+
+def _write_bag(
+    requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result], path: str
+) -> None:
+    from rtamt.cli.bag import write_bag
+
+    write_bag(requirement, trace, reading, results, path)
 
 
 def _cells(signal: Signal, times: np.ndarray[Any, Any]) -> Iterator[str]:

@@ -77,22 +77,57 @@ def test_the_page_of_a_report_has_no_topics_that_would_change_the_clock(tmp_path
 
 
 @pytest.mark.parametrize("time", [["--time", "dense"], ["--period", "500ms"]], ids=" ".join)
-def test_what_requirements_with_different_clocks_have_in_common_is_refused(tmp_path, capsys, bag, time):
+@pytest.mark.parametrize(
+    "text",
+    [
+        TOGETHER["file"][0],
+        'group xs = "*x"\ngroup ys = "*y"\n'
+        "require A: always(forall x in xs: x.value >= -1)\nrequire B: always(forall y in ys: y.data >= 0)\n",
+    ],
+    ids=["topics", "groups"],
+)
+def test_what_requirements_with_different_clocks_have_in_common_is_refused(tmp_path, capsys, bag, time, text):
     """The plot had the verdict of both by the times of recording, and the file was an internal error."""
     spec, plot, table = tmp_path / "a.stl", tmp_path / "a.svg", tmp_path / "a.csv"
-    spec.write_text(TOGETHER["file"][0])
+    spec.write_text(text)
     assert main(["plot", str(spec), bag, "-o", str(plot), *time]) == 2
     assert capsys.readouterr().err == (
         f"rtamt: {bag}: the requirements read topics with different clocks, so that they have no plot in common; "
         "'rtamt report' plots each of them\n"
     )
     assert main(["check", str(spec), bag, "-o", str(table), *time]) == 2
-    assert capsys.readouterr().err == (
+    assert capsys.readouterr() == (
+        "",
         f"rtamt: '{table}' cannot have the robustness of requirements that read topics with different clocks: write "
-        "one file for each requirement\n"
+        "one file for each requirement\n",
     )
     assert not plot.exists()
     assert not table.exists()
+
+
+def test_clocks_of_different_simulations_are_refused_too(tmp_path, capsys):
+    """Stamps of another year than that of the recording are dates, as its own are."""
+    with Bag(tmp_path, "mcap") as made:
+        for i in range(3):
+            made.stamped("/x", START - 10**8 + i, 1.0, late=10**8)
+            made.plain("/y", START + i, 1.0)
+    spec, table = tmp_path / "a.stl", tmp_path / "a.csv"
+    spec.write_text("require A: always(/x.value >= 0)\nrequire B: always(/y.data >= 0)\n")
+    assert main(["check", str(spec), str(made.path), "-o", str(table), "--time", "dense"]) == 2
+    assert "requirements that read topics with different clocks" in capsys.readouterr().err
+    assert not table.exists()
+
+
+def test_a_plot_of_what_a_bag_has_needs_no_optional_topics(tmp_path, capsys, bag):
+    spec, plot, table = tmp_path / "a.stl", tmp_path / "a.svg", tmp_path / "a.csv"
+    spec.write_text(
+        'optional input float z = "/z.data"\ninput float y = "/y.data"\n'
+        "require A: always(z >= 0)\nrequire B: always(y >= 0)\n"
+    )
+    assert main(["plot", str(spec), bag, "-o", str(plot), "--time", "dense"]) == 0
+    assert capsys.readouterr().err == f"rtamt: {spec}, {bag}: not checked: A: no '/z.data'\n"
+    assert main(["check", str(spec), bag, "-o", str(table), "--time", "dense"]) == 0
+    assert table.exists()
 
 
 @pytest.mark.parametrize("early", [[], ["--early"]], ids=["whole", "early"])
