@@ -5,10 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
+from rtamt.cli.reading_options import choice_for, completed_for
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
 from rtamt.lazy.dataclasses import replace
 from rtamt.readers.formats import is_bag
+from rtamt.readers.member_columns import choice_of_members
+from rtamt.readers.read import opened
+from rtamt.readers.selection import select
 from rtamt.ros.bags import Finding, write_mcap
 from rtamt.ros.binding import bind, topic_of
 from rtamt.violations import signals_of
@@ -19,9 +23,12 @@ if TYPE_CHECKING:
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
     from rtamt.results import Result
+    from rtamt.specification import Specification
 
 #: The topic of a requirement that names none.
 TOPIC = "rtamt/robustness"
+#: What follows the name of a topic in the name of its column of timestamps.
+_STAMP = " stamp"
 
 
 def write_bag(
@@ -45,7 +52,8 @@ def _findings(
         for row in requirement.rows or (requirement,):
             if row.label in results:
                 topic = topic_of(row.written.name) if requirement.rows else TOPIC
-                yield _finding(row.label, topic, results[row.label])
+                read = topics_read(row.spec, trace, reading)
+                yield _finding(row.label, topic, results[row.label], read)
         return
     for output in outputs:
         alone = replace(requirement, spec=output.specification, rows=())
@@ -54,9 +62,26 @@ def _findings(
             continue
         if outcome.result is None:
             raise CommandError(outcome.error)
-        yield _finding(output.name, output.topic, outcome.result)
+        read = topics_read(output.specification, trace, reading)
+        yield _finding(output.name, output.topic, outcome.result, read)
 
 
-def _finding(name: str, topic: str, result: Result) -> Finding:
+def _finding(name: str, topic: str, result: Result, read: tuple[str, ...]) -> Finding:
     _, truth = signals_of(result)
-    return Finding(name, topic, result.signal, truth)
+    return Finding(name, topic, result.signal, truth, read)
+
+
+def topics_read(spec: Specification, trace: str, reading: Reading) -> tuple[str, ...]:
+    """Return the topics whose timestamps are the times of a requirement over a bag; none with ``--time-column``."""
+    if reading.time is not None:
+        return ()
+    with opened(trace, recover=reading.recover) as opening:
+        source = completed_for(opening, [spec])
+        if spec.groups:
+            choice = choice_of_members(spec, source, lambda over: choice_for([over], trace, reading))
+        else:
+            choice = choice_for([spec], trace, reading)
+        clocks = [
+            selection.table.time_field for selection in select(source.completed(choice.recorded), choice)
+        ]
+    return tuple(clock.column.removesuffix(_STAMP) for clock in clocks if clock is not None)

@@ -18,6 +18,7 @@ metrics              metrics of a node, from its records
 publisher            output as messages
 message_definitions  the definitions of ``rtamt_msgs``
 bags                 columns of a bag; a copy of a bag with added results
+recording_times      when messages of a bag were recorded, by the timestamps in their headers
 dds                  ROS 2 nodes directly on Cyclone DDS
 options              the arguments of all nodes
 ===================  ===============================================================================

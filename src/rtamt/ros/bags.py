@@ -15,9 +15,10 @@ from rtamt.lazy.modules import np
 from rtamt.readers.formats import BAG
 from rtamt.readers.rosbag import messages, open_reader
 from rtamt.ros.message_definitions import DEFINITIONS, FLOAT_STAMPED, SATISFIED, VERDICT, VIOLATED
+from rtamt.ros.recording_times import RecordingTimes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rtamt.signals.signal import Signal
     from rtamt.specification import Specification
@@ -49,20 +50,25 @@ def columns_of(spec: Specification) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
-    """The result for a requirement: its robustness signal, and the signal of its truth."""
+    """The result for a requirement: its robustness signal, and the signal of its truth.
+
+    ``read``: the topics whose timestamps are the times of the signals.
+    """
 
     name: str
     topic: str
     robustness: Signal
     truth: Signal
+    read: tuple[str, ...]
 
 
 def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: bool = False) -> None:
     """Copy a bag to one MCAP file for ROS 2, with a robustness topic and a verdict topic for each finding.
 
     ``source``: any bag; ROS 1 messages are converted. If a topic already exists, ``/offline`` is appended
-    to the new name. ``recover``: as for :func:`rtamt.read`. The file is written completely or
-    not at all. Raises :class:`TraceError`, :class:`UsageError`.
+    to the new name. A result has the time of its robustness in its header, and is logged when the message with this
+    timestamp was recorded. ``recover``: as for :func:`rtamt.read`. The file is written completely or not at all.
+    Raises :class:`TraceError`, :class:`UsageError`.
     """
     if Path(path).exists() and Path(path).samefile(source):
         raise UsageError(f"'{path}' is the recording itself; write to another file")
@@ -75,8 +81,9 @@ def write_mcap(source: str, path: str, findings: Iterable[Finding], recover: boo
                     store = _types(reader)
                     _copy(reader, writer, store)
                     taken = {connection.topic for connection in reader.connections}
+                    recorded = RecordingTimes(reader)
                     for finding in findings:
-                        _add(finding, writer, store, taken)
+                        _add(finding, writer, store, taken, recorded)
                 with replacing(path) as new:
                     shutil.copyfile(next(bag.glob("*.mcap")), new)
         except OSError as error:
@@ -111,18 +118,18 @@ def _copy(reader: Any, writer: Any, store: Any) -> None:
         writer.write(connections[known.topic, known.msgtype], recorded, data)
 
 
-def _add(finding: Finding, writer: Any, store: Any, taken: set[str]) -> None:
+def _add(finding: Finding, writer: Any, store: Any, taken: set[str], recorded: RecordingTimes) -> None:
     number, verdict = store.types[FLOAT_STAMPED], store.types[VERDICT]
     topic = _free(f"/{finding.topic.lstrip('/')}", taken)
     numbers = writer.add_connection(topic, FLOAT_STAMPED, typestore=store)
-    for at, value in _points(finding.robustness):
+    for at, logged, value in _points(finding.robustness, finding.read, recorded):
         message = number(header=_header(store, at), value=value)
-        writer.write(numbers, at, store.serialize_cdr(message, FLOAT_STAMPED))
+        writer.write(numbers, logged, store.serialize_cdr(message, FLOAT_STAMPED))
     verdicts = writer.add_connection(_free(f"{topic}/verdict", taken), VERDICT, typestore=store)
-    for at, truth in _points(finding.truth):
+    for at, logged, truth in _points(finding.truth, finding.read, recorded):
         reported = SATISFIED if truth > 0 else VIOLATED
         message = verdict(header=_header(store, at), name=finding.name, verdict=reported, horizon=0.0)
-        writer.write(verdicts, at, store.serialize_cdr(message, VERDICT))
+        writer.write(verdicts, logged, store.serialize_cdr(message, VERDICT))
 
 
 def _free(topic: str, taken: set[str]) -> str:
@@ -132,10 +139,14 @@ def _free(topic: str, taken: set[str]) -> str:
     return topic
 
 
-def _points(signal: Signal) -> Sequence[tuple[int, float]]:
+def _points(
+    signal: Signal, read: Sequence[str], recorded: RecordingTimes
+) -> Iterator[tuple[int, int, float]]:
+    """Yield the times of a signal, when these were recorded, and its values."""
     times = signal.times
     exact = times if times.dtype.kind in "mM" else np.rint(times.astype(np.float64) * 1e9)
-    return list(zip(exact.astype(np.int64).tolist(), signal.values.tolist(), strict=True))
+    at = exact.astype(np.int64)
+    return zip(at.tolist(), recorded.at(at, read).tolist(), signal.values.tolist(), strict=True)
 
 
 def _header(store: Any, at: int) -> Any:

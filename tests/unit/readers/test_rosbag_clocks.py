@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 
 import pytest
+from rosbags.highlevel import AnyReader
 
 import rtamt
 from rtamt.cli import main
+from rtamt.readers.message_fields import header_time
 from tests.unit.readers.bags import Bag
 
 START = 1_700_000_000
@@ -181,6 +183,68 @@ def test_fields_of_declared_messages_are_found_where_many_bags_are_checked(tmp_p
     for engine in ([], ["--engine", "local"]):
         assert main(["check", str(tmp_path / "a.stl"), bag, "--json", "--time", "dense", *engine]) == 1
         assert json.loads(capsys.readouterr().out)["robustness"] == -1
+
+
+RECORDED_AT = {1000: 0, 1001: 1, 1002: 20, 1003: 21, 1004: 22, 1005: 23}
+
+
+def recorded_in(path):
+    """Return when the messages on each topic that the check added were recorded, by their stamps."""
+    with AnyReader([path]) as reader:
+        found = {}
+        for connection, recorded, raw in reader.messages():
+            if connection.topic.startswith("/rtamt"):
+                stamp = header_time(reader.deserialize(raw, connection.msgtype))
+                found.setdefault(connection.topic, {})[stamp / 1e9] = recorded / 1e9 - START
+    return found
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["always(/x.value >= -1)", 'group floats = "*x"\nalways(forall f in floats: f.value >= -1)\n'],
+    ids=["topic", "group"],
+)
+def test_results_in_simulated_time_had_that_time_for_the_time_of_their_recording(tmp_path, bag, text):
+    spec, out = tmp_path / "a.stl", tmp_path / "out.mcap"
+    spec.write_text(text)
+    assert main(["check", str(spec), bag, "--quiet", "--period", "1s", "-o", str(out)]) == 0
+    topics = {"/rtamt/robustness", "/rtamt/robustness/verdict"}
+    assert recorded_in(out) == dict.fromkeys(topics, RECORDED_AT)
+    trace = rtamt.read(out, columns=["/x.value", "/rtamt/robustness.value"])
+    assert trace.losses == ()
+    assert trace["/rtamt/robustness.value"].times.tolist() == trace["/x.value"].times.tolist()
+
+
+def test_results_between_messages_in_simulated_time_are_recorded_between_them(tmp_path, bag):
+    out = tmp_path / "out.mcap"
+    assert main(["check", SIMULATED, bag, "--quiet", "--period", "500ms", "-o", str(out)]) == 0
+    times = recorded_in(out)["/rtamt/robustness"]
+    assert times == RECORDED_AT | {1000.5: 0.5, 1001.5: 10.5, 1002.5: 20.5, 1003.5: 21.5, 1004.5: 22.5}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [RECORDED, 'always("/x.value" + "/y.data" >= -1)', "always(/late.value >= 0)"],
+    ids=["without headers", "both", "stamps of the clock of the recording"],
+)
+def test_results_in_the_time_of_the_recording_are_recorded_at_this_time(tmp_path, text):
+    with Bag(tmp_path, "mcap") as made:
+        for i in range(4):
+            made.stamped("/x", 1000 + i, 0.0, late=START - 1000)
+            made.stamped("/late", START + i, 0.0, late=1)
+            made.plain("/y", START + i, 0.0)
+    out = tmp_path / "out.mcap"
+    assert main(["check", text, str(made.path), "--quiet", "--period", "1s", "-o", str(out)]) == 0
+    assert recorded_in(out)["/rtamt/robustness"] == {START + i: i for i in range(4)}
+
+
+def test_results_of_each_requirement_are_recorded_by_its_own_clock(tmp_path, bag):
+    out, spec = tmp_path / "out.mcap", tmp_path / "a.stl"
+    spec.write_text(TOGETHER["file"][0])
+    assert main(["check", str(spec), bag, "--quiet", "--period", "1s", "-o", str(out)]) == 0
+    a, b = (recorded_in(out)[f"/rtamt/{name}"] for name in "AB")
+    assert a == RECORDED_AT
+    assert b == {START + i: i for i in range(24)}
 
 
 def test_a_whole_bag_has_one_clock_and_a_note(bag):
