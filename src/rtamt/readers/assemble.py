@@ -37,7 +37,7 @@ def trace_of(source: Source, choice: Choice) -> Trace:
         raws = selection.table.load(selection.fields)
         if first_column is not None:
             first_column.take(raws[0])
-        losses += selection.table.losses
+        losses += selection.losses
         timestamps = timestamps_of(source, selection, choice)
         gaps = _gaps(source, selection, choice)
         made, left_out = _channels(source, selection, timestamps, raws, choice, gaps)
@@ -97,7 +97,7 @@ def chunks_of(source: Source, choice: Choice) -> Iterator[Trace]:
             *dict.fromkeys(note for column in timestamps if column for note in column.notes),
         )
         lost = (loss for each in gaps for gap in each.values() for loss in gap.losses())
-        left_out = (loss for each in selections for loss in each.table.losses)
+        left_out = (loss for each in selections for loss in each.losses)
         losses = (*source.losses, *left_out, *lost, *silences.losses())
         yield Trace(
             _one_kind(channels, source.name),

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from contextlib import ExitStack
+from functools import cache
 from itertools import chain, repeat
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
 from rtamt.errors import TraceError, choices
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.dates import is_date
 from rtamt.readers.rows import table_of_rows
 from rtamt.readers.source import Source, library
@@ -18,6 +20,7 @@ from rtamt.signals.time_columns import column_name, is_stamps, may_be_stamps, sp
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
+    from rtamt.readers.source import Field
 
 #: Bytes of a workbook's parts, unpacked: a few MB of a zip file can expand to any number of GB.
 MOST_BYTES = 2**30
@@ -52,7 +55,6 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
             page.reset_dimensions()  # what the file claims them to be, not what they are
         name = _choose(path, found, sheet)
         _check_formulas(path, found[name])
-        losses = _rounded_dates(found[name], book._date_formats)
         rows = _filled_rows(found[name], path)
         header = next(rows, None)
         if header is None:
@@ -68,9 +70,14 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         if _is_timed(columns, first or ()):
             rows = (row for row in rows if _is_filled(row))
         notes = (f"sheet '{name}'",) if len(found) > 1 else ()
-        return Source(
-            path, (table_of_rows(columns, rows),), notes=notes, losses=losses, close=stack.pop_all().close
-        )
+
+        @cache
+        def rounded(timestamps: Field) -> tuple[str, ...]:
+            letters = openpyxl.utils.get_column_letter(columns.index(timestamps.column) + 1)
+            return _rounded_dates(found[name], letters, book._date_formats)
+
+        table = replace(table_of_rows(columns, rows), losses_of_times=rounded)
+        return Source(path, (table,), notes=notes, close=stack.pop_all().close)
 
 
 def _check_size(path: str, file: Any) -> None:
@@ -108,16 +115,16 @@ def _pieces(page: Any) -> Iterator[bytes]:
     yield rest
 
 
-def _rounded_dates(page: Any, styles: Collection[int]) -> tuple[str, ...]:
-    """Return a note on dates and durations between two milliseconds, to which openpyxl rounds them.
+def _rounded_dates(page: Any, letters: str, styles: Collection[int]) -> tuple[str, ...]:
+    """Return a note on dates and durations between two milliseconds in a column, to which openpyxl rounds them.
 
-    ``styles``: those of dates and durations.
+    ``letters``: those of the column. ``styles``: those of dates and durations.
     """
     if not styles:
         return ()
     numbers = "|".join(map(str, sorted(styles))).encode()
     dates = re.compile(
-        rb'<c r="(?P<cell>[A-Z0-9]+)"[^>]* s="(?:' + numbers + rb')"[^>]*>\s*'
+        rb'<c r="(?P<cell>' + letters.encode() + rb'[0-9]+)"[^>]* s="(?:' + numbers + rb')"[^>]*>\s*'
         rb"(?:<f\b(?:[^>]*/>|[^>]*>[^<]*</f>)\s*)?<v>(?P<days>[-+.0-9Ee]+)</v>"
     )
     count, first = 0, ""
@@ -132,10 +139,12 @@ def _rounded_dates(page: Any, styles: Collection[int]) -> tuple[str, ...]:
                 first = first or found["cell"].decode("ascii")
     if not count:
         return ()
-    return (
-        f"rounded to 1 ms: {count:,} date{'s' * (count != 1)} of the sheet '{page.title}', the first in cell "
-        f"{first}; save finer timestamps as numbers of seconds",
+    some = (
+        f"1 date of sheet '{page.title}' is finer than 1 ms and was rounded"
+        if count == 1
+        else f"{count:,} dates of sheet '{page.title}' are finer than 1 ms and were rounded"
     )
+    return (f"{some} (the first in {first}); save such timestamps as numbers of seconds",)
 
 
 def _choose(path: str, found: dict[str, Any], sheet: str | None) -> str:

@@ -76,6 +76,14 @@ class Selection:
         return self.leading + tuple(field for _, field in self.signals)
 
     @property
+    def losses(self) -> tuple[str, ...]:
+        """What the table and its timestamps lost, once they have been read."""
+        losses, of_times = tuple(self.table.losses), self.table.losses_of_times
+        if of_times is None or self.time_field is None:
+            return losses
+        return (*losses, *of_times(self.time_field))
+
+    @property
     def leading(self) -> tuple[Field, ...]:
         """The column of timestamps, or that which may hold them, if there is one."""
         first = self.time_field or self.possible

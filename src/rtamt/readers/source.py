@@ -74,6 +74,8 @@ class Table:
     fresh: bool = False
     #: What ``load`` had to leave out, a sentence each; empty until then.
     losses: list[str] = field(default_factory=list)
+    #: What a column loses if it is read as the timestamps, a sentence each; None where it loses nothing.
+    losses_of_times: Callable[[Field], Sequence[str]] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
