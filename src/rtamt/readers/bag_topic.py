@@ -101,9 +101,9 @@ def use_one_clock(topics: Sequence[Topic]) -> None:
         if same and abs(topic.behind) > SAME_CLOCK:
             side = "behind" if topic.behind > 0 else "ahead of"
             topic.by_recording = (
-                f"the stamps in the headers on {printable(topic.name)} are {abs(topic.behind) / 1e9:.6g} s {side} the "
-                f"clock of the recording, which is that of {printable(same[0].name)}: its messages have the times of "
-                f"their recording"
+                f"{printable(topic.name)}: the timestamps in its headers are {abs(topic.behind) / 1e9:.6g} s {side} "
+                f"the clock of the recording, which {printable(same[0].name)} uses; the times of recording are "
+                f"used instead"
             )
 
 

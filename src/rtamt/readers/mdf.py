@@ -314,8 +314,13 @@ def _scaled(values: Sequence[Any], missing: Raw | None, field: Field, losses: li
     texts = np.array([isinstance(value, bytes) for value in values], dtype=bool)
     found = np.flatnonzero(texts if missing is None else texts & ~missing)
     if len(found):
+        name, text = printable(field.column), printable(_text(values[found[0]]))
+        what = (
+            f"1 sample of {name} is NaN, because its conversion maps it to the text '{text}'"
+            if len(found) == 1
+            else f"{len(found):,} samples of {name} are NaN, because its conversion maps them to texts such as '{text}'"
+        )
         losses.append(
-            f"NaN: {len(found):,} sample{'s' * (len(found) != 1)} of {printable(field.column)} where its conversion "
-            f"has a text, such as '{printable(_text(values[found[0]]))}', which an enumeration reads"
+            f"{what}; declare {name} as an enumeration to read {'it' if len(found) == 1 else 'them'}"
         )
     return np.array([np.nan if isinstance(value, bytes) else value for value in values], dtype=np.float64)

@@ -206,9 +206,8 @@ def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> 
     if count > MOST_INSTANTS:
         since, until = (_time_of(start + i * step, dtype) for i in (0, count - 1))
         raise TraceError(
-            f"from {show_time(since)} to {show_time(until)} there are {count:,} samples {format_duration(step)} apart, "
-            f"more than the {MOST_INSTANTS:,} that resampling makes at once: divide the recording at its gaps, or "
-            f"resample with a longer period"
+            f"resampling every {format_duration(step)} from {show_time(since)} to {show_time(until)} makes {count:,} "
+            f"samples, more than {MOST_INSTANTS:,}: divide the recording at its gaps, or choose a longer period"
         )
     if dtype.kind == "f":
         scale = step.denominator * start.denominator

@@ -46,12 +46,18 @@ def test_a_scaled_channel_whose_samples_are_all_texts_has_no_numbers(tmp_path, c
     path = recording(tmp_path / "a.mf4", raw, conversion)
     assert np.isnan(values(path)).all()
     assert rtamt.read(path).losses == (
-        f"NaN: {length} samples of x where its conversion has a text, such as 'error', which an enumeration reads",
+        f"{length} samples of x are NaN, because its conversion maps them to texts such as 'error'; declare x as an "
+        f"enumeration to read them",
     )
     raw[1] = 100
     mixed = values(recording(tmp_path / "b.mf4", raw, conversion))
     assert mixed[1] == 0
     assert np.isnan(mixed).sum() == length - 1
+    raw[2:] = 100
+    assert rtamt.read(recording(tmp_path / "c.mf4", raw, conversion)).losses == (
+        "1 sample of x is NaN, because its conversion maps it to the text 'error'; declare x as an enumeration to "
+        "read it",
+    )
     with pytest.raises(rtamt.TraceError, match="'x' is NaN at sample 0"):
         rtamt.parse("always(x <= 100)").evaluate(rtamt.read(path))
 

@@ -251,4 +251,4 @@ def test_a_whole_bag_has_one_clock_and_a_note(bag):
     trace = rtamt.read(bag)
     assert trace["/x.value"].times[0] == trace["/y.data"].times[0]
     (note,) = trace.losses
-    assert note.startswith("the stamps in the headers on /x are ")
+    assert note.startswith("/x: the timestamps in its headers are ")

@@ -33,8 +33,8 @@ def test_a_violation_in_simulated_time_was_missed_beside_a_topic_with_times_of_r
     row = json.loads(capsys.readouterr().out)
     assert row["first_violation"] == START + 3
     note = (
-        "the stamps in the headers on /x are 1.7e+09 s behind the clock of the recording, which is that of /y: "
-        "its messages have the times of their recording"
+        "/x: the timestamps in its headers are 1.7e+09 s behind the clock of the recording, which /y uses; "
+        "the times of recording are used instead"
     )
     assert note in row["notes"]
     assert rtamt.read(bag.path, columns=["/x.value", "/y.data"]).losses == (note,)
