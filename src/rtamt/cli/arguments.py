@@ -22,7 +22,6 @@ from rtamt.language.units.durations import positive_period
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.tuples import NamedTuple
 from rtamt.readers.formats import is_bag
-from rtamt.readers.member_columns import members_in
 from rtamt.readers.read import opened
 from rtamt.readers.sql import shown
 from rtamt.specification_loader import packs
@@ -205,6 +204,8 @@ def has_one_clock(requirement: Requirement, trace: str, reading: Reading) -> boo
     """Return whether the requirements of a specification have times of one clock, as far as they can be checked."""
     if not is_bag(trace) or not requirement.rows:
         return True
+    from rtamt.readers.member_columns import members_in  # few recordings are bags
+
     try:
         with opened(trace, recover=reading.recover) as opening:
             source = completed_for(opening, [row.spec for row in requirement.rows])
