@@ -192,9 +192,12 @@ def exact_time(time: Any) -> Fraction:
 
 
 def _rounding(times: Any, step: Fraction) -> Any:
-    """Return how far, in seconds, a time may lie from an instant of a grid of doubles and still be that instant."""
+    """Return how far, in seconds, a time may lie from an instant of a grid of doubles and still be that instant.
+
+    Never so far that it could be another instant.
+    """
     near = np.maximum(ROUNDINGS * np.spacing(np.abs(times)), LEAST)
-    return np.minimum(near, float(step) / 1e4)
+    return np.minimum(near, float(step) / 4)
 
 
 def _nearness(time: Fraction, step: Fraction, dtype: np.dtype[Any]) -> Fraction:

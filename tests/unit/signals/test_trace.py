@@ -166,3 +166,15 @@ def test_commands_resample_no_huge_gap(tmp_path, capsys, early):
     (tmp_path / "log.csv").write_text("time,x\n0,1\n1,2\n1e9,3\n", encoding="utf-8")
     assert main(["check", "always(x <= 2)", str(tmp_path / "log.csv"), "--resample", "1ms", *early]) == 2
     assert "makes 1,000,000,000,001 samples, more than 268,435,456" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("rate", [100, 1000, 2000, 48_000])
+@pytest.mark.parametrize("rounded", [lambda ns: ns / 1e9, lambda ns: ns // 10**9 + ns % 10**9 * 1e-9])
+def test_resampling_at_the_rate_of_a_recording_since_1970_left_out_samples(rate, rounded):
+    """Seconds since 1970 are rounded to 0.2 µs, and further where they are a sum of seconds and nanoseconds."""
+    step = 10**9 // rate
+    values = np.arange(3000.0)
+    trace = rtamt.read({"time": rounded(1_700_000_000 * 10**9 + step * np.arange(3000)), "x": values})
+    found = trace.resample(f"{step}ns")
+    assert found["x"].values.tolist() == values.tolist()
+    assert found.losses == ()
