@@ -30,6 +30,7 @@ from rtamt.signals.sampling_period import (
     check_increasing,
     check_regular,
     check_tolerance,
+    elapsed,
     infer_period,
 )
 from rtamt.signals.signal import Signal
@@ -387,10 +388,11 @@ def record_discrete(
         times = stamped.seconds
         original = None if stamped.original is times else stamped.original
         dated = are_dates(original)
-        check_increasing(times, dated=dated)
+        exact = elapsed(stamped, unit)
+        check_increasing(times, dated=dated, exact=exact)
         inferred = period is None
-        period = period or infer_period(times)
-        check_regular(times, period, tolerance, dated=dated)
+        period = period or infer_period(exact)
+        check_regular(times, period, tolerance, dated=dated, exact=exact)
     for name, column in columns.items():
         check_numbers(name, column, times, type_=types.get(name), dated=dated)
     return DiscreteTrace(times, columns, period, inferred, original, unit, units_of(data))

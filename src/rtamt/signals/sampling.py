@@ -15,7 +15,7 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.listing import show_time
 from rtamt.signals.resampling import Sampler
-from rtamt.signals.sampling_period import check_increasing, check_regular, infer_period
+from rtamt.signals.sampling_period import check_increasing, check_regular, elapsed, infer_period
 from rtamt.signals.trace import Channel, Trace
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def sampled_messages(data: Trace, period: Fraction | None) -> Trace:
     if period is not None:
         return data.resample(period)
     try:
-        times = arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME]).seconds
+        times = elapsed(arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME]))
         check_regular(times, infer_period(times))
     except TraceError as error:
         raise TraceError(

@@ -7,7 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rtamt.errors import TraceError, UsageError, shown
-from rtamt.language.units.durations import format_duration
+from rtamt.language.units.durations import NANOSECOND, UNITS, format_duration
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME, is_number
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from rtamt.signals.arrays import FloatArray
+    from rtamt.signals.arrays import FloatArray, Timestamps
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
@@ -116,10 +116,33 @@ def check_tolerance(tolerance: Any) -> None:
         raise UsageError(f"the tolerance is {shown(tolerance)}; give a fraction of the period, 0 or more")
 
 
+def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
+    """Return seconds since the first timestamp, of dates, durations and integers each rounded once.
+
+    Seconds since 1970 are rounded to 0.2 µs, so that the gaps between them are not those of the timestamps. Times that
+    are doubles already are returned as they are. ``unit``: of integers.
+
+    >>> from rtamt.signals.arrays import timestamps
+    >>> dates = np.datetime64("2023-11-14T22:13:20", "ns") + np.array([0, 20_833, 41_666])
+    >>> elapsed(timestamps(dates)).tolist()
+    [0.0, 2.0833e-05, 4.1666e-05]
+    """
+    from rtamt.signals.counting import quotients
+
+    original = times.original
+    if not len(original) or original.dtype.kind not in ("mMi" if unit else "mM"):
+        return times.seconds
+    numbers = original.view(np.int64)
+    if int(numbers.max()) - int(numbers.min()) >= 2**63:  # also of a missing time
+        return times.seconds
+    size = NANOSECOND if original.dtype.kind in "mM" else UNITS[str(unit)]
+    return quotients(numbers - numbers[0], *size.as_integer_ratio())
+
+
 def infer_period(times: FloatArray) -> Fraction:
     """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
 
-    Timestamps since 1970 are doubles with a precision of about 0.2 µs, which limits that of the gaps.
+    ``times``: see :func:`elapsed`. Doubles since 1970 have a precision of about 0.2 µs, which limits that of the gaps.
     """
     if len(times) < 2:
         return Fraction(1)
@@ -177,12 +200,17 @@ def coarse_place(gap: float) -> float:
 
 
 def check_increasing(
-    times: FloatArray, before: float | None = None, first: int = 0, *, dated: bool = False
+    times: FloatArray,
+    before: float | None = None,
+    first: int = 0,
+    *,
+    dated: bool = False,
+    exact: FloatArray | None = None,
 ) -> None:
     """Raise :class:`TraceError` unless times are finite and increase strictly, also from ``before`` on.
 
     ``first`` is the index of ``times[0]`` in the whole recording, and ``dated`` whether the caller's times are dates,
-    for the message.
+    for the message. ``exact``: the times as :func:`elapsed` returns them, if they are known.
     """
     finite = np.isfinite(times)
     if not finite.all():
@@ -194,7 +222,7 @@ def check_increasing(
         )
     if before is not None and len(times) and times[0] <= before:
         raise not_increasing(first, float(times[0]), before, dated=dated)
-    steps = np.diff(times)
+    steps = np.diff(times if exact is None else exact)
     if (steps <= 0).any():
         i = int((steps <= 0).argmax()) + 1
         if before is None and len(steps) > 1 and not steps.any():
@@ -233,28 +261,30 @@ def check_regular(
     first: int = 0,
     *,
     dated: bool = False,
+    exact: FloatArray | None = None,
 ) -> None:
     """Raise :class:`TraceError` where the gap to the sample before is not one period (within tolerance).
 
-    ``dated``: as for :func:`check_increasing`.
+    ``dated``, ``exact``: as for :func:`check_increasing`; exact times have none before.
     """
     whole = times if before is None else np.concatenate(([before], times))
     step = float(period)
-    off = np.abs(np.diff(whole) - step) > tolerance * step
+    gaps = np.diff(whole if exact is None else exact)
+    off = np.abs(gaps - step) > tolerance * step
     if off.any():
-        i = int(off.argmax()) + 1
-        index = first + i - (0 if before is None else 1)
-        raise irregular(index, float(whole[i]), float(whole[i - 1]), period, tolerance, dated=dated)
+        i = int(off.argmax())
+        index = first + i + (before is None)
+        raise irregular(index, float(whole[i + 1]), float(gaps[i]), period, tolerance, dated=dated)
 
 
 def irregular(
-    index: int, time: float, before: float, period: Fraction, tolerance: float, *, dated: bool = False
+    index: int, time: float, gap: float, period: Fraction, tolerance: float, *, dated: bool = False
 ) -> TraceError:
     """Return the error for a sample that is not one period after the one before; ``dated``: whether times are dates."""
     from rtamt.language.units.moments import time_text
 
     return TraceError(
-        f"sample {index} at {time_text(time, dated=dated)} is {time - before:g} s after the one before, expected "
+        f"sample {index} at {time_text(time, dated=dated)} is {gap:g} s after the one before, expected "
         f"{format_duration(period)} (within {tolerance:.0%}): give the right period, resample the trace, or use "
         f"dense time (--time dense)",
         variable=TIME,

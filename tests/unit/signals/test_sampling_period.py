@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import rtamt
+from rtamt.cli import main
 from rtamt.signals.sampling_period import _median, infer_period
 
 
@@ -18,3 +23,42 @@ def test_the_median_is_that_of_numpy(gaps):
 def test_the_period_is_the_median_gap_as_a_short_decimal(gaps):
     times = np.cumsum([0, *gaps]) / 1000
     assert abs(float(infer_period(times)) - np.median(gaps) / 1000) <= 1e-6 * np.median(gaps) / 1000
+
+
+#: Nanoseconds: 48 kHz, 60 kHz, 120 kHz, 44.1 kHz, 3 kHz, and less than the precision of a double since 1970.
+PERIODS = [20_833, 16_667, 8_333, 22_676, 333_333, 250, 1]
+EPOCH = 1_700_000_000 * 10**9
+RATE = "next(always(rate(x) >= 995))"
+
+
+@pytest.mark.parametrize("period", PERIODS)
+@pytest.mark.parametrize("kind", ["ns", "datetime64[ns]", "timedelta64[ns]"])
+def test_the_period_of_exact_times_since_1970_was_rounded_and_rates_with_it(period, kind):
+    times = EPOCH + period * np.arange(100)
+    data = {"time": times if kind == "ns" else times.astype(kind), "x": 1e-6 * period * np.arange(100)}
+    unit = "ns" if kind == "ns" else None
+    result = rtamt.parse(RATE).evaluate(data, time_unit=unit)
+    assert result.satisfied
+    assert result.trace.period * 10**9 == period
+    assert [row.satisfied for row in rtamt.Suite(rtamt.parse(RATE), time_unit=unit).evaluate(data)] == [True]
+    if period > 10_000:
+        chunks = [{name: column[i : i + 25] for name, column in data.items()} for i in range(0, 100, 25)]
+        found = rtamt.check_stream(rtamt.parse("always(x >= 0)"), chunks, time_unit=unit)
+        assert found.period * 10**9 == period
+
+
+@pytest.mark.parametrize("period", PERIODS)
+@pytest.mark.parametrize("options", [[], ["--early"], ["--engine", "local"]], ids=["whole", "early", "many"])
+def test_the_period_of_nanoseconds_in_a_file_was_rounded(tmp_path, capsys, period, options):
+    rows = "".join(f"{EPOCH + period * i},{1e-6 * period * i}\n" for i in range(100))
+    (tmp_path / "a.csv").write_text(f"time [ns],x\n{rows}")
+    assert main(["check", RATE, str(tmp_path / "a.csv"), "--json", *options]) == 0
+    assert json.loads(capsys.readouterr().out)["satisfied"]
+
+
+def test_the_gap_in_an_error_is_that_of_the_timestamps():
+    times = EPOCH + np.array([0, 1000, 2000, 2500, 3500])
+    with pytest.raises(
+        rtamt.errors.TraceError, match=r"sample 3 at 1700000000 s is 5e-07 s after the one before"
+    ):
+        rtamt.parse("x > 0").evaluate({"time": times, "x": np.ones(5)}, time_unit="ns")

@@ -213,7 +213,7 @@ class CheckedSamples(OnlineMonitor):
         period = float(self._period)
         if last is None or abs(time - last - period) <= self._tolerance * period:
             return in_use()  # the cause has disappeared meanwhile
-        return irregular(index, time, last, self._period, self._tolerance, dated=dated)
+        return irregular(index, time, time - last, self._period, self._tolerance, dated=dated)
 
     def _no_value(self, error: Any, *, dated: bool | None = None) -> Exception:
         """Return the error for an undefined value, with its sub-formula and instant.

@@ -200,7 +200,7 @@ class DiscreteFleet:
         if reason == "value":
             error = nan_error(monitor.input_names[instruction], sample, time, dated=dated)
         elif reason == "gap":
-            error = irregular(sample, time, last, monitor.period, monitor._tolerance, dated=dated)
+            error = irregular(sample, time, time - last, monitor.period, monitor._tolerance, dated=dated)
             if place is None:
                 error = TraceError(f"{error}; or drop the key")
         else:

@@ -18,7 +18,14 @@ from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.outcomes import Interval
-from rtamt.signals.sampling_period import TOLERANCE, check_increasing, check_regular, infer_period, merged
+from rtamt.signals.sampling_period import (
+    TOLERANCE,
+    check_increasing,
+    check_regular,
+    elapsed,
+    infer_period,
+    merged,
+)
 from rtamt.verdicts.decompose import conjuncts
 from rtamt.verdicts.early.discrete_eager import EagerMonitor
 from rtamt.verdicts.early.discrete_interval import DiscreteIntervalMonitor
@@ -162,7 +169,7 @@ class DiscreteEarlyCheck(EarlyCheck):
         if not self._given:
             assumed_period.require_times_of_each(chunk, self._read)
         if self._period is None:
-            self._period = Fraction(1) if timestamps is None else infer_period(timestamps.seconds)
+            self._period = Fraction(1) if timestamps is None else infer_period(elapsed(timestamps))
         if not self._samples:
             self._begin(self._period)
         if timestamps is not None:

@@ -136,7 +136,7 @@ class DiscreteEarlyMonitor(EarlyMonitor):
         place = backend.place(time)
         if place is None or not backend.newest < place <= max(backend.newest, backend.closed) + 1:
             dated = self._clock.dated
-            raise irregular(self.samples, time, last, self._step, self._tolerance, dated=dated)
+            raise irregular(self.samples, time, time - last, self._step, self._tolerance, dated=dated)
 
     def _take_in_order(self, time: Any, values: dict[str, Any]) -> Any:
         """Take the next sample in order, or raise an error."""

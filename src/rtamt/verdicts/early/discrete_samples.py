@@ -247,7 +247,9 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         place = backend.place(time)
         last = backend.time(backend.newest)
         if place is None:
-            raise irregular(self.samples, time, last, self._step, self._tolerance, dated=self._clock.dated)
+            raise irregular(
+                self.samples, time, time - last, self._step, self._tolerance, dated=self._clock.dated
+            )
         if place <= backend.closed:
             raise self._too_late(self.samples, time, backend.time(backend.closed))
 
@@ -263,7 +265,9 @@ class DiscreteIntervalSamples(DiscreteEarlyMonitor, IntervalMonitor, EarlyMonito
         if steps > closed:
             return
         if abs(time - last - steps * period) > self._tolerance * period:
-            raise irregular(self._count, time, last, self._step, self._tolerance, dated=self._clock.dated)
+            raise irregular(
+                self._count, time, time - last, self._step, self._tolerance, dated=self._clock.dated
+            )
         raise self._too_late(self._count, time, last + closed * period)
 
     def _too_late(self, index: int, time: float, closed: float) -> LateSampleError:
