@@ -99,7 +99,8 @@ std::optional<Rejected> Fleet::admit(std::span<const Key> keys, const Batch& bat
                 continue;
             }
             const bool later = std::isfinite(time) && time > last;
-            if (later && settings_.restart) continue;
+            // A trace begins again where there is a gap, not where there may be one.
+            if (later && settings_.restart && !may_fit(time - last, time)) continue;
             return Rejected{index, later ? Rejected::Reason::gap : Rejected::Reason::time};
         }
     }

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -119,6 +120,15 @@ class Fleet {
     // Whether two samples may be so far apart.
     [[nodiscard]] bool fits(double gap) const noexcept {
         return gap > 0.0 && std::fabs(gap - settings_.period) <= slack_;
+    }
+
+    // Whether a gap to a time may be one period, and look longer or shorter because both times are
+    // rounded: seconds since 1970 are doubles 0.24 µs apart.
+    [[nodiscard]] bool may_fit(double gap, double time) const noexcept {
+        const double spacing =
+            std::nextafter(std::fabs(time), std::numeric_limits<double>::infinity()) -
+            std::fabs(time);
+        return std::fabs(gap - settings_.period) <= slack_ + spacing;
     }
 
     [[nodiscard]] std::optional<Rejected> take(const Batch& batch, std::span<const Output> outputs,

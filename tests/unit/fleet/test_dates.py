@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rtamt
+from rtamt.errors import TraceError
 
 
 @pytest.mark.parametrize(
@@ -50,3 +51,20 @@ def test_a_watermark_does_not_decide_the_kind_of_times() -> None:
     fleet = rtamt.Fleet(rtamt.parse("x >= 3"), 10, lateness="1s")
     fleet.advance(np.datetime64("1970-01-01T00:00:01", "ns"))
     assert fleet.update_many([1, 1], [1.0, 3.0], {"x": [5, 4]}).times.tolist()[0] == 1.0
+
+
+@pytest.mark.parametrize("settings", [{}, {"lateness": "0s"}], ids=str)
+@pytest.mark.parametrize("dated", [True, False])
+def test_the_rounding_of_times_since_1970_began_traces_again_and_forgot_a_violation(settings, dated):
+    """Doubles are 0.24 us apart there, so that a gap of 1 us is 1.19 us now and then."""
+    spec = rtamt.parse("historically(x >= 3)", period="1us")
+    fleet = rtamt.Fleet(spec, capacity=1, gaps="restart", **settings)
+    times = np.datetime64("2023-11-14T22:13:20", "us") + np.arange(6)
+    if not dated:
+        times = times.astype(np.int64) / 1e6
+    data = {"x": np.array([5.0, 1, 5, 5, 5, 5])}
+    with pytest.raises(TraceError, match=r"1\.19209e-06 s after the one before, expected 1 us"):
+        fleet.update_many(["a"] * 6, times, data)
+    fresh = rtamt.Fleet(spec, capacity=1, gaps="restart")
+    assert fresh.update_many(["a"] * 6, np.arange(6) * 1e-6, data).values.tolist() == [2, -2, -2, -2, -2, -2]
+    assert fresh.update_many(["a"], np.array([9e-6]), {"x": np.array([7.0])}).values.tolist() == [4]
