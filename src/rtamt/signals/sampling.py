@@ -64,8 +64,9 @@ def sampled_messages(data: Trace, period: Fraction | None) -> Trace:
     if period is not None:
         return data.resample(period)
     try:
-        times = elapsed(arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME]))
-        check_regular(times, infer_period(times))
+        times = arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME])
+        exact = elapsed(times)
+        check_regular(times.seconds, infer_period(times.seconds, exact), exact=exact)
     except TraceError as error:
         raise TraceError(
             "the messages of this bag are not samples one period apart: choose a sampling period, such as "

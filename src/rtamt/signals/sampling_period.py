@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
+#: Gaps, in seconds, that differ by less are the same numbers of nanoseconds.
+_NO_DIFFERENCE = 5e-10
+#: A period that differs from a gap by such a fraction is the gap, rounded.
+_SAME = 1e-5
 
 
 class DeferredTimes(ABC):
@@ -139,14 +143,30 @@ def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
     return quotients(numbers - numbers[0], *size.as_integer_ratio())
 
 
-def infer_period(times: FloatArray) -> Fraction:
+def infer_period(times: FloatArray, exact: FloatArray | None = None) -> Fraction:
     """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
 
-    ``times``: see :func:`elapsed`. Doubles since 1970 have a precision of about 0.2 µs, which limits that of the gaps.
+    Doubles since 1970 have a precision of about 0.2 µs, which limits that of the gaps. ``exact``: the times as
+    :func:`elapsed` returns them. Their gaps are exact unless they were made of doubles, which shows in gaps that differ
+    and yet add up to a period with fewer digits.
     """
     if len(times) < 2:
         return Fraction(1)
-    gap = _median(np.diff(times))
+    coarse = _shortest(_median(np.diff(times)), times)
+    if exact is None or exact is times:
+        return coarse
+    gaps = np.diff(exact)
+    gap = _median(gaps)
+    differ, off = float(np.abs(gaps - gap).max()), abs(float(coarse) - gap)
+    if differ > _NO_DIFFERENCE:
+        adds_up = abs(float(coarse) * len(gaps) - float(exact[-1])) <= _precision(gap, times) + 2 * differ
+    else:
+        adds_up = off <= _SAME * gap
+    return coarse if adds_up else _shortest(gap, exact)
+
+
+def _shortest(gap: float, times: FloatArray) -> Fraction:
+    """Return the shortest decimal within the precision of a gap between some times."""
     blur = _precision(gap, times)
     for digits in range(1, 17):
         short = float(f"{gap:.{digits}g}")

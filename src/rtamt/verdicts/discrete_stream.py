@@ -62,7 +62,7 @@ class DiscreteStream(Stream):
             self._monitor = self._begin(timestamps)
         known = push_samples(self._monitor, timestamps, columns, n)
         if self._inferred and timestamps is not None and self._period is not None:
-            self.steady = self.steady and has_period(elapsed(timestamps, self.unit), self._period)
+            self.steady = self.steady and has_period(timestamps.seconds, self._period)
         self._known(self._monitor, known)
         self.samples += n
 
@@ -70,7 +70,11 @@ class DiscreteStream(Stream):
         if timestamps is not None:
             check_increasing(timestamps.seconds, dated=arrays.are_dates(timestamps.original))
         if self._period is None:
-            self._period = Fraction(1) if timestamps is None else infer_period(elapsed(timestamps, self.unit))
+            self._period = (
+                Fraction(1)
+                if timestamps is None
+                else infer_period(timestamps.seconds, elapsed(timestamps, self.unit))
+            )
         domain = Discrete(self._period, self._tolerance)
         domain.check(self.spec.formula, self.spec.text)
         spec = self._group.begin(domain, self.spec)

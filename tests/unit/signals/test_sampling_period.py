@@ -62,3 +62,31 @@ def test_the_gap_in_an_error_is_that_of_the_timestamps():
         rtamt.errors.TraceError, match=r"sample 3 at 1700000000 s is 5e-07 s after the one before"
     ):
         rtamt.parse("x > 0").evaluate({"time": times, "x": np.ones(5)}, time_unit="ns")
+
+
+def halves(seconds):
+    """Return nanoseconds of seconds and the rest of a double, as clocks of ROS are set."""
+    whole = np.floor(seconds)
+    return whole.astype(np.int64) * 10**9 + ((seconds - whole) * 1e9).astype(np.int64)
+
+
+@pytest.mark.parametrize("rate", [20, 100, 1000, 10_000])
+@pytest.mark.parametrize(
+    "made", [halves, lambda seconds: (seconds * 1e9).astype(np.int64)], ids=["parts", "product"]
+)
+@pytest.mark.parametrize("jitter", [0, 0.08])
+def test_nanoseconds_that_were_seconds_in_doubles_have_the_period_of_these(rate, made, jitter):
+    index = np.arange(100) + jitter * (np.arange(100) % 3 > 0)
+    times = made(1_700_000_000 + index / rate)
+    result = rtamt.parse(f"always[0:{10 / rate}](x > 0)").evaluate(
+        {"time": times.astype("M8[ns]"), "x": np.ones(100)}
+    )
+    assert float(result.trace.period) == 1 / rate
+
+
+@pytest.mark.parametrize("count", [2, 3, 50])
+def test_the_period_of_hardware_clocks_is_exact_whatever_divides_it(count):
+    """256 ns are the precision of a product of seconds since 1970 and 10^9."""
+    times = 1_700_000_000 * 10**9 + 25_600 * np.arange(count)
+    result = rtamt.parse("x > 0").evaluate({"time": times.astype("M8[ns]"), "x": np.ones(count)})
+    assert result.trace.period * 10**9 == 25_600

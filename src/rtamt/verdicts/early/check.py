@@ -169,7 +169,9 @@ class DiscreteEarlyCheck(EarlyCheck):
         if not self._given:
             assumed_period.require_times_of_each(chunk, self._read)
         if self._period is None:
-            self._period = Fraction(1) if timestamps is None else infer_period(elapsed(timestamps))
+            self._period = (
+                Fraction(1) if timestamps is None else infer_period(timestamps.seconds, elapsed(timestamps))
+            )
         if not self._samples:
             self._begin(self._period)
         if timestamps is not None:
