@@ -190,7 +190,7 @@ class Evaluated(NamedTuple):
 def result_of_one(args: Namespace, command: str) -> tuple[Evaluated, Result]:
     """Evaluate one specification over one recording as a whole; return what is known, and the result."""
     requirement, trace, reading = _one(args, command)
-    if not has_one_clock(requirement, trace, reading):
+    if not share_clock(requirement, trace, reading):
         raise CommandError(
             f"{shown(trace)}: the requirements read topics with different clocks, so that they have no {command} in "
             f"common; 'rtamt report' plots each of them"
@@ -200,7 +200,7 @@ def result_of_one(args: Namespace, command: str) -> tuple[Evaluated, Result]:
     return evaluated, result
 
 
-def has_one_clock(requirement: Requirement, trace: str, reading: Reading) -> bool:
+def share_clock(requirement: Requirement, trace: str, reading: Reading) -> bool:
     """Return whether the requirements of a specification have times of one clock, as far as they can be checked."""
     if not is_bag(trace) or not requirement.rows:
         return True

@@ -9,6 +9,7 @@ from rtamt.cli.reading_options import choice_for, completed_for
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
 from rtamt.lazy.dataclasses import replace
+from rtamt.readers.bag_topic import STAMP
 from rtamt.readers.formats import is_bag
 from rtamt.readers.member_columns import choice_of_members
 from rtamt.readers.read import opened
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 #: The topic of a requirement that names none.
 TOPIC = "rtamt/robustness"
-#: What follows the name of a topic in the name of its column of timestamps.
-_STAMP = " stamp"
 
 
 def write_bag(
@@ -84,4 +83,4 @@ def topics_read(spec: Specification, trace: str, reading: Reading) -> tuple[str,
         clocks = [
             selection.table.time_field for selection in select(source.completed(choice.recorded), choice)
         ]
-    return tuple(clock.column.removesuffix(_STAMP) for clock in clocks if clock is not None)
+    return tuple(clock.column.removesuffix(STAMP) for clock in clocks if clock is not None)

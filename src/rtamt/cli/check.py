@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from rtamt.cli.arguments import each_requirement, has_one_clock, requirements_and_traces, variables_of
+from rtamt.cli.arguments import each_requirement, requirements_and_traces, share_clock, variables_of
 from rtamt.cli.command import (
     OUTPUT,
     CommandError,
@@ -223,13 +223,7 @@ def run(args: argparse.Namespace) -> int:
         say(_as_table(requirements, found, color), color=color)
     results = {outcome.requirement: outcome.result for outcome in found if outcome.result is not None}
     if args.output is not None and results and not any(outcome.error for outcome in found):
-        if _is_table(args.output):
-            names = {
-                label: row.written.name if len(rows) > 1 else "robustness" for label, row in rows.items()
-            }
-            _write({names[label]: result for label, result in results.items()}, args.output)
-        else:
-            _write_bag(given[0], traces[0], reading, results, args.output)
+        _write_results(args.output, results, rows, (given[0], traces[0], reading))
     for kind, (_, at_end) in REPORTS.items():
         path = getattr(args, kind)
         if at_end is not None and path is not None:
@@ -256,7 +250,7 @@ def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequ
 
 def _check_clocks(output: str | None, requirement: Requirement, trace: str, reading: Reading) -> None:
     """Raise where a table cannot have the robustness of all requirements, because their times have no order."""
-    if output is not None and _is_table(output) and not has_one_clock(requirement, trace, reading):
+    if output is not None and _is_table(output) and not share_clock(requirement, trace, reading):
         raise CommandError(
             f"'{output}' cannot have the robustness of requirements that read topics with different clocks: write "
             f"one file for each requirement"
@@ -341,6 +335,22 @@ def _says_more(outcome: Outcome) -> bool:
     )
 
 
+def _write_results(
+    path: str,
+    results: Mapping[str, Result],
+    rows: Mapping[str, Requirement],
+    checked: tuple[Requirement, str, Reading],
+) -> None:
+    """Write the robustness of each result: columns of a table, or topics of a copy of the bag that was ``checked``."""
+    if _is_table(path):
+        names = {label: row.written.name if len(rows) > 1 else "robustness" for label, row in rows.items()}
+        _write({names[label]: result for label, result in results.items()}, path)
+        return
+    from rtamt.cli.bag import write_bag
+
+    write_bag(*checked, results, path)
+
+
 def _write(results: Mapping[str, Result], path: str) -> None:
     """Write a column of robustness for each result; a cell is empty where one has no sample."""
     times = merged([result.signal.times for result in results.values()])
@@ -348,14 +358,6 @@ def _write(results: Mapping[str, Result], path: str) -> None:
     rows = zip(map(stamp_text, times), *columns, strict=True)
     lines = [",".join(["time", *results]), *(",".join(row) for row in rows)]
     write_output(path, "".join(f"{line}\n" for line in lines))
-
-
-def _write_bag(
-    requirement: Requirement, trace: str, reading: Reading, results: Mapping[str, Result], path: str
-) -> None:
-    from rtamt.cli.bag import write_bag
-
-    write_bag(requirement, trace, reading, results, path)
 
 
 def _cells(signal: Signal, times: np.ndarray[Any, Any]) -> Iterator[str]:

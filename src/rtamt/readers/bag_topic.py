@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     from rtamt.readers.source import Raw
 
+#: What follows the name of a topic in the name of its column of timestamps.
+STAMP = " stamp"
 #: How far the timestamp of a message may be from its recording, in nanoseconds, if both are from the same clock.
 SAME_CLOCK = 60 * 10**9
 
@@ -61,7 +63,7 @@ class Topic:
         stamp = recorded if self.by_recording else header_time(message)
         if stamp or self.from_zero:
             return stamp
-        if abs(self.behind) > SAME_CLOCK:
+        if is_foreign(self.behind):
             raise TraceError(
                 f"a message on {printable(self.name)} has the timestamp 0, so that its time is unknown: the other "
                 f"timestamps on this topic are not from the clock of the recording; leave the message out of the bag"
@@ -93,12 +95,17 @@ class Topic:
         )
 
 
+def is_foreign(behind: int) -> bool:
+    """Return whether a clock that is so far behind that of the recording is another one, such as simulated time."""
+    return abs(behind) > SAME_CLOCK
+
+
 def use_one_clock(topics: Sequence[Topic]) -> None:
     """Use the times of recording on topics whose stamps are from another clock than those of the other topics."""
-    same = [topic for topic in topics if abs(topic.behind) <= SAME_CLOCK]
+    same = [topic for topic in topics if not is_foreign(topic.behind)]
     for topic in topics:
         topic.by_recording = ""
-        if same and abs(topic.behind) > SAME_CLOCK:
+        if same and is_foreign(topic.behind):
             side = "behind" if topic.behind > 0 else "ahead of"
             topic.by_recording = (
                 f"{printable(topic.name)}: the timestamps in its headers are {abs(topic.behind) / 1e9:.6g} s {side} "

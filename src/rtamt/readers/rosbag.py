@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.extras import library
-from rtamt.readers.bag_topic import SAME_CLOCK, Rows, Topic, use_one_clock
+from rtamt.readers.bag_topic import SAME_CLOCK, STAMP, Rows, Topic, use_one_clock
 from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.message_definitions import require_one_definition
@@ -154,8 +154,8 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> Topic | None:
         raise TraceError(f"the topic {topic} carries several types of messages: {', '.join(sorted(kinds))}")
     connection, recorded, raw = first
     message = _message(reader, connection, raw)
-    stamp, recorded, from_zero = _first_stamp(reader, connections, header_time(message), recorded)
-    time_field = Field(f"{topic} stamp", f"{topic} stamp", "ns", "number")
+    behind, from_zero = clock_of(reader, connections, header_time(message), recorded)
+    time_field = Field(f"{topic}{STAMP}", f"{topic}{STAMP}", "ns", "number")
     made: list[Topic] = []
 
     def load(wanted: Sequence[Field]) -> list[Raw]:
@@ -174,24 +174,23 @@ def _topic(reader: Any, topic: str, connections: list[Any]) -> Topic | None:
     steps: dict[str, Steps] = {f"{topic}.{NEAREST}": (NEAREST, topic)} if connection.msgtype == SCAN else {}
     typesys = library("rosbags.typesys", "reading ROS bags", "ros")
     alike = not has_arrays(connection.msgtype, reader.typestore.fielddefs, typesys)
-    behind = recorded - stamp if stamp or from_zero else 0
     made.append(Topic(table, connections, steps, alike, from_zero, behind))
     made[0].take(shape_of(message))
     return made[0]
 
 
-def _first_stamp(reader: Any, connections: Sequence[Any], stamp: int, recorded: int) -> tuple[int, int, bool]:
-    """Return the stamp that shows the clock of a topic, when it was recorded, and whether stamps start at 0.
+def clock_of(reader: Any, connections: Sequence[Any], stamp: int, recorded: int) -> tuple[int, bool]:
+    """Return how far the clock of a topic is behind that of the recording, and whether its stamps start at 0.
 
-    ``stamp``, ``recorded``: of the first message. Without stamps 0 is returned.
+    ``stamp``, ``recorded``: of the first message, in nanoseconds. Without stamps, the clock is that of the recording.
     """
     if stamp:
-        return stamp, recorded, False
+        return recorded - stamp, False
     first = islice(messages(reader, connections), _FIRST_STAMPS)
     stamps = [(header_time(_message(reader, known, data)), at) for known, at, data in first]
     if any(0 < each <= SAME_CLOCK for each, _ in stamps):
-        return stamp, recorded, True
-    return next(((each, at, False) for each, at in stamps if each), (0, recorded, False))
+        return recorded - stamp, True
+    return next(((at - each, False) for each, at in stamps if each), (0, False))
 
 
 def _complete(reader: Any, topics: Sequence[Topic]) -> None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy.modules import np
-from rtamt.readers.bag_topic import SAME_CLOCK
+from rtamt.readers.bag_topic import is_foreign
 from rtamt.readers.formats import BAG
 from rtamt.readers.message_fields import header_time
-from rtamt.readers.rosbag import messages
+from rtamt.readers.rosbag import clock_of, messages
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
 
     #: Nanoseconds.
     Instants = NDArray[np.int64]
-
-#: Messages of a topic among which the first timestamp that is not 0 shows its clock.
-_FIRST = 100
 
 
 class RecordingTimes:
@@ -57,16 +53,15 @@ class RecordingTimes:
         return self._known[topic]
 
     def _read(self, topic: str) -> tuple[Instants, Instants] | None:
-        found = self._stamps(topic)
-        first = list(islice(found, _FIRST))
-        stamp, recorded = next((pair for pair in first if pair[0]), (0, 0))
-        if abs(recorded - stamp) <= SAME_CLOCK:
+        connections = [known for known in self._reader.connections if known.topic == topic]
+        found = self._stamps(connections)
+        first = next(found, None)
+        if first is None or not is_foreign(clock_of(self._reader, connections, *first)[0]):
             return None
-        pairs = np.array([*first, *found], dtype=np.int64)
+        pairs = np.array([first, *found], dtype=np.int64)
         return pairs[:, 0], pairs[:, 1]
 
-    def _stamps(self, topic: str) -> Iterator[tuple[int, int]]:
-        connections = [known for known in self._reader.connections if known.topic == topic]
+    def _stamps(self, connections: Sequence[Any]) -> Iterator[tuple[int, int]]:
         for known, recorded, raw in messages(self._reader, connections):
             with BAG.guard(str(self._reader.paths[0])):
                 yield header_time(self._reader.deserialize(raw, known.msgtype)), recorded
