@@ -52,7 +52,7 @@ class _TakenByPython:
     _update_carefully: Callable[..., Any]
     _step_carefully: Callable[..., Any]
 
-    def update(self, *time: Any, **values: float) -> Any:
+    def update(self, /, *time: Any, **values: float) -> Any:
         """Take one sample."""
         return self._update_carefully(*time, **values)
 

@@ -30,7 +30,7 @@ class FmuPlant:
     duration: float | None
     step: float | None = None
 
-    def __call__(self, **inputs: Any) -> Iterator[tuple[float, dict[str, float]]]:
+    def __call__(self, /, **inputs: Any) -> Iterator[tuple[float, dict[str, float]]]:
         """Simulate; yields ``(time, {output: value})``."""
         fmpy = library("fmpy", "an FMU", "fmi")
         if not Path(self.path).is_file():

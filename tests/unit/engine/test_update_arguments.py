@@ -13,9 +13,13 @@ KINDS = [
 ]
 
 
-def opened(kind):
+#: These read the samples in Python, too.
+EXPLAINED = [{"time": time, "verdict": "eager", "explain": True} for time in ("discrete", "dense")]
+
+
+def opened(kind, variable="x"):
     settings = dict(kind)
-    spec = rtamt.parse("once[0:1](x > 0)", backend=settings.pop("backend", "cpp"))
+    spec = rtamt.parse(f"once[0:1]({variable} > 0)", backend=settings.pop("backend", "cpp"))
     return spec.monitor(**settings)
 
 
@@ -34,6 +38,30 @@ def test_a_wrong_number_of_times_is_no_type_error_of_a_private_function(kind, ar
     )
     monitor.update(0.0, x=1.0)
     assert monitor.samples == 1
+
+
+@pytest.mark.parametrize("kind", [*KINDS, *EXPLAINED], ids=lambda kind: "-".join(map(str, kind.values())))
+@pytest.mark.parametrize("name", ["self", "time", "t", "given", "values", "key", "samples", "name"])
+def test_a_variable_called_self_is_no_second_value_of_an_argument(kind, name):
+    reports = []
+    for variable in ("x", name):
+        monitor = opened(kind, variable)
+        taken = [monitor.update(place, **{variable: value}) for place, value in enumerate([2.0, 1, -1.0])]
+        reports.append(repr(taken).replace(f"'{variable}'", "'x'"))
+    assert reports[0] == reports[1]
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind.values()))
+@pytest.mark.parametrize("name", ["self", "times", "keys"])
+def test_fleets_take_a_variable_called_self(kind, name):
+    settings = dict(kind)
+    spec = rtamt.parse(
+        f"once[0:1]({name} > 0)", backend=settings.pop("backend", "cpp"), time=settings.pop("time")
+    )
+    fleet = rtamt.Fleet(spec, 10, **settings)
+    fleet.update_many(["a", "b"], [0, 0], {name: [1.0, 2.0]})
+    fleet.update_many(["a", "b"], [1, 1], {name: [1, 2]})
+    assert len(fleet) == 2
 
 
 @pytest.mark.parametrize("time", [{}, None, float("nan"), "soon"])

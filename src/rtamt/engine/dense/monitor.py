@@ -126,7 +126,7 @@ class DenseMonitor(DenseMonitorBase, OnlineMonitor):
             for wrong data and :class:`EvaluationError` where an operation has no value; the monitor is then unchanged.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> Signal:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> Signal:
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         flat = self._read_by_formula(values)

@@ -97,7 +97,7 @@ class DenseMemberMonitor(QuantifierMonitor):
     # ---- samples ---------------------------------------------------------------------------------
 
     @exclusive
-    def update(self, *given: Any, **values: Any) -> Signal:
+    def update(self, /, *given: Any, **values: Any) -> Signal:
         """Take the values of any variables at one instant: seconds, numbers in ``time_unit=``, or a datetime.
 
         Returns the newly known robustness. Raises :class:`TraceError` for wrong data and :class:`EvaluationError`

@@ -42,7 +42,7 @@ class CheckedSamples(OnlineMonitor):
     def _connect(self, backend: Any) -> None:
         """Use a back end."""
 
-    def _update_carefully(self, *given: Any, **values: Any) -> float | None:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> float | None:
         """Take a sample that the core rejected, or report what is wrong with it."""
         from rtamt.signals.samples import time_of
 

@@ -49,7 +49,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> Causation:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> Causation:
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:

@@ -47,7 +47,7 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> list[VerdictRun]:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> list[VerdictRun]:
         """Take an instant that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:

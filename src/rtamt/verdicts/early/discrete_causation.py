@@ -45,7 +45,7 @@ class DiscreteCausationMonitor(DiscreteEarlyMonitor, CausationMonitor, EarlyMoni
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> Causation:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> Causation:
         """Take a sample that the core rejected, or report what is wrong with it."""
         caused: Causation = self._take_in_order(time_of(given), values)
         return caused

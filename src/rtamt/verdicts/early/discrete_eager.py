@@ -46,7 +46,7 @@ class EagerMonitor(DiscreteEarlyMonitor, EarlyMonitorBase):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> list[Verdict]:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> list[Verdict]:
         """Take a sample that the core rejected, or report what is wrong with it."""
         found: list[Verdict] = self._take_in_order(time_of(given), values)
         if self._evidence is not None:

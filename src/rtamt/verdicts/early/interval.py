@@ -114,7 +114,7 @@ class IntervalMonitor(EarlyMonitor):
             value; the monitor is then as it was.
             """
 
-    def _update_carefully(self, *given: Any, **values: Any) -> None:
+    def _update_carefully(self, /, *given: Any, **values: Any) -> None:
         """Take a sample that the core rejected, or report what is wrong with it."""
         time = time_of(given)
         with self._usage:
