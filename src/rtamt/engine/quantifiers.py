@@ -191,8 +191,7 @@ class QuantifierMonitor:
 
     def _try_update(self, *given: Any) -> Any:
         """Take what was read of an update; if it fails, nothing has changed."""
-        if self._finished:
-            raise UsageError("the monitor has finished its trace; call reset() before the next sample")
+        self._require_open()
         try:
             found = self._advance(*given)
         except Exception:
@@ -202,6 +201,10 @@ class QuantifierMonitor:
         if len(self._since) >= _REMEMBER:
             self._remember()
         return found
+
+    def _require_open(self) -> None:
+        if self._finished:
+            raise UsageError("the monitor has finished its trace; call reset() before the next sample")
 
     @exclusive
     def reset(self, /, **parameters: float) -> None:

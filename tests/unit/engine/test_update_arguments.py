@@ -17,9 +17,9 @@ KINDS = [
 EXPLAINED = [{"time": time, "verdict": "eager", "explain": True} for time in ("discrete", "dense")]
 
 
-def opened(kind, variable="x"):
+def opened(kind, variable="x", formula="once[0:1]({} > 0)"):
     settings = dict(kind)
-    spec = rtamt.parse(f"once[0:1]({variable} > 0)", backend=settings.pop("backend", "cpp"))
+    spec = rtamt.parse(formula.format(variable), backend=settings.pop("backend", "cpp"))
     return spec.monitor(**settings)
 
 

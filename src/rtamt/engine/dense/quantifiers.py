@@ -188,6 +188,7 @@ class DenseMemberMonitor(QuantifierMonitor):
 
     def _take(self, columns: Mapping[str, tuple[Any, Any]], times: Sequence[Any] = ()) -> Signal:
         """Take columns of samples; ``times``: of an update, also without a value."""
+        self._require_open()
         given = {name: column for name, column in columns.items() if len(column[0])}
         if self._scale is None and not given:
             return Signal(np.empty(0), np.empty(0))

@@ -104,10 +104,11 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
     @exclusive
     def finish(self) -> Causation:
         """End the trace: every variable holds its last value. Return what that causes at the start."""
-        if not self._finished:
-            self._require_samples()
-            self._event(self._backend.finish, self._scale)
-            self._finished = True
+        if self._finished:
+            return Causation(inf, -inf)
+        self._require_samples()
+        self._event(self._backend.finish, self._scale)
+        self._finished = True
         return self.causation()
 
     # ---- results ---------------------------------------------------------------------------------

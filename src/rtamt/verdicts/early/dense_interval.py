@@ -195,23 +195,22 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
     @exclusive
     def finish(self) -> list[Change]:
         """End the trace: every variable holds its last value. Return the bounds that were still open."""
-        if not self._finished:
-            self._require_samples()
-            backend = self._backend
-            outputs = self._outputs
-            first = [self._first_open(output) for output in outputs]
-            before = [backend.runs(output) for output in outputs]
-            try:
-                backend.finish()
-            except self._undefined as error:
-                raise self._no_value(error) from None
-            self._ended = tuple(
-                _were_open(before[output], backend.runs(output), first[output]) for output in outputs
-            )
-            self._finished = True
-        if self.at == "start":
+        if self._finished:
             return []
-        return self._changes(0)
+        self._require_samples()
+        backend = self._backend
+        outputs = self._outputs
+        first = [self._first_open(output) for output in outputs]
+        before = [backend.runs(output) for output in outputs]
+        try:
+            backend.finish()
+        except self._undefined as error:
+            raise self._no_value(error) from None
+        self._ended = tuple(
+            _were_open(before[output], backend.runs(output), first[output]) for output in outputs
+        )
+        self._finished = True
+        return [] if self.at == "start" else self._changes(0)
 
 
 def _were_open(before: Sequence[Run], now: Sequence[Run], first: int) -> tuple[Run, ...]:

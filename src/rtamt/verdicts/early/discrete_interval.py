@@ -130,15 +130,14 @@ class DiscreteIntervalMonitor(DiscreteIntervalSamples):
     @exclusive
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
-        if not self._finished:
-            try:
-                with self._whole():
-                    self._finish()
-            except self._undefined as error:
-                raise self._no_value(error) from None
-        if self.at == "start":
+        if self._finished:
             return []
-        return self._changes(0)
+        try:
+            with self._whole():
+                self._finish()
+        except self._undefined as error:
+            raise self._no_value(error) from None
+        return [] if self.at == "start" else self._changes(0)
 
     def _finish(self) -> None:
         unreported = bool(self._early)

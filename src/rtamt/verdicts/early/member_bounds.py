@@ -334,20 +334,21 @@ class MemberIntervalMonitor(SampledMembers):
     @exclusive
     def finish(self) -> list[Change]:
         """End the trace; return the bounds that were still open, which are final now."""
-        if not self._finished:
-            outer = self._outer
-            outputs = outer._outputs
-            known = {output: outer.known(output) for output in outputs}
-            for each in self._quantifiers:
-                for place, bounds in each.finish(self._times).items():
-                    self._refine(self._times[place], {each.plan.column: bounds})
-            for output in outputs:
-                rest, before = outer.rest(output), known[output]
-                self._changed[output] = {
-                    place: each for place, each in rest.items() if before.get(place, each) != each
-                }
-            outer.finish()
-            self._finished = True
+        if self._finished:
+            return []
+        outer = self._outer
+        outputs = outer._outputs
+        known = {output: outer.known(output) for output in outputs}
+        for each in self._quantifiers:
+            for place, bounds in each.finish(self._times).items():
+                self._refine(self._times[place], {each.plan.column: bounds})
+        for output in outputs:
+            rest, before = outer.rest(output), known[output]
+            self._changed[output] = {
+                place: each for place, each in rest.items() if before.get(place, each) != each
+            }
+        outer.finish()
+        self._finished = True
         return [] if self.at == "start" else self._changes(0)
 
     def _own(self) -> Any:

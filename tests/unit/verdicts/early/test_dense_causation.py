@@ -41,7 +41,8 @@ def test_watermark_and_end_cause_what_variables_hold(backend):
     assert monitor.watermark(1) == Causation(1, -inf)
     assert monitor.finish() == Causation(1, 1)
     assert monitor.runs() == [CausationRun(0, 1, 1, 1)]
-    assert monitor.finish() == Causation(1, 1)
+    assert monitor.finish() == NOTHING
+    assert monitor.causation() == Causation(1, 1)
 
 
 @BACKENDS
