@@ -273,6 +273,16 @@ bool regular(std::span<const double> times, std::optional<double> before, double
 
 namespace {
 
+// The limits of infer_period(): of its `_COARSE`, and of gaps that do not differ.
+constexpr double coarse_precision = 1e-4;
+constexpr double same_gap = 1e-6;
+
+// Whether doubles may have been floats of 32 bits.
+[[nodiscard]] bool are_single(std::span<const double> times) noexcept {
+    return std::ranges::all_of(
+        times, [](double time) { return static_cast<double>(static_cast<float>(time)) == time; });
+}
+
 // Timestamps since 1970 have a precision of about 0.2 µs.
 [[nodiscard]] double blur_of(double gap, std::span<const double> times) noexcept {
     const double largest = std::max(std::fabs(times.front()), std::fabs(times.back()));
@@ -293,10 +303,12 @@ namespace {
 
 } // namespace
 
-double inferred_period(std::span<const double> times) {
+std::optional<double> inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
     const double gap = median_gap(times);
     const double blur = blur_of(gap, times);
+    if (blur > coarse_precision * gap) return std::nullopt;
+    if (!regular(times, {}, gap, same_gap) && are_single(times)) return std::nullopt;
     for (int digits = 1; digits <= 16; ++digits) {
         char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
         if (text == nullptr) throw nb::python_error();
@@ -336,6 +348,7 @@ nb::object read_columns(const NumPy& numpy, const nb::handle& data,
         const std::span<const double> seconds(made.values(), count);
         if (!given->times->copy(made.values()) || !ordered(seconds, {})) return nb::none();
         if (!period) period = inferred_period(seconds);
+        if (!period) return nb::none();
         if (!regular(seconds, {}, *period, tolerance)) return nb::none();
         times = made.array;
     }

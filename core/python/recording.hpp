@@ -86,8 +86,8 @@ struct GivenColumns {
 [[nodiscard]] bool all_numbers(std::span<const double> values) noexcept;
 
 // As infer_period() in rtamt.signals.sampling_period: the median gap, as the shortest decimal
-// within its precision; 1 for a single timestamp.
-[[nodiscard]] double inferred_period(std::span<const double> times);
+// within its precision; 1 for a single timestamp. Nothing where the precision is low, or may be.
+[[nodiscard]] std::optional<double> inferred_period(std::span<const double> times);
 
 // As has_period() there, of timestamps in order: whether more than half of the gaps are a period,
 // and none that a number with one digit less describes as well. `coarse`: one in that digit.

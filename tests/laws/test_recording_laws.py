@@ -18,6 +18,7 @@ from rtamt.engine import native
 from rtamt.engine.discrete import ENGINE
 from rtamt.errors import StlError
 from rtamt.language.contents import variables
+from rtamt.signals.arrays import Timestamps
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import has_period, infer_period
 from tests.support.strategies import chunkings, formulas, traces
@@ -229,7 +230,7 @@ def test_the_core_finds_a_period_where_the_definition_does(
     period: float, off: list[float], start: float
 ) -> None:
     times = start + np.cumsum([period * (1 + each) for each in off])
-    for expected in {Fraction(repr(period)), infer_period(times)}:
+    for expected in {Fraction(repr(period)), infer_period(Timestamps(times, times))}:
         assert native.has_period(times, expected) == has_period(times, expected)
 
 

@@ -391,7 +391,7 @@ def record_discrete(
         exact = elapsed(stamped, unit)
         check_increasing(times, dated=dated, exact=exact)
         inferred = period is None
-        period = period or infer_period(times, exact)
+        period = period or infer_period(stamped, exact)
         check_regular(times, period, tolerance, dated=dated, exact=exact)
     for name, column in columns.items():
         check_numbers(name, column, times, type_=types.get(name), dated=dated)

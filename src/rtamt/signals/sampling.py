@@ -66,7 +66,7 @@ def sampled_messages(data: Trace, period: Fraction | None) -> Trace:
     try:
         times = arrays.timestamps(data.on_one_time_base(data.names)[arrays.TIME])
         exact = elapsed(times)
-        check_regular(times.seconds, infer_period(times.seconds, exact), exact=exact)
+        check_regular(times.seconds, infer_period(times, exact), exact=exact)
     except TraceError as error:
         raise TraceError(
             "the messages of this bag are not samples one period apart: choose a sampling period, such as "

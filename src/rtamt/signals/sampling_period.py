@@ -25,6 +25,10 @@ TOLERANCE = 0.1
 _NO_DIFFERENCE = 5e-10
 #: A period that differs from a gap by such a fraction is the gap, rounded.
 _SAME = 1e-5
+#: From this precision on, as a fraction of a gap, all timestamps together have a better one than their median gap.
+_COARSE = 1e-4
+#: A period of a lower precision, as a fraction of it, is not inferred.
+_UNCERTAIN = 1e-2
 
 
 class DeferredTimes(ABC):
@@ -143,31 +147,84 @@ def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
     return quotients(numbers - numbers[0], *size.as_integer_ratio())
 
 
-def infer_period(times: FloatArray, exact: FloatArray | None = None) -> Fraction:
+def infer_period(times: Timestamps, exact: FloatArray | None = None) -> Fraction:
     """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
 
-    Doubles since 1970 have a precision of about 0.2 µs, which limits that of the gaps. ``exact``: the times as
-    :func:`elapsed` returns them. Their gaps are exact unless they were made of doubles, which shows in gaps that differ
-    and yet add up to a period with fewer digits.
+    Doubles since 1970 have a precision of about 0.2 µs, and floats of 32 bits one of 61 µs at 1000 s, which limits that
+    of the gaps. Where that is low, and the timestamps are regular but for their rounding, the mean gap is taken, which
+    is more precise by their number. ``exact``: the times as :func:`elapsed` returns them. Their gaps are exact unless
+    they were made of doubles, which shows in gaps that differ and yet add up to a period with fewer digits.
+
+    Raises :class:`TraceError` where rounding leaves the period uncertain.
     """
-    if len(times) < 2:
+    seconds = times.seconds
+    if len(seconds) < 2:
         return Fraction(1)
-    coarse = _shortest(_median(np.diff(times)), times)
-    if exact is None or exact is times:
-        return coarse
-    gaps = np.diff(exact)
+    coarse, blur = _rounded_period(times)
+    if exact is not None and exact is not seconds:
+        gaps = np.diff(exact)
+        gap = _median(gaps)
+        differ = float(np.abs(gaps - gap).max())
+        if differ <= _NO_DIFFERENCE:
+            short = _shortest(gap, _precision(gap, seconds))
+            return short if abs(float(short) - gap) <= _SAME * gap else _shortest(gap, _precision(gap, exact))
+        off = abs(float(coarse) * len(gaps) - float(exact[-1]))
+        if blur > _UNCERTAIN * coarse or off > _precision(gap, seconds) + 2 * differ:
+            return _shortest(gap, _precision(gap, exact))
+    if blur > _UNCERTAIN * coarse:
+        raise _uncertain(times, coarse)
+    return coarse
+
+
+def _rounded_period(times: Timestamps) -> tuple[Fraction, float]:
+    """Return the period that rounded timestamps show, and its precision."""
+    seconds = times.seconds
+    gaps = np.diff(seconds)
     gap = _median(gaps)
-    differ, off = float(np.abs(gaps - gap).max()), abs(float(coarse) - gap)
-    if differ > _NO_DIFFERENCE:
-        adds_up = abs(float(coarse) * len(gaps) - float(exact[-1])) <= _precision(gap, times) + 2 * differ
-    else:
-        adds_up = off <= _SAME * gap
-    return coarse if adds_up else _shortest(gap, exact)
+    spacing = _spacing(times, bool((np.abs(gaps - gap) > 1e-6 * gap).any()))
+    blur = max(1e-6 * gap, 2 * spacing)
+    if blur > _COARSE * gap:
+        mean = float(seconds[-1] - seconds[0]) / len(gaps)
+        if np.abs(seconds - seconds[0] - mean * np.arange(len(seconds))).max() <= 1.5 * spacing:
+            gap, blur = mean, max(1e-6 * mean, 2 * spacing / len(gaps))
+    return _shortest(gap, blur), blur
 
 
-def _shortest(gap: float, times: FloatArray) -> Fraction:
-    """Return the shortest decimal within the precision of a gap between some times."""
-    blur = _precision(gap, times)
+def _spacing(times: Timestamps, differ: bool) -> float:
+    """Return the distance between neighbouring numbers of the timestamps' format; ``differ``: whether the gaps do."""
+    seconds = float(np.abs(times.seconds).max())
+    numbers = times.original
+    if differ and numbers.dtype.kind == "f" and _are_single(numbers):
+        largest = float(np.abs(numbers).max())
+        return float(np.spacing(np.float32(largest))) * (seconds / largest)
+    return float(np.spacing(seconds))
+
+
+def _are_single(numbers: NDArray[Any]) -> bool:
+    """Return whether doubles were floats of 32 bits, which shows in their digits.
+
+    Whole numbers are such floats as well, and other numbers with few digits; half of those that were rounded need the
+    last bit.
+    """
+    with np.errstate(over="ignore"):
+        single = numbers.astype(np.float32)
+    if not np.array_equal(single, numbers) or np.array_equal(np.rint(numbers), numbers):
+        return False
+    return 8 * int(np.count_nonzero(single.view(np.int32) & 1)) >= len(single)
+
+
+def _uncertain(times: Timestamps, period: Fraction) -> TraceError:
+    """Return the error for timestamps that are too coarse for their period."""
+    spacing, last = _spacing(times, differ=True), float(np.abs(times.seconds).max())
+    return TraceError(
+        f"the sampling period is about {float(period):.2g} s, but the timestamps resolve only {spacing:.2g} s at "
+        f"{last:.15g} s: give the period (period=, --period), or timestamps of a higher precision",
+        variable=TIME,
+    )
+
+
+def _shortest(gap: float, blur: float) -> Fraction:
+    """Return the shortest decimal within the precision of a gap."""
     for digits in range(1, 17):
         short = float(f"{gap:.{digits}g}")
         if abs(short - gap) <= blur:
@@ -185,7 +242,7 @@ def _median(gaps: FloatArray) -> float:
 
 
 def _precision(gap: float, times: FloatArray) -> float:
-    """Return the precision of a gap between timestamps."""
+    """Return the precision of a gap between timestamps in doubles."""
     return max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
 
 

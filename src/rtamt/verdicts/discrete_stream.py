@@ -73,7 +73,7 @@ class DiscreteStream(Stream):
             self._period = (
                 Fraction(1)
                 if timestamps is None
-                else infer_period(timestamps.seconds, elapsed(timestamps, self.unit))
+                else infer_period(timestamps, elapsed(timestamps, self.unit))
             )
         domain = Discrete(self._period, self._tolerance)
         domain.check(self.spec.formula, self.spec.text)

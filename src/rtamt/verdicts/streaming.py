@@ -13,8 +13,6 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
-from rtamt.signals.sampling_period import TOLERANCE
-from rtamt.signals.time_domains import time_domain
 from rtamt.verdicts.chunks import Requirement, StreamResult
 from rtamt.verdicts.decompose import anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import outputs_under
@@ -33,9 +31,9 @@ def check_stream(
     spec: Specification,
     chunks: Iterable[Any],
     *,
-    time: str | None = None,
+    time: str | TimeDomain | None = None,
     period: Duration | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     semantics: Semantics | None = None,
     time_unit: str | None = None,
 ) -> StreamResult:
@@ -57,8 +55,7 @@ def check_stream(
         raise no_specification(spec)
     if not isinstance(chunks, Iterable):
         raise UsageError(f"chunks is {shown(chunks)}; give a list of recordings, or an iterator")
-    kind = spec.domain if time is None else time_domain(time)
-    domain = type(kind).of(spec.period if period is None else period, tolerance, spec.resolution)
+    domain = spec._domain_for(time, period, tolerance)
     rule = domain.sampling(spec.sampling)
     if rule is not None and rule.hold:
         raise UsageError(

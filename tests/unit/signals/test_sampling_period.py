@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from hypothesis import strategies as st
 
 import rtamt
 from rtamt.cli import main
+from rtamt.signals.arrays import Timestamps
 from rtamt.signals.sampling_period import _median, infer_period
 
 
@@ -22,7 +25,10 @@ def test_the_median_is_that_of_numpy(gaps):
 @given(st.lists(st.integers(1, 50), min_size=1, max_size=20))
 def test_the_period_is_the_median_gap_as_a_short_decimal(gaps):
     times = np.cumsum([0, *gaps]) / 1000
-    assert abs(float(infer_period(times)) - np.median(gaps) / 1000) <= 1e-6 * np.median(gaps) / 1000
+    assert (
+        abs(float(infer_period(Timestamps(times, times))) - np.median(gaps) / 1000)
+        <= 1e-6 * np.median(gaps) / 1000
+    )
 
 
 #: Nanoseconds: 48 kHz, 60 kHz, 120 kHz, 44.1 kHz, 3 kHz, and less than the precision of a double since 1970.
@@ -90,3 +96,57 @@ def test_the_period_of_hardware_clocks_is_exact_whatever_divides_it(count):
     times = 1_700_000_000 * 10**9 + 25_600 * np.arange(count)
     result = rtamt.parse("x > 0").evaluate({"time": times.astype("M8[ns]"), "x": np.ones(count)})
     assert result.trace.period * 10**9 == 25_600
+
+
+def period_of(times, **given):
+    """Return the period that each way of giving timestamps shows, which is one."""
+    data = {"time": times, "x": np.ones(len(times))}
+    spec = rtamt.parse("always(x >= 0)")
+    found = {spec.evaluate(each, **given).trace.period for each in (data, MappingProxyType(data))}
+    found.add(rtamt.check_stream(spec, [data], **given).period)
+    (period,) = found
+    return period
+
+
+@pytest.mark.parametrize("start", [0, 100, 1000, 1500])
+@pytest.mark.parametrize("rate", [1000, 100, 50])
+def test_the_period_of_floats_of_32_bits_was_one_of_their_gaps(start, rate):
+    """At 1000 s they are 61 µs apart, so that the gaps at 1 kHz are 0.977 and 1.038 ms, within the tolerance."""
+    times = (start + np.arange(3000) / rate).astype(np.float32)
+    assert period_of(times) == Fraction(1, rate)
+    assert period_of(times.astype(float)) == Fraction(1, rate)
+    assert period_of(
+        (1000 * (start + np.arange(3000) / rate)).astype(np.float32), time_unit="ms"
+    ) == Fraction(1, rate)
+
+
+@pytest.mark.parametrize("period", [20.833e-6, 1 / 1024, 50e-6])
+def test_the_period_of_doubles_since_1970_was_rounded_to_their_precision(period):
+    found = period_of(1.7e9 + period * np.arange(50_000))
+    assert abs(float(found) - period) <= 1.1e-6 * period
+
+
+def test_a_period_that_rounding_leaves_uncertain_is_rejected():
+    times = (1000 + np.arange(5) / 1000).astype(np.float32)
+    message = (
+        r"the sampling period is about 0.001 s, but the timestamps resolve only 6.1e-05 s at 1000.00402832031 s: "
+        r"give the period \(period=, --period\), or timestamps of a higher precision"
+    )
+    with pytest.raises(rtamt.errors.TraceError, match=message):
+        period_of(times)
+    assert period_of(times, time=rtamt.Discrete("1ms")) == Fraction(1, 1000)
+
+
+def test_whole_seconds_with_jitter_are_no_floats_of_32_bits():
+    times = 10.0**7 + np.cumsum([0, 10, 11, 9, 10, 10, 11, 9, 10])
+    assert period_of(times) == 10
+
+
+def test_streams_ignored_the_settings_of_a_time_domain():
+    chunk = {"time": [0.0, 0.1, 0.25], "x": [1.0, 1.0, 1.0]}
+    rough = rtamt.Discrete("100ms", tolerance=0.6)
+    spec = rtamt.parse("always(x >= 0)")
+    assert rtamt.check_stream(spec, [chunk], time=rough).satisfied
+    assert rtamt.check_stream(rtamt.parse("always(x >= 0)", time=rough), [chunk]).satisfied
+    with pytest.raises(rtamt.errors.TraceError, match=r"expected 100 ms \(within 10%\)"):
+        rtamt.check_stream(spec, [chunk], period="100ms")

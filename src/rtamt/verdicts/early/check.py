@@ -170,7 +170,7 @@ class DiscreteEarlyCheck(EarlyCheck):
             assumed_period.require_times_of_each(chunk, self._read)
         if self._period is None:
             self._period = (
-                Fraction(1) if timestamps is None else infer_period(timestamps.seconds, elapsed(timestamps))
+                Fraction(1) if timestamps is None else infer_period(timestamps, elapsed(timestamps))
             )
         if not self._samples:
             self._begin(self._period)
