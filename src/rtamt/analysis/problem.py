@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
 from math import floor, inf, isfinite, log10
 from time import monotonic
@@ -30,6 +31,9 @@ _PATIENCE, _AT_LEAST, _UNCONFIRMED = 1.0, 0.05, 1.0
 
 #: The number of margins: powers of ten, the first of the magnitude of the greatest constant of the formulas.
 _MARGINS = 10
+
+#: The greatest finite double: signals have no greater numbers, which the solver has.
+_GREATEST = Fraction(sys.float_info.max)
 
 
 @dataclass(frozen=True)
@@ -164,8 +168,13 @@ def _numbers(solver: Solver, terms: Sequence[Real]) -> list[float]:
     found: list[float] = []
     for index, term in enumerate(terms):
         same = index > 0 and term is terms[index - 1]
-        found.append(found[-1] if same else float(solver.value(term)))
+        found.append(found[-1] if same else _nearest(solver.value(term)))
     return found
+
+
+def _nearest(number: Fraction) -> float:
+    """Return the nearest finite double."""
+    return float(min(max(number, -_GREATEST), _GREATEST))
 
 
 def group_related(goals: Sequence[Goal]) -> list[list[Goal]]:

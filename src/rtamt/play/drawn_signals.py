@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: How far a point may be behind an instant, in periods, and still count as of that instant.
 _TOLERANCE = 1e-6
+#: More samples than this have no exact number in a message.
+_COUNTABLE = 1e15
 
 
 def sample_signals(signals: Mapping[str, Drawn], period: Fraction, duration: float) -> dict[str, Any]:
@@ -40,7 +42,8 @@ def signal_points(signals: Mapping[str, Drawn], period: Fraction, duration: floa
     found = {}
     for name, each in signals.items():
         if each.hold:
-            times = np.array([time for time, _ in each.points]).round(9)
+            with np.errstate(over="ignore"):  # such times are after the end
+                times = np.array([time for time, _ in each.points]).round(9)
             values = np.array([value for _, value in each.points])
             inside = (times > 0) & (times < duration)
             start, end = _values(each, np.array([0.0, duration]), 0.0)
@@ -55,13 +58,14 @@ def signal_points(signals: Mapping[str, Drawn], period: Fraction, duration: floa
 def _count(period: Fraction, duration: float) -> int:
     if duration < 0:
         raise UsageError(f"the duration is {duration:g} s; it must not be negative")
-    count = int(duration / float(period) + _TOLERANCE) + 1
-    if count > MOST_SAMPLES:
+    periods = duration / float(period) + _TOLERANCE
+    if periods >= MOST_SAMPLES:
+        count = f"{int(periods) + 1}" if periods < _COUNTABLE else "more than 10^15"
         raise UsageError(
             f"{count} samples are too many to draw, at most {MOST_SAMPLES}: choose a longer period, "
             f"a shorter duration, or load a recording"
         )
-    return count
+    return int(periods) + 1
 
 
 def _grid(period: Fraction, count: int) -> NDArray[np.float64]:

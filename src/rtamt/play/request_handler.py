@@ -60,9 +60,10 @@ class RequestHandler:
         if kind == "find_trace":
             from rtamt.play.witnesses import WANTED, find_trace
 
-            if message.get("wanted") not in WANTED:
+            wanted = message.get("wanted")
+            if not isinstance(wanted, str) or wanted not in WANTED:
                 raise MessageError(f"'wanted' must be {' or '.join(WANTED)}")
-            return find_trace(request, message["wanted"], sources)
+            return find_trace(request, wanted, sources)
         raise MessageError(f"there is no request '{kind}'; requests: {', '.join(KINDS)}")
 
     def _recording(self, file: File | None) -> dict[str, Any]:

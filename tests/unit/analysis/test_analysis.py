@@ -287,3 +287,10 @@ def test_without_the_solver_the_message_names_the_extra(monkeypatch):
     assert str(error.value) == (
         "the analysis of requirements needs the package 'z3', which is not installed: pip install 'rtamt[analysis]'"
     )
+
+
+def test_numbers_beyond_doubles_are_no_overflow_error():
+    answer = valid(rtamt.parse("x <= 1e308"))
+    assert answer.holds is False
+    assert answer.witness.confirmed
+    assert answer.witness.columns["x"].max() == 1.7976931348623157e308
