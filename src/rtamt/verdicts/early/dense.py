@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
 from rtamt.language.undefined_value import undefined
-from rtamt.language.units.durations import check_unit
+from rtamt.language.units.durations import check_unit, format_duration
 from rtamt.lazy.modules import np
 from rtamt.rewrite.presence import tracked
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.data_errors import unknown_variable
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.ticks import TimeScale
+from rtamt.usage_guard import in_use
 from rtamt.verdicts.early.monitor import EarlyMonitor
 
 if TYPE_CHECKING:
@@ -122,6 +123,17 @@ class DenseEarlyMonitor(EarlyMonitor):
             if not count:
                 raise TraceError(f"'{name}' has no samples; provide one before finish()", variable=name)
 
+    def _refusal(self, error: Exception) -> Exception:
+        """Return the error for a sample that the back end refuses although it is in order."""
+        if error.args != ("order",):
+            return in_use()
+        return TraceError(
+            f"the trace spans more than 2^60 ticks of {format_duration(self._step)}, too many for early verdicts, "
+            f"bounds and causation: leave out samples from before the clock was set, or choose a coarser resolution",
+            variable=arrays.TIME,
+            index=self.samples,
+        )
+
     def _row_of(self, known: Mapping[str, Any]) -> list[tuple[int, float, float]]:
         """Return samples in the form of the back end; of a missing one the range is known."""
         ranges = self._known_ranges()
@@ -135,5 +147,7 @@ def push_tick(monitor: DenseEarlyMonitor, tick: int, row: Mapping[str, float]) -
         monitor._backend.learn(
             tick, monitor._row_of({name: (x, x) for name, x in row.items()}), monitor.samples
         )
+    except monitor._refused as error:
+        raise monitor._refusal(error) from None
     except monitor._undefined as error:
         raise monitor._no_value(error) from None

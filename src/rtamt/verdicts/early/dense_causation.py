@@ -11,7 +11,7 @@ from rtamt.errors import TraceError, UsageError
 from rtamt.signals import arrays
 from rtamt.signals.outcomes import Causation, CausationRun
 from rtamt.signals.samples import time_of
-from rtamt.usage_guard import exclusive, in_use
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.early.causation import CausationMonitor, not_exact
 from rtamt.verdicts.early.dense import DenseEarlyMonitor
 
@@ -82,7 +82,7 @@ class DenseCausationMonitor(DenseEarlyMonitor, CausationMonitor, EarlyMonitorBas
             wrong = self._no_value(error, scale) if isinstance(error, self._undefined) else None
             self._scale = before
             if isinstance(error, self._refused):
-                raise in_use() from None
+                raise self._refusal(error) from None
             if wrong is not None:
                 raise wrong from None
             raise

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from rtamt.engine.native import EarlyMonitorBase
 from rtamt.signals.outcomes import VerdictRun
 from rtamt.signals.samples import time_of
-from rtamt.usage_guard import exclusive, in_use
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.early.dense import DenseEarlyMonitor
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ class DenseEagerMonitor(DenseEarlyMonitor, EarlyMonitorBase):
             self._check_in_order(tick, scale, known)
             try:
                 self._backend.learn(tick, self._row_of(known), self.samples)
-            except self._refused:
-                raise in_use() from None
+            except self._refused as error:
+                raise self._refusal(error) from None
             except self._undefined as error:
                 raise self._no_value(error, scale) from None
             self._scale = scale

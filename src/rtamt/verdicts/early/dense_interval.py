@@ -11,7 +11,7 @@ from rtamt.language.units.durations import format_duration
 from rtamt.signals import arrays, dense_arrays
 from rtamt.signals.outcomes import Change, Interval
 from rtamt.signals.runs import clipped, compared, merged
-from rtamt.usage_guard import exclusive, in_use
+from rtamt.usage_guard import exclusive
 from rtamt.verdicts.early.dense import DenseEarlyMonitor
 from rtamt.verdicts.early.interval import IntervalMonitor, LateSampleError
 from rtamt.verdicts.early.prediction import later_steps
@@ -72,7 +72,7 @@ class DenseIntervalMonitor(DenseEarlyMonitor, IntervalMonitor, EarlyMonitorBase)
         except BaseException as error:
             self._scale = before
             if isinstance(error, self._refused):
-                raise in_use() from None
+                raise self._refusal(error) from None
             if isinstance(error, self._undefined):
                 raise self._no_value(error, scale) from None
             raise

@@ -357,3 +357,21 @@ def test_every_requirement_is_read_up_to_the_end_of_the_whole_trace(backend):
     monitor.update(2, y=1)
     with pytest.raises(rtamt.EvaluationError, match=r"^'sqrt\("):  # read a second after the last sample of y
         monitor.finish()
+
+
+@pytest.mark.parametrize("verdict", ["eager", "interval", "causation"])
+@pytest.mark.parametrize("first", [0, -600_000_000.0])
+def test_a_trace_from_1970_to_now_is_not_called_a_monitor_in_use(verdict, first):
+    monitor = rtamt.parse("always[0:5](x >= 1)").monitor(verdict=verdict, time="dense")
+    monitor.update(first, x=1.0)
+    for x in (2.0, 2):
+        with pytest.raises(rtamt.TraceError) as caught:
+            monitor.update(1.7e9, x=x)
+        assert str(caught.value) == (
+            "the trace spans more than 2^60 ticks of 1 ns, too many for early verdicts, bounds and causation: leave "
+            "out samples from before the clock was set, or choose a coarser resolution"
+        )
+    monitor.update(first + 1, x=2.0)
+    coarse = rtamt.parse("always[0:5](x >= 1)").monitor(verdict=verdict, time=rtamt.Dense(resolution="1us"))
+    coarse.update(first, x=1.0)
+    coarse.update(1.7e9, x=2.0)
