@@ -154,8 +154,11 @@ def array(values: Any, name: str, first: int = 0, *, copy: bool = True) -> Float
         # The common case, for which the checks below would cost more than the evaluation.
         return np.array(values, dtype=np.float64) if copy else np.ascontiguousarray(values, dtype=np.float64)
     try:
-        if is_masked(values) and values.mask.any():
-            values = np.ma.filled(values.astype(np.float64), np.nan)  # a masked value is a missing one
+        if values.__class__ is not np.ndarray:
+            from rtamt.signals.gaps import reads_as_nan  # most values are arrays
+
+            if reads_as_nan(values):
+                raise _not_numbers(values, name, first)
         raw = as_array(values)
         # numpy would read the text "1.5" as a number and None as NaN; both are more likely mistakes.
         numeric = raw.dtype.kind in "fiub" or (raw.dtype.kind == "O" and all(map(is_number, raw.flat)))
@@ -270,6 +273,8 @@ def timestamps(values: Any, unit: str | None = None, first: int = 0, *, copy: bo
         seconds = quotients(original.view(np.int64), 1, 10**9)
         seconds[np.isnat(original)] = np.nan
         return Timestamps(seconds, original)
+    if is_masked(values) and values.mask.any():
+        values = raw = np.ma.filled(values.astype(np.float64), np.nan)  # a masked time is a missing one
     numbers = array(values, TIME, first, copy=copy)
     if unit is None:
         refuse_implausible(raw, TIME, first)
@@ -445,8 +450,10 @@ def _common_length(
 
 
 def _not_numbers(values: Any, name: str, first: int) -> TraceError:
+    from rtamt.signals.gaps import elements_of
+
     try:
-        items = enumerate(values, first)
+        items = enumerate(elements_of(values), first)
     except TypeError:
         return TraceError(f"'{name}' is {shown(values)}, expected a sequence of numbers", variable=name)
     for i, value in items:

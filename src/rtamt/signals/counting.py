@@ -68,6 +68,8 @@ def is_implausible(time: Any) -> bool:
     plain = isinstance(time, int | float | np.integer | np.floating) and not isinstance(time, np.timedelta64)
     if isinstance(time, np.float16 | np.float32):
         time = float(time)
+    elif isinstance(time, np.signedinteger) and plain:  # of which the least has no absolute value
+        time = int(time)
     return plain and bool(IMPLAUSIBLE <= abs(time) <= _LARGEST)
 
 
@@ -80,11 +82,11 @@ def implausible(name: str, index: int, time: Any, source: str = "") -> TraceErro
         if isinstance(time, np.generic)
         else time
     )
-    unit = next(unit for unit, least in _SINCE_1970 if abs(time) >= least)
+    unit = next(unit for unit, least in _SINCE_1970 if abs(number) >= least)
     remedy = (
         f"if it counts {unit} since 1970, say time_unit='{unit}', or on the command line --time-unit {unit}"
     )
-    if abs(time) >= 2**64:
+    if abs(number) >= 2**64:
         remedy = "subtract a start time"
     return TraceError(
         f"{times_of(name)}{f' of {source}' if source else ''} is {shown(number)} at sample {index}, "

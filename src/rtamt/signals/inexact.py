@@ -17,6 +17,7 @@ from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.modules import np
 from rtamt.signals import dense_arrays
 from rtamt.signals.arrays import TIME, is_mapping, number_of
+from rtamt.signals.gaps import gaps_of, items_of
 from rtamt.signals.time_columns import check_mapping
 from rtamt.signals.trace import Trace
 
@@ -173,24 +174,3 @@ def _fill_gaps(values: Any, name: str, missing: dict[str, Mask]) -> Any:
         return values
     missing[name] = mask
     return [0.0 if gap else value for value, gap in zip(items_of(values), mask, strict=True)]
-
-
-def gaps_of(values: Any) -> Mask | None:
-    """Return where samples are missing; None for containers that cannot have gaps."""
-    if isinstance(values, np.ma.MaskedArray):
-        return np.ma.getmaskarray(values)
-    if hasattr(values, "null_count") and hasattr(values, "is_null"):  # Arrow, polars
-        return np.asarray(values.is_null(), bool)
-    kind = getattr(values, "dtype", None)
-    if kind is not None and not isinstance(kind, np.dtype):  # a type of pandas' own
-        return np.asarray(values.isna(), bool)
-    if isinstance(values, list | tuple) or kind == np.dtype(object):
-        return np.array([value is None or type(value).__name__ == "NAType" for value in values], bool)
-    return None
-
-
-def items_of(values: Any) -> list[Any]:
-    """Return the values of a container one by one, missing ones as whatever it has in their place."""
-    if isinstance(values, np.ma.MaskedArray):
-        return list(values.filled(0))
-    return list(values.to_pylist() if hasattr(values, "to_pylist") else values)

@@ -29,7 +29,7 @@ from rtamt.signals.arrays import (
 )
 from rtamt.signals.assumed_period import require_times
 from rtamt.signals.data_errors import missing_outside
-from rtamt.signals.inexact import gaps_of, items_of
+from rtamt.signals.gaps import gaps_of, items_of
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
 from rtamt.signals.trace import Channel, Trace

@@ -13,7 +13,7 @@ from rtamt.language.units.durations import check_unit
 from rtamt.lazy.modules import np
 from rtamt.signals import arrays, dense_arrays, members
 from rtamt.signals.data_errors import missing_field, nan_of_members
-from rtamt.signals.inexact import gaps_of
+from rtamt.signals.gaps import gaps_of
 from rtamt.signals.member_chunks import fields_on_own_time_bases
 from rtamt.signals.samples import time_of
 from rtamt.signals.signal import Signal

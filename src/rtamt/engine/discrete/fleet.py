@@ -23,6 +23,7 @@ from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
 from rtamt.signals.discrete import Discrete
+from rtamt.signals.gaps import elements_of
 from rtamt.signals.samples import read_time
 from rtamt.signals.sampling_period import irregular
 
@@ -132,7 +133,7 @@ class DiscreteFleet:
         index, name = error.index, error.variable or ""
         if index is None or index >= len(keys) or name not in columns or name in self._monitor._types:
             return error
-        value = list(columns[name])[index]
+        value = list(elements_of(columns[name]))[index]
         text = str(error)
         if number_of(value) is None:
             text = f"'{name}' is {shown(value)}, {number_expected(value)}"
