@@ -355,11 +355,26 @@ def choices(name: object, known: Iterable[str], noun: str) -> str:
     '; columns: req, gnt'
     """
     names = [str(each) for each in known]
+    if (alike := _alike(str(name), names)) is not None:
+        return (
+            f"; '{alike}' differs from it in its Unicode form only: normalise both, such as with "
+            f"unicodedata.normalize('NFKC', name)"
+        )
     close = _near(name, names, _LISTED)
     names = [*close, *(each for each in names if each not in close)]
     more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
     listing = f"{noun}: {', '.join(names[:_LISTED]) or 'none'}{more}"
     return f"; did you mean '{close[0]}'? ({listing})" if close else f"; {listing}"
+
+
+def _alike(name: str, names: list[str]) -> str | None:
+    """Return the name of other characters that stand for the same letters, such as a letter with its accent apart."""
+    if name.isascii() and all(map(str.isascii, names)):
+        return None
+    from unicodedata import normalize
+
+    form = normalize("NFKC", name)
+    return next((each for each in names if each != name and normalize("NFKC", each) == form), None)
 
 
 def escaped(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rtamt.errors import choices, did_you_mean
 from rtamt.language.formula import Span
 from rtamt.language.operators import Fixity
-from rtamt.language.parsing.lexer import NO_ARROW, is_word, quoted
+from rtamt.language.parsing.lexer import NAME, NO_ARROW, is_word, quoted
 from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -138,6 +138,33 @@ def _bad_character(token: Token) -> Complaint | None:
         what = "comment" if token.text == "/*" else "quoted name"
         return f"this {what} is never closed", token.span
     return None
+
+
+def combining_characters(text: str, span: Span) -> Complaint | None:
+    """Return the error for a name without quotes that has combining characters, at the position of another error."""
+    from unicodedata import category, normalize
+
+    def is_combining(at: int) -> bool:
+        return 0 <= at < len(text) and category(text[at]).startswith("M")
+
+    def is_in_name(at: int) -> bool:
+        return 0 <= at < len(text) and (text[at].isalnum() or text[at] in "_$." or is_combining(at))
+
+    place = next((at for at in (span.start, span.end) if is_combining(at)), None)
+    if place is None:
+        return None
+    start, end = place, place + 1
+    while is_in_name(start - 1):
+        start -= 1
+    while is_in_name(end):
+        end += 1
+    name = text[start:end]
+    composed = NAME.fullmatch(normalize("NFC", name)) is not None
+    return (
+        f"'{name}' has the combining character U+{ord(text[place]):04X}, and names without quotes have none: "
+        f"{'normalise the text to Unicode NFC, or ' if composed else ''}write {quoted(name)}, as the data has it",
+        Span(start, end),
+    )
 
 
 def _element(tokens: Tokens, at: int) -> str:

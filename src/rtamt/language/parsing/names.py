@@ -101,6 +101,10 @@ class NameParser:
         """Return an error that points at the text; in the formula of a template, at its use."""
         if self.use is not None:
             return self.use.error(message, kind)
+        if not self.text.isascii():
+            combining = diagnostics.combining_characters(self.text, span)
+            if combining is not None:
+                return ParseError(combining[0], self.text, combining[1])
         return kind(message, self.text, span)
 
     # ---- names ---------------------------------------------------------------------------------
