@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import TraceError, shown
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.readers.dates import EXAMPLE, is_date
 from rtamt.signals.time_columns import column_name, unit_called
 
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 
     from rtamt.signals.arrays import FloatArray
 
-DELIMITERS = (",", ";", "\t")
+DELIMITERS = (",", ";", "\t", "|")
+
+#: The parts of a header in which a delimiter is a character of a name, as in "x [m,n]".
+_ENCLOSED = lazy_pattern(r'"(?:[^"]|"")*"|\[[^\]]*\]|\([^)]*\)')
 
 BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
 _CELLS = 2**22  # at a time, where lines are long
@@ -68,7 +72,10 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
         comment = first.lstrip("#") if first.startswith("#") else ""
     else:
         raise TraceError(f"'{file}' is empty: it needs a row of column names, then a row for each sample")
-    delimiter = chosen or max(DELIMITERS, key=first.count)
+    if chosen is None:
+        delimiter, lines = _delimiter(first, lines, file, count)
+    else:
+        delimiter = chosen
     reader = csv.reader(chain([first], lines), delimiter=delimiter, skipinitialspace=True)
     try:
         cells = next(reader)
@@ -84,6 +91,41 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
         header.line,
         f"expected a row of column names, such as time,x; got '{first.strip()}': put the names above it",
     )
+
+
+def _delimiter(header: str, lines: Iterator[str], file: str, number: int) -> tuple[str, Iterator[str]]:
+    """Return the delimiter of a header, and the lines after it; raise :class:`TraceError` where several are possible.
+
+    Of those between names, it is the one that gives the next row as many cells. ``number``: of the header's line.
+    """
+    outside = _ENCLOSED.sub("", header)
+    found = [each for each in DELIMITERS if each in outside] or [
+        each for each in DELIMITERS if each in header
+    ]
+    if not found or found in ([","], [";"], ["\t"]):
+        return (found or DELIMITERS)[0], lines
+    read = []
+    for row in lines:
+        read.append(row)
+        if not row.isspace() and not row.startswith("#"):
+            break
+    lines = chain(read, lines)
+    if not read:  # of a stream, the header comes alone
+        return max(found, key=header.count), lines
+    alike = [each for each in found if _cells(header, each) == _cells(read[-1], each)]
+    if len(alike) > 1:
+        either = " or ".join("a tab" if each == "\t" else f"'{each}'" for each in alike)
+        raise TraceError(
+            f"{file}, line {number}: the columns of '{header.strip()}' may be separated by {either}: name it in a "
+            f"first line, such as 'sep={next(filter(str.strip, alike))}', or quote the names that contain another"
+        )
+    if not alike and found == ["|"]:
+        return DELIMITERS[0], lines
+    return max(alike or found, key=header.count), lines
+
+
+def _cells(line: str, delimiter: str) -> int:
+    return len(next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), ()))
 
 
 def separator(line: str) -> str | None:
