@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import datetime, timezone
+from datetime import datetime, timedelta, timezone
 from typing import Any
 
 import numpy as np
@@ -309,3 +309,33 @@ def test_a_value_without_a_time() -> None:
     with pytest.raises(rtamt.TraceError) as info:
         monitor.update_many({"x": ([], [1.0]), "y": [[0.0, 1.0]]})
     assert str(info.value) == "'x' has 0 times but 1 values: give one of each for every sample"
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        [0, 0.5, 2],
+        np.array([0, 0.5, 2]),
+        [0, 1, 2],
+        [timedelta(0), timedelta(seconds=1), timedelta(seconds=2)],
+    ],
+)
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+def test_times_in_one_tick_were_set(backend: str, times: Any) -> None:
+    message = (
+        "'x' has two samples at 0 s (sample 1 and the one before, with ticks of 3600 s): keep one of them, or choose a "
+        "finer resolution"
+    )
+    spec = rtamt.parse("x >= 1", time=rtamt.Dense(resolution="1h"), backend=backend)
+    for call in (
+        lambda: spec.evaluate({"x": (times, [1.0] * len(times))}),
+        lambda: spec.evaluate({"time": times, "x": [1.0] * len(times)}),
+        lambda: spec.monitor().update_many({"x": (times, [1.0] * len(times))}),
+    ):
+        with pytest.raises(rtamt.TraceError) as caught:
+            call()
+        assert str(caught.value) == message
+    with pytest.raises(
+        rtamt.TraceError, match=r"^all 3 timestamps of 'x' are 3600 s, so they were never set"
+    ):
+        spec.evaluate({"x": ([3600, 3600, 3600], [1.0, 1.0, 1.0])})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isnan, nan
 
 from rtamt.errors import TraceError
-from rtamt.language.units.durations import format_duration
+from rtamt.language.units.durations import NANOSECOND, format_duration
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
@@ -146,7 +146,8 @@ def samples_of(
     rising = after > before
     if not np.logical_and.reduce(rising):
         i = int(rising.argmin())
-        if last is None and len(ticks) > 2 and ticks[0] == ticks[-1] and not np.diff(ticks).any():
+        one = last is None and len(ticks) > 2 and ticks[0] == ticks[-1] and not np.diff(ticks).any()
+        if one and all(time == times[0] for time in times):  # else ticks are too coarse
             raise never_set(float(ticks[0] * scale.tick), len(ticks), name)
         raise not_increasing(name, first + i + (last is None), int(after[i]), int(before[i]), scale)
     if len(values) and isnan(np.minimum.reduce(values)):  # the least of numbers and a NaN is NaN
@@ -168,7 +169,8 @@ def not_increasing(name: str, index: int, time: int, before: int, scale: TimeSca
     if time == before:
         return TraceError(
             f"'{name}' has two samples at {scale.show(time)} (sample {index} and the one before, with ticks of "
-            f"{format_duration(scale.tick)}): keep one of them",
+            f"{format_duration(scale.tick)}): keep one of them"
+            f"{', or choose a finer resolution' if scale.tick > NANOSECOND else ''}",
             variable=name,
             index=index,
         )

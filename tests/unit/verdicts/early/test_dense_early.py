@@ -217,7 +217,8 @@ def test_failed_update_leaves_the_monitor_as_it_was():
         (
             0,
             {"x": 4},
-            "'x' has two samples at 0 s (sample 1 and the one before, with ticks of 100 ms): keep one of them",
+            "'x' has two samples at 0 s (sample 1 and the one before, with ticks of 100 ms): keep one of them, or "
+            "choose a finer resolution",
         ),
         ("now", {"x": 4}, "the time of 'x' is 'now' at sample 1, expected a number of seconds or a datetime"),
     ],
