@@ -64,6 +64,18 @@ def test_fleets_take_a_variable_called_self(kind, name):
     assert len(fleet) == 2
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    "values",
+    [[7, 1], (7, 1), np.array([7, 1], object), np.ma.array([7, 1], mask=[0, 0]), np.array([7, 1], "f4")],
+)
+def test_a_variable_called_time_has_its_own_values_in_fleets(backend, values):
+    fleet = rtamt.Fleet(rtamt.parse("time >= 3", backend=backend), 5)
+    assert fleet.update_many([1, 1], [0, 1], {"time": values}).values.tolist() == [4, -2]
+    with pytest.raises(rtamt.TraceError, match="'time' has 1 samples"):
+        fleet.update_many([1, 1], [2, 3], {"time": np.array([7], object)})
+
+
 @pytest.mark.parametrize("time", [{}, None, float("nan"), "soon"])
 @pytest.mark.parametrize(
     "kind", [kind for kind in KINDS if kind["time"] == "dense"], ids=lambda k: "-".join(k.values())

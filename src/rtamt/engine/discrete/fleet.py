@@ -18,7 +18,8 @@ from rtamt.language.undefined_value import at_sample, undefined
 from rtamt.language.units.moments import time_text
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
-from rtamt.signals.arrays import TIME, Timestamps, columns_of, number_expected, number_of
+from rtamt.signals import coding
+from rtamt.signals.arrays import TIME, Timestamps, array, columns_of, number_expected, number_of
 from rtamt.signals.coding import require_truths
 from rtamt.signals.counting import refuse_implausible
 from rtamt.signals.data_errors import nan_error, unknown_variable
@@ -123,10 +124,22 @@ class DiscreteFleet:
             timestamps, found, _ = columns_of(
                 {**columns, TIME: times}, monitor.input_names, None, monitor._types
             )
+            if TIME in found and TIME in columns:  # a variable of this name
+                found[TIME] = self._variable_called_time(columns[TIME], len(times))
         except TraceError as error:
             raise self._of_key(error, keys, {**columns, TIME: times}) from None
         assert timestamps is not None
         return timestamps, found
+
+    def _variable_called_time(self, column: Any, samples: int) -> FloatArray:
+        values = array(coding.encoded(column, TIME, self._monitor._types.get(TIME)), TIME)
+        if len(values) != samples:
+            raise TraceError(
+                f"there are {samples} times and '{TIME}' has {len(values)} samples: give one value of each at every "
+                f"sample",
+                variable=TIME,
+            )
+        return values
 
     def _of_key(self, error: TraceError, keys: NDArray[Any], columns: Mapping[str, Any]) -> TraceError:
         """Return the error for a value of a batch with its key and index; the core has counted no sample yet."""
