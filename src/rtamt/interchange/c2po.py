@@ -1,4 +1,4 @@
-"""C2PO, the specification language of R2U2: read and written.
+"""C2PO, the specification language of R2U2: its operators, and its files read.
 
 Its formulas are mission-time linear temporal logic (MLTL): bounds are whole numbers of samples. Facts: R2U2,
 compiler/docs/user/language.md, and the precedence of its parser.
@@ -6,21 +6,19 @@ compiler/docs/user/language.md, and the precedence of its parser.
 
 from __future__ import annotations
 
-import re
-from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.errors import SpecificationError, UsageError
-from rtamt.interchange.c_integers import remainder, with_integers
+from rtamt.interchange.c2po_types import resolved, with_numerals
+from rtamt.interchange.c_integers import remainder
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
 from rtamt.interchange.written import Names, ReadRequirement, require_new, specification_text
-from rtamt.language.formula import Apply, Formula, Interval, Span, Var, fold, postorder
+from rtamt.language.formula import Apply, Formula, Interval, Span, fold, postorder, size
 from rtamt.language.operators import STL, Fixity, Tense
 from rtamt.language.rows import function, infix
-from rtamt.language.units.durations import decimal
-from rtamt.language.value_types import BOOLEAN, Boolean, Enumeration
+from rtamt.language.value_types import BOOLEAN, Enumeration
 from rtamt.lazy.dataclasses import dataclass, field
 from rtamt.lazy.patterns import lazy_pattern
 
@@ -28,22 +26,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rtamt.language.value_types import ValueType
-    from rtamt.specification import Specification
 
 _SECTIONS = ("STRUCT", "ENUM", "INPUT", "DEFINE", "FTSPEC", "PTSPEC")
 _MARK = lazy_pattern(r"[A-Za-z_]\w*|[{};]")
 _COMMENT = lazy_pattern(r"--[^\n]*")
 _NAME = lazy_pattern(r"[A-Za-z_]\w*")
-#: What a variable cannot be called: the words of the lexer.
-_RESERVED = frozenset(
-    ("STRUCT ENUM INPUT DEFINE FTSPEC PTSPEC TAU foreach forsome forexactly foratleast foratmost pow sqrt abs rate "
-     "prev xor G F H O U R S T M true false bool int float").split()
-)  # fmt: skip
 _ENUMERATION = lazy_pattern(r"(?P<name>[A-Za-z_]\w*)\s*:\s*\{(?P<members>[^{}]*)\}")
 _MEMBER = lazy_pattern(r"\s*(?P<label>[A-Za-z_]\w*)\s*(?::\s*(?P<code>\d+)\s*)?")
-_EXPONENT = lazy_pattern(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+")
+#: An interval without its lower bound, which is 0.
+_UPPER_BOUND = lazy_pattern(r"\b([GFHOURS]\s*)\[\s*(\d+)\s*\]")
 #: Limits beyond any file that is written by hand.
 _LONGEST = 2_000_000
+_LARGEST = 20_000
 
 
 def _release(a: Formula, b: Formula, interval: Interval | None) -> Formula:
@@ -113,7 +107,7 @@ _STREAM_NOTE = (
     "R2U2 reports a verdict for every instant; a requirement is satisfied if all of them are true, so that each "
     "specification is read as 'always'"
 )
-_END_NOTE = "R2U2 reports nothing for instants whose windows reach beyond the trace; here they end with it"
+END_NOTE = "R2U2 reports nothing for instants whose windows reach beyond the trace; here they end with it"
 _EQUAL_NOTE = "R2U2 compares floats with a tolerance that its build fixes; here '==' is exact"
 
 
@@ -155,7 +149,7 @@ def read_c2po(text: str, period: Fraction | None = None) -> Conversion:
         _READERS[section](file, statement, step)
     if not file.requirements and not file.rejected:
         raise UsageError("there is no specification in the text: C2PO has them after FTSPEC or PTSPEC")
-    notes = [_STREAM_NOTE, _END_NOTE]
+    notes = [_STREAM_NOTE, END_NOTE]
     if any(
         isinstance(n, Apply) and n.op.equates
         for n in postorder(*(each.formula for each in file.requirements))
@@ -252,14 +246,29 @@ def _specification(file: _File, statement: str, step: Fraction) -> None:
         label, body = f"spec_{number}", statement
     name = label.strip()
     try:
-        formula = _formula(file, body.strip().replace("=>", "->"), condition=True)
         require_new(name, file.requirements)
+        parts = body.split("=>")
+        formula = _contract(file, parts) if parts[1:] else _formula(file, body, condition=True)
+        whole = STL["always"](resolved(formula, file.integers))
+        if size(whole) > _LARGEST:
+            raise InexpressibleError("with its definitions written out it has more than 20 000 operators")
     except (SpecificationError, InexpressibleError) as error:
         file.rejected.append(Rejection(name, str(error)))
         return
-    file.definitions[name] = formula
-    whole = STL["always"](with_integers(formula, file.integers))
+    if parts[1:]:
+        file.unknown[name] = "a contract"
+    else:
+        file.definitions[name] = formula
     file.requirements.append(ReadRequirement(name, _in_seconds(whole, step), statement))
+
+
+def _contract(file: _File, parts: list[str]) -> Formula:
+    """Return the formula of a contract from what is beside its ``=>``, which binds weaker than every operator."""
+    if len(parts) > 2 or parts[0].count("(") != parts[0].count(")"):
+        raise InexpressibleError(
+            "C2PO has one '=>' in a contract, between its assumption and its guarantee; write '->' inside of these"
+        )
+    return STL["implies"](*(_formula(file, part, condition=True) for part in parts))
 
 
 _READERS = {
@@ -283,14 +292,16 @@ def _formula(file: _File, text: str, *, condition: bool) -> Formula:
             raise SpecificationError(
                 f"'{match[0]}' is {file.unknown[match[0]]}, which is not covered", text, Span(*match.span())
             )
-    return C2PO.read(
-        text,
+    written = _UPPER_BOUND.sub(r"\1[0,\2]", text.strip())
+    formula = C2PO.read(
+        written,
         condition=condition,
         variables=[*file.types, *file.numbers],
         types=file.types,
         enumerations=file.enumerations,
         definitions=file.definitions,
     )
+    return with_numerals(formula, written)
 
 
 def _in_seconds(formula: Formula, step: Fraction) -> Formula:
@@ -305,110 +316,3 @@ def _in_seconds(formula: Formula, step: Fraction) -> Formula:
         return node.op(*args, interval=interval)
 
     return fold(formula, scaled)
-
-
-# ---- writing -------------------------------------------------------------------------------------
-
-
-def write_c2po(spec: Specification, _component: str | None = None) -> Conversion:
-    """Convert the requirements of a specification to a C2PO file.
-
-    Args:
-        spec: a specification in discrete time. A requirement ``always(φ)`` becomes the specification φ, whose verdicts
-            R2U2 reports at every instant; any other φ likewise, of which the first verdict counts.
-
-    Returns:
-        The file, and the requirements that C2PO cannot express: unbounded operators, past and future in one formula.
-
-    Raises:
-        UsageError: the specification is in dense time.
-
-    >>> import rtamt
-    >>> print(write_c2po(rtamt.parse("require R: always(x > 3 -> eventually[0:5](y > 3))", period=1)).text.strip())
-    INPUT
-        x, y: float;
-    <BLANKLINE>
-    FTSPEC
-        R: x > 3 -> F[0,5](y > 3);
-    """
-    if not spec.domain.sampled:
-        raise UsageError("C2PO is about samples: read the specification in discrete time")
-    step = Fraction(1) if spec.period is None else Fraction(spec.period)
-    sections: dict[str, list[str]] = {"FTSPEC": [], "PTSPEC": []}
-    converted: list[str] = []
-    rejected: list[Rejection] = []
-    first: list[str] = []
-    formulas: list[Formula] = []
-    for requirement in spec.document.requirements:
-        formula = requirement.formula
-        everywhere = isinstance(formula, Apply) and formula.op is STL["always"] and formula.interval is None
-        inner = formula.args[0] if isinstance(formula, Apply) and everywhere else formula
-        name = re.sub(r"\W", "_", requirement.name)
-        try:
-            section = _section(inner)
-            _require_names(inner)
-            sections[section].append(f"    {name}: {_without_exponents(C2PO.write(inner, step))};")
-        except InexpressibleError as error:
-            rejected.append(Rejection(requirement.name, str(error)))
-            continue
-        formulas.append(inner)
-        converted.append(requirement.name)
-        if not everywhere:
-            first.append(name)
-    notes = [f"bounds are numbers of samples of {decimal(step)} s", _END_NOTE]
-    if first:
-        notes.append(f"of these, the verdict of the first instant counts: {', '.join(first)}")
-    lines = _declare(formulas)
-    for section, each in sections.items():
-        lines += [section, *each, ""] if each else []
-    return Conversion("\n".join(lines).rstrip() + "\n", tuple(converted), tuple(rejected), tuple(notes))
-
-
-def _section(formula: Formula) -> str:
-    """Return the section of a formula; raise where it has operators of both, or an unbounded one."""
-    tenses: set[Tense] = set()
-    for node in postorder(formula):
-        if isinstance(node, Apply) and node.op.tense is not Tense.NONE:
-            tenses.add(node.op.tense)
-            if node.interval is None or node.interval.end is None:
-                raise InexpressibleError(f"C2PO has bounded operators only, unlike '{node}'")
-    if len(tenses) > 1:
-        raise InexpressibleError("C2PO has no formulas of both future and past operators")
-    return "PTSPEC" if Tense.PAST in tenses else "FTSPEC"
-
-
-def _require_names(formula: Formula) -> None:
-    """Raise where a variable has a name that C2PO does not read."""
-    for node in postorder(formula):
-        if not isinstance(node, Var):
-            continue
-        if not node.name.isascii() or not _NAME.fullmatch(node.name):
-            raise InexpressibleError(
-                f"'{node.name}' cannot be a variable of C2PO: use letters, digits and underscores"
-            )
-        if node.name in _RESERVED:
-            raise InexpressibleError(f"'{node.name}' cannot be a variable of C2PO, where it is a keyword")
-
-
-def _without_exponents(text: str) -> str:
-    """Return a formula whose numbers have digits only, as C2PO reads them."""
-    return _EXPONENT.sub(lambda match: f"{Decimal(match[0]):f}", text)
-
-
-def _declare(formulas: list[Formula]) -> list[str]:
-    """Return the sections that declare the variables of formulas."""
-    kinds: dict[str, list[str]] = {}
-    enumerations: dict[str, Enumeration] = {}
-    for node in postorder(*formulas):
-        if isinstance(node, Var) and node.name not in (name for names in kinds.values() for name in names):
-            kind = "float"
-            if isinstance(node.type, Boolean | Enumeration):
-                kind = node.type.name
-            if isinstance(node.type, Enumeration):
-                enumerations[kind] = node.type
-            kinds.setdefault(kind, []).append(node.name)
-    lines: list[str] = []
-    for each in enumerations.values():
-        members = ", ".join(f"{name}: {code}" for name, code in each.members)
-        lines += ["ENUM", f"    {each.name}: {{{members}}};", ""]
-    return [*lines, "INPUT", *(f"    {', '.join(names)}: {kind};" for kind, names in kinds.items()), ""]

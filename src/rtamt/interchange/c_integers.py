@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from rtamt.language.formula import Apply, Const, Formula, Var, fold, postorder
-from rtamt.language.operators import STL, Sort
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
+from rtamt.language.formula import Const, Formula
+from rtamt.language.operators import STL
+from rtamt.lazy.dataclasses import replace
 
 
 def remainder(a: Formula, b: Formula) -> Formula:
     """Return the remainder of integers, which has the sign of ``a``.
 
+    >>> from rtamt.language.formula import Var
     >>> print(remainder(Var("x"), Const(-3.0)))
     sign(x) * mod(abs(x), 3)
     """
@@ -23,35 +20,11 @@ def remainder(a: Formula, b: Formula) -> Formula:
 def quotient(a: Formula, b: Formula) -> Formula:
     """Return the quotient of integers.
 
+    >>> from rtamt.language.formula import Var
     >>> print(quotient(Var("x"), Const(-3.0)))
     sign(x) * -floor(abs(x) / 3)
     """
     return _signed(STL["floor"](STL["div"](_magnitude(a), _magnitude(b))), a, b)
-
-
-def with_integers(formula: Formula, integers: Collection[str]) -> Formula:
-    """Return a formula in which the quotients of integers are integers.
-
-    ``integers``: the names of variables. A comparison is one of integers or of floats as a whole.
-    """
-
-    def divided(node: Formula, args: tuple[Formula, ...]) -> Formula:
-        if not isinstance(node, Apply):
-            return node
-        return quotient(*args) if node.op is STL["div"] else node.op(*args, interval=node.interval)
-
-    def compared(node: Formula, args: tuple[Formula, ...]) -> Formula:
-        if not isinstance(node, Apply):
-            return node
-        if _is_comparison(node) and any(isinstance(e, Var) and e.name in integers for e in postorder(node)):
-            args = tuple(fold(each, divided) for each in node.args)
-        return node.op(*args, interval=node.interval)
-
-    return fold(formula, compared)
-
-
-def _is_comparison(node: Apply) -> bool:
-    return node.op.result is not Sort.NUMBER and all(sort is Sort.NUMBER for sort in node.op.operands)
 
 
 def _signed(magnitude: Formula, *factors: Formula) -> Formula:
@@ -65,4 +38,4 @@ def _signed(magnitude: Formula, *factors: Formula) -> Formula:
 
 
 def _magnitude(number: Formula) -> Formula:
-    return Const(abs(number.value)) if isinstance(number, Const) else STL["abs"](number)
+    return replace(number, value=abs(number.value)) if isinstance(number, Const) else STL["abs"](number)

@@ -113,7 +113,9 @@ class Dialect:
         try:
             formula = parse_formula(replaced, language=self.language, **scope)
         except SpecificationError as error:
-            raise SpecificationError(error.message, text, error.span) from None
+            # No dialect has the colon that separates bounds here.
+            message = error.message.replace("expected ':' or ','", "expected ','")
+            raise SpecificationError(message, text, error.span) from None
         if condition and _is_plain_number(formula):
             raise SpecificationError(f"'{formula}' is a number, and a formula is needed", text, None)
         self._require_formulas(formula, text)

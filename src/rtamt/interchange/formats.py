@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError, choices
 from rtamt.interchange.breach import read_breach, write_breach
-from rtamt.interchange.c2po import read_c2po, write_c2po
+from rtamt.interchange.c2po import read_c2po
+from rtamt.interchange.c2po_writing import write_c2po
 from rtamt.interchange.fret.export import write_fret
 from rtamt.interchange.fret.project import read_fret
 from rtamt.interchange.mtl import read_mtl, write_mtl
