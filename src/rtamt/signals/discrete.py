@@ -33,7 +33,7 @@ from rtamt.signals.sampling_period import (
     elapsed,
     infer_period,
 )
-from rtamt.signals.signal import Signal
+from rtamt.signals.signal import Signal, read_only
 from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
 
 if TYPE_CHECKING:
@@ -264,9 +264,8 @@ class DiscreteTrace(DomainTrace):
     def signals(self, values: Sequence[FloatArray]) -> list[Signal]:
         """See :class:`DomainTrace`; all signals share its timestamps, which cannot be written."""
         times: Any = self._times if self.original is None else self.original
-        if not isinstance(times, DeferredTimes) and times.flags.writeable:
-            times = times.view()
-            times.flags.writeable = False
+        if not isinstance(times, DeferredTimes):
+            times = read_only(times)
         return [Signal(times, column) for column in values]
 
     @property

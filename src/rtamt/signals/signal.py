@@ -11,6 +11,14 @@ if TYPE_CHECKING:
     from rtamt.signals.arrays import FloatArray
 
 
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array, or a view of it if it can be written, that cannot be written."""
+    if array.flags.writeable:
+        array = array.view()
+        array.flags.writeable = False
+    return array
+
+
 class Signal:
     """Values over time: ``times`` and ``values``, arrays of the same length.
 

@@ -21,7 +21,7 @@ from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import TRACE_MENDS, missing_sample, possible_times
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.sampling_period import merged
-from rtamt.signals.signal import Signal
+from rtamt.signals.signal import Signal, read_only
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -44,6 +44,7 @@ class Channel:
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
     than those of its ``table``; both None where it has all. ``alias``: another name, which listings leave out.
     ``stepped``: whether there is nothing between two values, as of truths and members of enumerations.
+    The arrays cannot be written.
 
     >>> import rtamt
     >>> trace = rtamt.read({"time": [0, 0.1], "speed [m/s]": [10, 11]})
@@ -60,6 +61,11 @@ class Channel:
     table: Times | None = None
     alias: str = ""
     stepped: bool = False
+
+    def __post_init__(self) -> None:
+        if self.times is not None:
+            object.__setattr__(self, "times", read_only(self.times))
+        object.__setattr__(self, "values", read_only(self.values))
 
 
 #: The beginning of the note that names columns without numbers.
@@ -254,9 +260,7 @@ class Trace(WithTimeBases):
                 raise UsageError(
                     f"'{name}' is {shown(signal)}; give a signal, such as rtamt.Signal(times, values)"
                 )
-            found[name] = Channel(
-                np.asarray(signal.times), np.asarray(signal.values, float), units.get(name, "")
-            )
+            found[name] = Channel(np.array(signal.times), np.array(signal.values, float), units.get(name, ""))
         return self.with_channels(found)
 
     def to_pandas(self) -> Any:
