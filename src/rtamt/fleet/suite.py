@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import hashlib
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import StlError, UsageError, choices, placed, shown
 from rtamt.fleet.groups import Asking, Way, grouped, way_of
+from rtamt.fleet.suite_requirements import SuiteRequirement, named_requirements
 from rtamt.fleet.suite_snapshot import packed, unpacked
 from rtamt.fleet.verdict_table import SELECTABLE, Row, VerdictTable, number_of
 from rtamt.language.parsing.imports import library_of
-from rtamt.language.printing.printer import excerpt, to_text
-from rtamt.lazy.dataclasses import dataclass, field
+from rtamt.language.printing.printer import to_text
 from rtamt.signals.trace import Trace
-from rtamt.specification import Specification
-from rtamt.specification_recorded import Optional
 from rtamt.violations import first_violation
 
 if TYPE_CHECKING:
@@ -29,23 +26,10 @@ if TYPE_CHECKING:
     from rtamt.fleet.groups import Group
     from rtamt.settings import EvaluationSettings
     from rtamt.signals.time_domain_interface import DomainTrace
+    from rtamt.specification import Specification
     from rtamt.verdicts.prepared import Found
 
     Read = Callable[[Way, Specification | None], tuple[Specification | None, Trace]]
-
-
-@dataclass(frozen=True, slots=True)
-class SuiteRequirement:
-    """A requirement of a suite: its unique ``name``, and what a report shows of it.
-
-    ``optional``: the variables that recordings may lack.
-    """
-
-    name: str
-    formula: str
-    description: str = ""
-    severity: str = "error"
-    optional: Optional = field(default_factory=Optional)
 
 
 class Suite:
@@ -78,12 +62,12 @@ class Suite:
         self.select = _select(select)
         robustness = "robustness" in self.select
         truth = len(self.select) > robustness
-        every = _name_requirements(specs)
+        every = named_requirements(specs)
         asked = {}
         for number, (name, spec) in enumerate(every):
             query = _query_of(name, spec, {"tolerance": tolerance, **reading})
             asked[number] = Asking(spec, query, robustness, truth)
-        self.requirements = tuple(_requirement(name, spec) for name, spec in every)
+        self.requirements = tuple(SuiteRequirement.of(name, spec) for name, spec in every)
         self._specs = dict(every)
         self._settings: dict[str, Any] = {"tolerance": tolerance, **reading}
         self._groups, why = grouped(asked)
@@ -91,14 +75,21 @@ class Suite:
 
     # ---- evaluation ------------------------------------------------------------------------------
 
-    def evaluate(self, data: Any, *, recording: str = "") -> VerdictTable:
+    def evaluate(
+        self, data: Any, *, recording: str = "", signals: Collection[str] | None = None
+    ) -> VerdictTable:
         """Evaluate all requirements on one complete trace: a row for each, in their order.
 
         ``data`` as for :meth:`Specification.evaluate`, with the variables of all requirements; ``recording``: its
-        name in the table. Wrong data and undefined values become the error in the rows of the requirements that
-        they concern.
+        name in the table. ``signals``: the names in the recording, of which ``data`` need only have those of the
+        requirements that can be checked. Wrong data and undefined values become the error in the rows of the
+        requirements that they concern.
         """
         rows = self._unchecked(recording, data if isinstance(data, Trace) else _names_of(data))
+        if signals is not None:
+            rows |= self._unchecked(
+                recording, signals
+            )  # with the names that the recording lacks, not the data
         for group in self._groups:
             kept = [number for number in group.inputs if number not in rows]
             if kept:
@@ -214,7 +205,7 @@ class Suite:
 
         The bytes need not be trusted: they are verified. Raises :class:`UsageError` for anything else.
         """
-        select, requirements, groups = unpacked(code, SuiteRequirement)
+        select, requirements, groups = unpacked(code)
         suite = Suite.__new__(Suite)
         suite.select, suite.requirements = select, requirements
         suite._settings, suite._groups, suite._apart, suite._specs = {}, groups, {}, {}
@@ -298,6 +289,18 @@ class Suite:
         apart = [way_of(spec) for spec, _ in self._apart.values()]
         return (*(group.way for group in self._groups), *apart)
 
+    def ways_over(self, signals: Collection[str]) -> tuple[Way, ...]:
+        """The same for the requirements whose optional variables a recording has; ``signals``: its names."""
+        lacking = self._unchecked("", signals)
+        if not lacking:
+            return self.ways
+        kept = [[number for number in group.inputs if number not in lacking] for group in self._groups]
+        together = [
+            group.of(numbers).way for group, numbers in zip(self._groups, kept, strict=True) if numbers
+        ]
+        apart = [way_of(spec) for number, (spec, _) in self._apart.items() if number not in lacking]
+        return (*together, *apart)
+
     @property
     def each_way(self) -> tuple[Way, ...]:
         """The reading settings of recordings for each requirement alone."""
@@ -367,43 +370,6 @@ def _select(select: Iterable[str]) -> tuple[str, ...]:
     if not names:
         raise UsageError(f"a suite selects nothing: give one or more of {', '.join(SELECTABLE)}")
     return tuple(name for name in SELECTABLE if name in names)
-
-
-def _name_requirements(specs: Any) -> list[tuple[str, Specification]]:
-    """Return every requirement of every specification, with a unique name."""
-    given: list[tuple[str | None, Any]]
-    if isinstance(specs, Specification):
-        given = [(None, specs)]
-    elif isinstance(specs, Mapping):
-        given = [(str(name), spec) for name, spec in specs.items()]
-    elif isinstance(specs, str) or not hasattr(specs, "__iter__"):
-        raise UsageError(f"a suite takes specifications, got {shown(specs)}; rtamt.parse reads text")
-    else:
-        given = [(None, spec) for spec in specs]
-    found: list[tuple[str, Specification]] = []
-    for label, spec in given:
-        if not isinstance(spec, Specification):
-            raise UsageError(f"a suite takes specifications, got {shown(spec)}; rtamt.parse reads text")
-        several = spec.document.requirements
-        for known, one in zip(several, spec.requirements.values(), strict=True):
-            own = known.name if known.explicit or len(several) > 1 else spec.name or excerpt(spec.formula)
-            if label is not None:
-                own = label if len(several) == 1 else f"{label}: {known.name}"
-            found.append((own, one))
-    if not found:
-        raise UsageError("a suite needs one specification or more")
-    taken = Counter(name for name, _ in found)
-    seen: Counter[str] = Counter()
-    unique = []
-    for name, spec in found:
-        seen[name] += 1
-        unique.append((name if taken[name] == 1 else f"{name} ({seen[name]})", spec))
-    return unique
-
-
-def _requirement(name: str, spec: Specification) -> SuiteRequirement:
-    known = spec.document.requirements[0]
-    return SuiteRequirement(name, excerpt(spec.formula), known.description, known.severity, spec._optional)
 
 
 def _names_of(data: Any) -> Sequence[str]:

@@ -21,6 +21,7 @@ from rtamt.compiler.program import Program
 from rtamt.compiler.stored import LATEST, StoredPlan
 from rtamt.errors import UsageError, shown
 from rtamt.fleet.groups import Group, Programs, Way
+from rtamt.fleet.suite_requirements import SuiteRequirement
 from rtamt.fleet.verdict_table import SELECTABLE
 from rtamt.language.parsing.sampling_clause import Sampling
 from rtamt.language.units.durations import check_unit
@@ -34,9 +35,8 @@ from rtamt.verdicts.prepared import Joined, Prepared, Window
 from rtamt.verdicts.standalone import check_code
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from rtamt.fleet.suite import SuiteRequirement
     from rtamt.language.value_types import ValueType
     from rtamt.signals.time_domain_interface import TimeDomain
 
@@ -136,13 +136,8 @@ def damaged(reason: str) -> UsageError:
     return UsageError(f"this is not a suite that can be read: {reason}")
 
 
-def unpacked(
-    code: Any, made: Callable[..., SuiteRequirement]
-) -> tuple[tuple[str, ...], tuple[SuiteRequirement, ...], list[Group]]:
-    """Return what a suite consists of; raise :class:`UsageError` for bytes that are none.
-
-    ``made``: makes a requirement.
-    """
+def unpacked(code: Any) -> tuple[tuple[str, ...], tuple[SuiteRequirement, ...], list[Group]]:
+    """Return what a suite consists of; raise :class:`UsageError` for bytes that are none."""
     if not isinstance(code, (bytes, bytearray, memoryview)):
         raise UsageError(f"expected the bytes of a suite, as to_bytes() returns them, got {shown(code)}")
     code = bytes(code)
@@ -160,7 +155,7 @@ def unpacked(
     try:
         listing = json.loads(body[_HEAD.size : _HEAD.size + length])
         programs = _programs(body[_HEAD.size + length :])
-        found = _suite(listing, programs, made)
+        found = _suite(listing, programs)
     except UsageError:
         raise
     except (
@@ -195,14 +190,17 @@ def _programs(codes: bytes) -> Iterator[Program]:
 
 
 def _suite(
-    listing: Any, programs: Iterator[Program], made: Callable[..., SuiteRequirement]
+    listing: Any, programs: Iterator[Program]
 ) -> tuple[tuple[str, ...], tuple[SuiteRequirement, ...], list[Group]]:
     select = tuple(listing["select"])
     if not select or select != tuple(name for name in SELECTABLE if name in select):
         raise damaged(f"it selects {shown(listing['select'])}")
     requirements = tuple(
-        made(
-            *(_text(each[part]) for part in ("name", "formula", "description", "severity")),
+        SuiteRequirement(
+            _text(each["name"]),
+            _text(each["formula"]),
+            _text(each["description"]),
+            _text(each["severity"]),
             Optional(_others(each["optional"]), _rule_of(each["rule"])),
         )
         for each in listing["requirements"]

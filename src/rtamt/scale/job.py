@@ -14,6 +14,7 @@ from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.scale.bags import table_of_bag
 from rtamt.scale.recordings import fetched
+from rtamt.signals.arrays import TIME
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from rtamt.fleet.groups import Way
     from rtamt.fleet.suite import Suite
     from rtamt.readers.selection import Choice
+    from rtamt.readers.source import Source
+    from rtamt.signals.trace import Trace
+    from rtamt.specification import Specification
 
 #: Increased with every change of what an operator means: results of other versions are computed again.
 SEMANTICS_VERSION = 2
@@ -102,11 +106,28 @@ class Job:
         with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
             if isinstance(data, (str, os.PathLike)) and is_bag(os.fspath(data)):
                 return table_of_bag(suite, source, self._choice, name)
-            signals = source.signals
-            read = [name for way in suite.ways for name in way.binding.found_in(signals).values()]
-            # Of a recording without one of them all is read: messages then list what there is.
-            whole = suite.reads_everything or not signals.issuperset(read)
-            return suite.evaluate(trace_of(source, self._choice(signals, suite.ways, whole)), recording=name)
+            signals, trace = source.signals, self._together(source)
+        if trace is not None:
+            return suite.evaluate(trace, recording=name, signals=signals)
+
+        def read(way: Way, spec: Specification | None) -> tuple[Specification | None, Trace]:
+            whole = spec is not None and bool(spec.groups)
+            # Many a source can be read only once.
+            with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
+                return None, trace_of(source, self._choice(signals, [way], whole))
+
+        return suite.evaluate_apart(signals, read, recording=name)
+
+    def _together(self, source: Source) -> Trace | None:
+        """Return what the requirements that can be checked read of a recording; None where one cannot read it."""
+        signals, suite = source.signals, self.suite
+        choice = self._choice(signals, suite.ways_over(signals), suite.reads_everything)
+        if not signals.issuperset(name for name in choice.columns or () if name != TIME):
+            return None
+        try:
+            return trace_of(source, choice)
+        except StlError:  # reported with the requirements that it concerns
+            return None
 
     def _choice(self, signals: Collection[str], ways: Iterable[Way], whole: bool = False) -> Choice:
         """Return what some requirements read of a recording with these signals; ``whole``: all of it."""

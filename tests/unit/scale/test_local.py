@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 
+import pandas as pd
 import pytest
 
 import rtamt
@@ -201,3 +202,41 @@ def test_members_of_groups_and_recorded_names_are_read(tmp_path):
     )
     (table,) = check_recordings(Job(rtamt.Suite(spec)), recordings_of([str(tmp_path)]), jobs=1)
     assert [(row.robustness, row.error) for row in table] == [(-1.0, None), (-1.0, None)]
+
+
+OPTIONAL = """
+optional input float v
+optional input float w
+optional input float x
+require A: always(x > 3)
+require B: always(v > 3)
+require C: always(v > w)
+"""
+#: How a recording may lack a column that a requirement reads, or have it without numbers.
+COLUMNS = {
+    "complete": {"x": [5, 2, 6], "v": [5, 5, 5], "w": [1, 2, 3]},
+    "without v": {"x": [5, 2, 6], "w": [1, 2, 3]},
+    "without w": {"x": [5, 2, 6], "v": [5, 5, 5]},
+    "texts": {"x": [5, 2, 6], "v": ["on", "off", "on"], "w": [1, 2, 3]},
+    "nothing": {"y": [5, 2, 6]},
+}
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet", "xlsx"])
+@pytest.mark.parametrize("has", COLUMNS)
+@pytest.mark.parametrize("optional", [True, False])
+def test_a_column_that_one_requirement_lacks_was_the_error_of_all(tmp_path, capsys, suffix, has, optional):
+    frame = pd.DataFrame({"time": [0.0, 1.0, 2.0], **COLUMNS[has]})
+    path = tmp_path / f"a.{suffix}"
+    {"csv": frame.to_csv, "parquet": frame.to_parquet, "xlsx": frame.to_excel}[suffix](path, index=False)
+    (tmp_path / "s.stl").write_text(OPTIONAL if optional else OPTIONAL.replace("optional ", ""))
+
+    def outcomes(*more):
+        main(["check", str(tmp_path / "s.stl"), str(path), "--json", *more])
+        found = map(json.loads, capsys.readouterr().out.splitlines())
+        read = ("requirement", "satisfied", "robustness", "first_violation", "unchecked", "error")
+        return [{name: row.get(name) for name in read} for row in found]
+
+    alone = outcomes()
+    assert outcomes("--engine", "local") == alone
+    assert (has == "complete") == all(row["error"] is None and row["unchecked"] is None for row in alone)
