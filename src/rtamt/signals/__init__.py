@@ -25,7 +25,8 @@ listing                a trace as text: its signals topic by topic
 arrays                 data (lists, arrays, frames, objects) to float64 arrays
 assumed_period         whether samples without timestamps have a known period
 rows                   many traces in one array for each variable, a trace in each row
-data_errors            errors for missing variables and samples, and for NaN
+gaps                   missing samples in containers: None, nulls and masked values
+data_errors            errors for missing variables and samples, for NaN and for data of another kind
 coding                 names of members to their codes; Booleans are 1 or 0
 recoding               codes that a recording has under other numbers: constants of messages
 samples                read and check the numbers and the time of one sample

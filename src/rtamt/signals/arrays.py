@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from functools import reduce
 from math import isinf, isnan
 from numbers import Real
-from os import PathLike, fspath
 
 from rtamt.errors import TraceError, UsageError, shown, with_article
 from rtamt.language.units.durations import UNITS, check_unit, in_seconds
@@ -256,7 +255,9 @@ def timestamps(values: Any, unit: str | None = None, first: int = 0, *, copy: bo
     except (TypeError, ValueError):  # lists of different lengths, for numpy
         raise _not_numbers(values, TIME, first) from None
     if raw.dtype.kind == "O" and any(map(is_moment, raw.flat)):
-        raw = _moments(raw, first)
+        from rtamt.signals.datetimes import moments
+
+        raw = moments(raw, first)
     if raw.dtype.kind in "mM":
         if unit is not None:
             raise TraceError(
@@ -287,42 +288,6 @@ def timestamps(values: Any, unit: str | None = None, first: int = 0, *, copy: bo
             raise TraceError(f"'{TIME}' has an integer that 64 bits cannot hold", variable=TIME) from None
         return Timestamps(quotients(whole, *size.as_integer_ratio()), whole)
     return Timestamps(in_seconds(numbers, size), numbers)
-
-
-def _moments(raw: NDArray[Any], first: int) -> NDArray[Any]:
-    """Return dates or durations in nanoseconds; dates without a time zone are taken literally, as in dense time."""
-    from rtamt.signals.datetimes import has_length, nanoseconds_of, no_length, out_of_reach
-
-    zones: dict[bool, int] = {}
-    kinds: dict[str, int] = {}
-    found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
-    for i, value in enumerate(raw.flat, first):
-        kind = "m" if isinstance(value, dt.timedelta | np.timedelta64) else "M"
-        kinds.setdefault(kind, i)
-        if not is_moment(value) or len(kinds) > 1:
-            raise TraceError(
-                f"'{TIME}' is {shown(value)} at sample {i}, expected a {'datetime' if 'M' in kinds else 'timedelta'} "
-                f"like the others",
-                variable=TIME,
-                index=i,
-            )
-        if isinstance(value, np.timedelta64) and not has_length(value):
-            raise no_length(TIME, i)
-        moment = nanoseconds_of(value)
-        if moment is None:
-            continue
-        if abs(moment) >= 2**63:
-            raise out_of_reach(TIME, i, value, kind)
-        zones.setdefault(getattr(value, "tzinfo", None) is not None, i)
-        found[i - first] = moment
-    if len(zones) > 1:
-        raise TraceError(
-            f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
-            f"use one way for all",
-            variable=TIME,
-            index=max(zones.values()),
-        )
-    return found.view(f"{next(iter(kinds))}8[ns]")
 
 
 def check_numbers(
@@ -361,6 +326,8 @@ def _keys(data: Any) -> list[str]:
     if is_mapping(data):
         return list(data)
     if not is_frame(data):
+        from rtamt.signals.data_errors import not_a_mapping
+
         raise not_a_mapping(data, "values, such as {'time': [...], 'x': [...]}")
     return list(data.columns)
 
@@ -372,39 +339,6 @@ def is_frame(data: Any) -> bool:
     """
     kind = type(data)
     return not hasattr(kind, "column_names") and not hasattr(kind, "collect") and hasattr(data, "columns")
-
-
-def not_a_mapping(data: Any, to: str) -> TraceError:
-    """Return the error for data that is not a mapping from variables to ``to``; a file must be read first."""
-    if isinstance(data, str | PathLike):
-        path = shown(fspath(data))
-        return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
-    if type(data).__name__ == "LazyFrame":
-        return TraceError("expected data, got a LazyFrame; write frame.collect()")
-    if hasattr(data, "column_names"):
-        return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
-    if is_labelled(data):
-        return TraceError(f"expected data, got an xarray {type(data).__name__}; write rtamt.read(data)")
-    if getattr(getattr(data, "dtype", None), "names", None):
-        return TraceError("expected data, got a structured NumPy array; write rtamt.read(array)")
-    return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
-
-
-def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:
-    """Raise :class:`TraceError` at a key that is neither a variable of the formula, nor declared, nor the time.
-
-    For data that need not hold every variable, where such a key may be a misspelt one; where all variables are
-    there, others do no harm.
-    """
-    if all(name in keys or name.split(".")[0] in keys for name in names):
-        return
-    for key in keys:
-        if key in names or key == TIME or key in declared:
-            continue
-        if key not in {name.split(".")[0] for name in names}:
-            from rtamt.signals.data_errors import unknown_variable
-
-            raise unknown_variable(str(key), names)
 
 
 def _column(

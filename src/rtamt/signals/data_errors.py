@@ -1,16 +1,18 @@
-"""Errors for data without a number that the formula needs."""
+"""Errors for data without what the formula needs: numbers, variables, columns."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
+from os import PathLike, fspath
 
-from rtamt.errors import TraceError, choices
+from rtamt.errors import TraceError, choices, shown
 from rtamt.language.units.moments import time_text
-from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals.arrays import TIME
+from rtamt.signals.time_columns import is_labelled
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rtamt.language.quantifiers import Group
 
@@ -121,3 +123,34 @@ def possible_times(column: str) -> TraceError:
         f"or give the period of the samples, such as period='1s', on the command line --period 1s",
         variable=TIME,
     )
+
+
+def not_a_mapping(data: Any, to: str) -> TraceError:
+    """Return the error for data that is not a mapping from variables to ``to``; a file must be read first."""
+    if isinstance(data, str | PathLike):
+        path = shown(fspath(data))
+        return TraceError(f"expected data, got {path}; to read a file write rtamt.read({path})")
+    if type(data).__name__ == "LazyFrame":
+        return TraceError("expected data, got a LazyFrame; write frame.collect()")
+    if hasattr(data, "column_names"):
+        return TraceError(f"expected data, got an Arrow {type(data).__name__}; write rtamt.read(table)")
+    if is_labelled(data):
+        return TraceError(f"expected data, got an xarray {type(data).__name__}; write rtamt.read(data)")
+    if getattr(getattr(data, "dtype", None), "names", None):
+        return TraceError("expected data, got a structured NumPy array; write rtamt.read(array)")
+    return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
+
+
+def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:
+    """Raise :class:`TraceError` at a key that is neither a variable of the formula, nor declared, nor the time.
+
+    For data that need not hold every variable, where such a key may be a misspelt one; where all variables are
+    there, others do no harm.
+    """
+    if all(name in keys or name.split(".")[0] in keys for name in names):
+        return
+    for key in keys:
+        if key in names or key == TIME or key in declared:
+            continue
+        if key not in {name.split(".")[0] for name in names}:
+            raise unknown_variable(str(key), names)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from types import MappingProxyType
 
-from rtamt.errors import TraceError
+from rtamt.errors import TraceError, shown
 from rtamt.language.units.durations import UNITS
 from rtamt.lazy.modules import dt, np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.signals.arrays import TIME, is_moment
 from rtamt.signals.counting import times_of
 
 if TYPE_CHECKING:
@@ -118,3 +119,37 @@ def nanoseconds_of(time: Any) -> int | None:
         zone = None if time.tzinfo is None else dt.timezone.utc
         since = time - dt.datetime(1970, 1, 1, tzinfo=zone)
     return (since // dt.timedelta(microseconds=1)) * 1000
+
+
+def moments(raw: NDArray[Any], first: int) -> NDArray[Any]:
+    """Return dates or durations in nanoseconds; dates without a time zone are taken literally, as in dense time."""
+    zones: dict[bool, int] = {}
+    kinds: dict[str, int] = {}
+    found = np.full(raw.size, np.iinfo(np.int64).min)  # NaT
+    for i, value in enumerate(raw.flat, first):
+        kind = "m" if isinstance(value, dt.timedelta | np.timedelta64) else "M"
+        kinds.setdefault(kind, i)
+        if not is_moment(value) or len(kinds) > 1:
+            raise TraceError(
+                f"'{TIME}' is {shown(value)} at sample {i}, expected a {'datetime' if 'M' in kinds else 'timedelta'} "
+                f"like the others",
+                variable=TIME,
+                index=i,
+            )
+        if isinstance(value, np.timedelta64) and not has_length(value):
+            raise no_length(TIME, i)
+        moment = nanoseconds_of(value)
+        if moment is None:
+            continue
+        if abs(moment) >= 2**63:
+            raise out_of_reach(TIME, i, value, kind)
+        zones.setdefault(getattr(value, "tzinfo", None) is not None, i)
+        found[i - first] = moment
+    if len(zones) > 1:
+        raise TraceError(
+            f"'{TIME}' has a time zone at sample {zones[True]} and none at sample {zones[False]}: "
+            f"use one way for all",
+            variable=TIME,
+            index=max(zones.values()),
+        )
+    return found.view(f"{next(iter(kinds))}8[ns]")

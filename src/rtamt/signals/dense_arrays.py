@@ -11,7 +11,7 @@ from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays
 from rtamt.signals.coding import encoded, require_truths
 from rtamt.signals.counting import times_of
-from rtamt.signals.data_errors import NAN_MEND
+from rtamt.signals.data_errors import NAN_MEND, not_a_mapping, refuse_unknown
 from rtamt.signals.sampling_period import merged, never_set
 from rtamt.signals.signal import Signal
 from rtamt.signals.ticks import sequence_of
@@ -100,11 +100,11 @@ def columns_of(
         data = data.on_own_time_bases(names)
     if not arrays.is_mapping(data):
         if not arrays.is_frame(data):
-            raise arrays.not_a_mapping(data, "(times, values), such as {'x': ([0.0, 1.5], [3, 4])}")
+            raise not_a_mapping(data, "(times, values), such as {'x': ([0.0, 1.5], [3, 4])}")
         check_frame(data, arrays.TIME, names)
         data = {name: data[name] for name in (*names, arrays.TIME) if name in data.columns}
     if declared is not None:
-        arrays.refuse_unknown(list(data), names, declared)
+        refuse_unknown(list(data), names, declared)
     stamped = arrays.TIME in data and arrays.TIME not in names
     shared = sequence_of(data[arrays.TIME], arrays.TIME) if stamped else None
     columns = {}

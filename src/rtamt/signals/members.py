@@ -25,10 +25,9 @@ from rtamt.signals.arrays import (
     field_of,
     is_frame,
     is_mapping,
-    not_a_mapping,
 )
 from rtamt.signals.assumed_period import require_times
-from rtamt.signals.data_errors import missing_outside
+from rtamt.signals.data_errors import missing_outside, not_a_mapping
 from rtamt.signals.gaps import gaps_of, items_of
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.time_columns import check_frame
