@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from conformance.cases import FOLDER, each, number, text
+from conformance.cases import FOLDER, each, records, text
 from conformance.trees import in_steps, tree
 from rtamt.errors import EvaluationError
 from rtamt.language.contents import variables
@@ -72,9 +72,9 @@ class EarlyCase:
 
 
 def read() -> list[EarlyCase]:
-    """Return the cases of the file."""
-    with (FOLDER / FILE).open(encoding="utf-8") as lines:
-        return [EarlyCase(**each(json.loads(line), number)) for line in lines]
+    """Return the cases of the file; raise :class:`CorpusError` where it is malformed."""
+    stored = ("tree", "bounds", "verdicts", "causation")
+    return [EarlyCase(**record) for _, record in records(FOLDER / FILE, EarlyCase, stored)]
 
 
 def write(cases: list[EarlyCase]) -> None:

@@ -1,6 +1,7 @@
 """This project, asked like the others."""
 
 import os
+from fractions import Fraction
 from functools import lru_cache
 
 from protocol import Writer, horizon, serve
@@ -25,12 +26,20 @@ def spelled(op):
 
 
 class Text(Writer):
-    """The language, with intervals that may be open ahead and operands that may be left out."""
+    """The language, with intervals that may be open ahead and operands that may be left out.
+
+    ``step`` is the number of seconds in one of the intervals.
+    """
+
+    def __init__(self, table, step=1):
+        """Take the table, and the length of a step."""
+        super().__init__(table)
+        self.step = step
 
     def interval(self, bounds):
         """Write inf for no end."""
         begin, end = bounds
-        return f"[{begin}:{'inf' if end is None else end}]"
+        return f"[{begin * self.step}:{'inf' if end is None else end * self.step}]"
 
     def write(self, node):
         """Write a function with the operands that it has."""
@@ -40,39 +49,50 @@ class Text(Writer):
         bounds = node.get("interval")
         text = "" if bounds is None else self.interval(bounds)
         if bounds is not None and op.bounds is Bounds.DURATION:
-            text = f"[{bounds[0]}]"
+            text = f"[{bounds[0] * self.step}]"
         operands = [*map(self.write, node["args"])]
         if "share" in node:
             kind, amount = node["share"]
-            operands.insert(0, amount + {"percent": "%", "duration": "s"}.get(kind, ""))
+            if kind == "duration":
+                amount = f"{Fraction(amount) * self.step}s"
+            operands.insert(0, f"{amount}%" if kind == "percent" else amount)
         return f"{op.spellings[0]}{text}({', '.join(operands)})"
 
 
-TEXT = Text({op.name: spelled(op) for op in STL})
+TABLE = {op.name: spelled(op) for op in STL}
+TEXT = Text(TABLE)
 
 
-def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the whole trace is told
-    """Evaluate, or update sample by sample."""
-    spec = rtamt.parse(TEXT.write(formula), time=time)
+def answer(formula, time, mode, signals, end, step):  # noqa: ARG001 - the whole trace is told
+    """Evaluate, or update sample by sample; times are seconds here, and steps in question and answer."""
+    step = Fraction(step)
+    length = {"period": step} if time == "discrete" else {"resolution": step}
+    spec = rtamt.parse(Text(TABLE, step).write(formula), time=time, **length)
     if time == "discrete":
         if mode == "offline":
             return {"values": spec.evaluate({**signals}).signal.values.tolist()}
         horizon(formula)
         monitor = spec.monitor()
         n = len(next(iter(signals.values())))
-        told = [monitor.update(float(i), **{k: v[i] for k, v in signals.items()}) for i in range(n)]
+        told = [monitor.update(float(i * step), **{k: v[i] for k, v in signals.items()}) for i in range(n)]
         return {"values": [v for v in told if v is not None]}
     if mode == "offline":
-        signal = spec.evaluate(signals).signal
-        return {"values": list(map(list, zip(signal.times.tolist(), signal.values.tolist(), strict=True)))}
+        seconds = {name: [(float(t * step), v) for t, v in samples] for name, samples in signals.items()}
+        return {"values": in_ticks(spec.evaluate(seconds).signal, step)}
     horizon(formula)
-    monitor = spec.monitor(time="dense")
+    monitor = spec.monitor()
     told = []
     for t in sorted({t for samples in signals.values() for t, _ in samples}):
         now = {name: dict(map(tuple, samples)) for name, samples in signals.items()}
-        signal = monitor.update(float(t), **{name: at[t] for name, at in now.items() if t in at})
-        told += map(list, zip(signal.times.tolist(), signal.values.tolist(), strict=True))
+        values = {name: at[t] for name, at in now.items() if t in at}
+        told += in_ticks(monitor.update(float(t * step), **values), step)
     return {"values": told, "until": told[-1][0] if told else 0}
+
+
+def in_ticks(signal, step):
+    """Return a signal as [tick, value] pairs."""
+    ticks = [round(Fraction(t) / step) for t in signal.times.tolist()]
+    return list(map(list, zip(ticks, signal.values.tolist(), strict=True)))
 
 
 def reading(formula, time, mode, names):  # noqa: ARG001 - it declares none
@@ -142,7 +162,13 @@ def prepare(formula, time, mode, signals):
 
 
 serve(
-    {"peer": f"rtamt {rtamt.__version__} (this)", "modes": MODES, "conventions": {}, "notes": NOTES},
+    {
+        "peer": f"rtamt {rtamt.__version__} (this)",
+        "modes": MODES,
+        "conventions": {},
+        "notes": NOTES,
+        "steps": True,
+    },
     answer,
     prepare,
     reading,

@@ -6,10 +6,12 @@ import json
 import math
 import selectors
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from conformance.cases import ROUNDED, TOLERANCE
 from conformance.trees import in_steps, tree
 
 import rtamt
@@ -25,7 +27,6 @@ if TYPE_CHECKING:
     from conformance.cases import Case
 
 PATIENCE = 20.0  # seconds for an answer
-CLOSE = 1e-9  # relative; a tool may round where the definition does not
 
 
 class Talk:
@@ -39,6 +40,8 @@ class Talk:
         self.modes: list[tuple[str, str]] = [(time, mode) for time, mode in self._declared["modes"]]
         self.conventions: dict[str, str] = self._declared["conventions"]
         self.notes: str = self._declared["notes"]
+        #: Whether it is told how long a step is; to the others it is a second.
+        self.takes_steps: bool = self._declared.get("steps", False)
 
     def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
         """Return the answer; ``{"crash": why}`` where none came."""
@@ -89,7 +92,8 @@ class Talk:
 class Question:
     """A formula whose bounds are whole steps, a trace that begins at 0, and how it is to be evaluated.
 
-    ``alone`` is the one operator that the formula asks about, "" where it is nested.
+    ``alone`` is the one operator that the formula asks about, "" where it is nested. ``step`` is the length of a step
+    in seconds, and ``stored`` the answer in the corpus; None where the question is not that of the corpus.
     """
 
     formula: Formula
@@ -97,6 +101,17 @@ class Question:
     signals: dict[str, list[Any]]
     conventions: dict[str, str]
     alone: str = ""
+    step: Fraction = Fraction(1)
+    stored: list[list[Any]] | None = None
+
+    def changed(self, formula: Formula, signals: dict[str, list[Any]]) -> Question:
+        """Return a question that is not that of the corpus."""
+        return Question(formula, self.mode, signals, self.conventions, self.alone)
+
+    @cached_property
+    def tolerance(self) -> float:
+        """The relative tolerance of its answer."""
+        return TOLERANCE if self.operators & ROUNDED else 0.0
 
     @cached_property
     def text(self) -> str:
@@ -122,11 +137,18 @@ class Question:
         return None if depth is None or last - depth <= 0 else last - depth
 
     def expected(self) -> list[list[Any]]:
-        """Return the answer of the definition, changes as [instant, value]."""
-        meant = fold(self.formula, self._meant)
+        """Return the answer of the corpus, changes as [instant, value]; where there is none, that of the definition."""
+        if self.stored is not None:
+            return self.stored
+        meant = self.meant
         spec = rtamt.parse(str(meant), backend="python", time=self.mode[0])
         signal = spec.evaluate(self.signals).signal
         return [list(pair) for pair in zip(signal.times.tolist(), signal.values.tolist(), strict=True)]
+
+    @cached_property
+    def meant(self) -> Formula:
+        """What the peer means, in our language."""
+        return fold(self.formula, self._meant)
 
     def _meant(self, node: Formula, args: tuple[Formula, ...]) -> Formula:
         """Say in our language what the peer means."""
@@ -151,13 +173,32 @@ class Asked:
     got: Any = None
 
 
-def question_of(case: Case, mode: tuple[str, str], conventions: dict[str, str]) -> Question | None:
-    """Translate a case; None where nothing of it can be judged."""
+def question_of(
+    case: Case, mode: tuple[str, str], conventions: dict[str, str], *, takes_steps: bool = False
+) -> Question | None:
+    """Translate a case; None where nothing of it can be judged.
+
+    The answer is the stored one, unless the peer means another formula, or seconds matter and its steps are seconds.
+    """
     formula = in_steps(rtamt.parse(case.formula).formula, case.seconds)
     signals = case.signals if case.time == "discrete" else together(case.signals)
     _, asked, *_ = case.id.split("/")
-    question = Question(formula, mode, signals, conventions, asked if STL.get(asked) else "")
-    return None if question.end is None else question
+    step = case.seconds if takes_steps else Fraction(1)
+    question = Question(formula, mode, signals, conventions, asked if STL.get(asked) else "", step)
+    if question.end is None:
+        return None
+    timed = any(isinstance(node, Apply) and node.op.timed for node in postorder(formula))
+    if question.meant != formula or (timed and step != case.seconds):
+        return question
+    return replace(question, stored=_stored(case))
+
+
+def _stored(case: Case) -> list[list[Any]]:
+    """Return the answer of a case, from 0 on."""
+    if case.time == "discrete":
+        return [[k, value] for k, value in enumerate(case.values)]
+    start = case.values[0][0]
+    return [[tick - start, value] for tick, value in case.values]
 
 
 def together(signals: Mapping[str, Sequence[Sequence[Any]]]) -> dict[str, list[Any]]:
@@ -176,15 +217,14 @@ def together(signals: Mapping[str, Sequence[Sequence[Any]]]) -> dict[str, list[A
 def ask(talk: Talk, question: Question) -> Asked:
     """Ask a peer, and judge what it says."""
     time, mode = question.mode
-    said = talk.ask(
-        {
-            "formula": tree(question.formula),
-            "time": time,
-            "mode": mode,
-            "signals": question.signals,
-            "end": question.end,
-        }
-    )
+    asked = {
+        "formula": tree(question.formula),
+        "time": time,
+        "mode": mode,
+        "signals": question.signals,
+        "end": question.end,
+    }
+    said = talk.ask(asked | {"step": str(question.step)} if talk.takes_steps else asked)
     for kind in ("unsupported", "error", "crash"):
         if kind in said:
             # The definition has no value for some of these either (0/0): then nobody is at fault.
@@ -193,14 +233,17 @@ def ask(talk: Talk, question: Question) -> Asked:
             )
     expected = question.expected()
     end = question.end or 0
+    tolerance = question.tolerance
     if time == "discrete":
         got = [[i, v] for i, v in enumerate(said["values"])]
         return Asked(
-            _compare(expected, got, len(got) >= end, end), _cut(expected, question), _cut(got, question)
+            _compare(expected, got, len(got) >= end, end, tolerance),
+            _cut(expected, question),
+            _cut(got, question),
         )
     got = said["points"] if "points" in said else said["values"]
     told, whole = _reported_steps(expected, got, said, end)
-    kind = _compare(expected, told, whole, end)
+    kind = _compare(expected, told, whole, end, tolerance)
     until = said.get("until", end)
     shown = _cut(got, question)
     return Asked(kind, _cut(expected, question), shown if until >= end else f"{shown}, told up to {until}")
@@ -219,9 +262,9 @@ def _reported_steps(
     return [[t, _at(got, t)] for t in sorted(instants)], first == 0 and until >= end
 
 
-def _compare(expected: list[Any], told: list[Any], whole: bool, end: int) -> str:
+def _compare(expected: list[Any], told: list[Any], whole: bool, end: int, tolerance: float) -> str:
     """Return what an answer is worth: every value told counts, and an answer that stops early is incomplete."""
-    if not all(_same(_at(expected, t), v) for t, v in told if t < end):
+    if not all(_same(_at(expected, t), v, tolerance) for t, v in told if t < end):
         return "disagrees"
     return "agrees" if whole else "incomplete"
 
@@ -230,8 +273,8 @@ def _at(steps: Sequence[Sequence[Any]], t: float) -> float:
     return float([v for at, v in steps if at <= t][-1])
 
 
-def _same(a: float, b: float | None) -> bool:
-    return b is not None and (a == b or math.isclose(a, b, rel_tol=CLOSE, abs_tol=CLOSE))
+def _same(a: float, b: float | None, tolerance: float) -> bool:
+    return b is not None and (a == b or math.isclose(a, b, rel_tol=tolerance))
 
 
 def _cut(steps: Sequence[Any], question: Question) -> list[Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from asking import Asked, Question, Talk, answerable, ask, together
@@ -37,9 +36,9 @@ def _smaller(question: Question) -> Iterator[Question]:
     for formula in _formulas(question.formula):
         names = variables(formula)
         if names:
-            yield replace(question, formula=formula, signals={name: question.signals[name] for name in names})
+            yield question.changed(formula, {name: question.signals[name] for name in names})
     for signals in _traces(question.signals, dense=question.mode[0] == "dense"):
-        yield replace(question, signals=signals)
+        yield question.changed(question.formula, signals)
 
 
 def _formulas(formula: Formula) -> Iterator[Formula]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import rtamt
 PEERS = Path(__file__).parents[2] / "conformance" / "peers"
 
 LIAR = """
+import dataclasses
 import sys
 sys.path.insert(0, {peers!r})
 from protocol import UnsupportedError, operators, serve
@@ -60,7 +62,7 @@ def test_we_agree_with_ourselves_in_every_mode() -> None:
     for case in list(CORPUS.values())[::40]:
         for mode in talk.modes:
             if mode[0] == case.time and case.semantics == "standard":
-                found = asking.question_of(case, mode, talk.conventions)
+                found = asking.question_of(case, mode, talk.conventions, takes_steps=talk.takes_steps)
                 if found is not None:
                     assert asking.ask(talk, found).kind in ("agrees", "unsupported"), case.id
                     asked += 1
@@ -81,6 +83,8 @@ def test_what_a_tool_does_is_told_apart(liar: asking.Talk, time: str, operator: 
 
 class Said:
     """A tool that gives one answer, whatever it is asked."""
+
+    takes_steps = False
 
     def __init__(self, said: dict[str, Any]) -> None:
         self.said = said
@@ -147,3 +151,49 @@ def test_only_instants_whose_windows_end_inside_the_trace_are_judged() -> None:
     )
     assert window is not None
     assert window.end == 1  # always[2:3] over four samples
+
+
+def test_the_answer_of_the_corpus_was_never_looked_at() -> None:
+    talk = asking.Talk([sys.executable, str(PEERS / "ask_this.py")])
+    kinds = {}
+    for name in ("discrete/always/00", "dense/once/00", "discrete/integral/03", "dense/rate/03"):
+        case = CORPUS[name]
+        for values in (case.values, _moved(case.values)):
+            wrong = dataclasses.replace(case, values=values)
+            found = asking.question_of(wrong, (case.time, "offline"), {}, takes_steps=True)
+            assert found is not None
+            kinds.setdefault(name, []).append(asking.ask(talk, found).kind)
+    talk.close()
+    assert kinds == {name: ["agrees", "disagrees"] for name in kinds}
+
+
+def _moved(values: list[Any]) -> list[Any]:
+    """Return values of which the first differs a little."""
+    first, *others = values
+    return [[first[0], first[1] + 1e-9], *others] if isinstance(first, list) else [first + 1e-9, *others]
+
+
+def test_a_formula_that_a_tool_reads_otherwise_has_the_answer_of_the_definition() -> None:
+    case = next(case for k in range(20) if (case := CORPUS[f"discrete/rate/{k:02}"]).step != "1")
+    mode = ("discrete", "offline")
+    of_seconds = asking.question_of(case, mode, {})
+    of_steps = asking.question_of(case, mode, {}, takes_steps=True)
+    assert of_seconds is not None
+    assert of_steps is not None
+    assert of_seconds.stored is None  # its steps are seconds
+    assert of_steps.stored == [list(pair) for pair in enumerate(case.values)]
+
+
+@pytest.mark.parametrize(
+    ("formula", "off", "kind"),
+    [
+        ("once x", 1e-15, "disagrees"),
+        ("once exp(x)", 1e-13, "agrees"),
+        ("once exp(x)", 1e-11, "disagrees"),
+    ],
+)
+def test_only_functions_of_the_c_library_have_a_tolerance(formula: str, off: float, kind: str) -> None:
+    asked = asking.Question(rtamt.parse(formula).formula, ("discrete", "offline"), {"x": [1.0]}, {})
+    ((_, value),) = asked.expected()
+    talk: Any = Said({"values": [value * (1 + off)]})
+    assert asking.ask(talk, asked).kind == kind
