@@ -20,6 +20,7 @@ conclusions       the answers of analyses: text, JSON and plots
 outcome           the outcome of a requirement on a recording, as reports show it
 runner            every requirement on every recording, on all cores
 many              very many recordings: ``rtamt check --engine``
+written_formats   the formats of ``--output``
 early_outcomes    the same, reading a recording no further than the verdicts need
 chunks            a recording that is read in chunks
 bag               check a bag, and write a copy with the results

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
+from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import choice_for, completed_for
 from rtamt.cli.runner import evaluate
 from rtamt.errors import UsageError
+from rtamt.language.distinct import distinct
 from rtamt.lazy.dataclasses import replace
 from rtamt.readers.bag_topic import STAMP
 from rtamt.readers.formats import is_bag
@@ -19,7 +21,7 @@ from rtamt.ros.binding import bind, topic_of
 from rtamt.violations import signals_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
@@ -48,11 +50,12 @@ def _findings(
     try:
         outputs = bind(requirement.spec).outputs
     except UsageError:  # it was not written for nodes: a formula over columns
-        for row in requirement.rows or (requirement,):
-            if row.label in results:
-                topic = topic_of(row.written.name) if requirement.rows else TOPIC
-                read = topics_read(row.spec, trace, reading)
-                yield _finding(row.label, topic, results[row.label], read)
+        rows = [row for row in requirement.rows or (requirement,) if row.label in results]
+        topics = _topics([row.written.name for row in rows]) if requirement.rows else {}
+        for row in rows:
+            topic = topics.get(row.written.name, TOPIC)
+            read = topics_read(row.spec, trace, reading)
+            yield _finding(row.label, topic, results[row.label], read)
         return
     for output in outputs:
         alone = replace(requirement, spec=output.specification, rows=())
@@ -63,6 +66,19 @@ def _findings(
             raise CommandError(outcome.error)
         read = topics_read(output.specification, trace, reading)
         yield _finding(output.name, output.topic, outcome.result, read)
+
+
+def _topics(names: Sequence[str]) -> dict[str, str]:
+    """Return the topic of each requirement; note those that do not have that of their name."""
+    topics = distinct(names, topic_of)
+    owners = {topic: name for name, topic in topics.items()}
+    for name, topic in topics.items():
+        usual = topic_of(name)
+        if topic != usual:
+            complain(
+                f"note: '{name}' is written to /{topic}, because /{usual} is the topic of '{owners[usual]}'"
+            )
+    return topics
 
 
 def _finding(name: str, topic: str, result: Result, read: tuple[str, ...]) -> Finding:

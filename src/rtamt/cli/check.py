@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ from rtamt.cli.report_formats import REPORTS, write_report
 from rtamt.cli.report_formats.messages import episodes_members, robustness_members
 from rtamt.cli.runner import outcomes
 from rtamt.cli.terminal import Progress, printed, say, table, use_color, width_of
+from rtamt.cli.written_formats import ROBUSTNESS, format_of
 from rtamt.errors import escaped
 from rtamt.language.units.durations import format_duration
 from rtamt.lazy.dataclasses import replace
@@ -239,6 +241,8 @@ def _check_output(output: str | None, given: Sequence[Requirement], traces: Sequ
         return
     if output.lower().endswith((".bag", ".db3")):
         raise CommandError(f"--output is '{output}', but bags are written as MCAP: write to a file .mcap")
+    if os.path.splitext(output)[1]:  # without one, such as /dev/stdout, it is a table
+        format_of(output, ROBUSTNESS, "write the robustness")
     if len(given) * len(traces) > 1:
         what = (
             f"{len(traces)} traces"

@@ -14,6 +14,7 @@ from rtamt.cli.arguments import is_specification, prepared_specs, specification_
 from rtamt.cli.command import CommandError, json_number, json_text, short, warn, warnings_of
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import Progress, say, table, use_color, width_of
+from rtamt.cli.written_formats import VERDICTS, format_of
 from rtamt.errors import UsageError, escaped
 from rtamt.extras import library
 from rtamt.files import replacing
@@ -208,9 +209,7 @@ def _row_writer(path: str | None) -> Iterator[Callable[[VerdictTable], None]]:
     if path is None:
         yield lambda _table: None
         return
-    suffix = os.path.splitext(path)[1].lower()
-    if suffix not in (".parquet", ".csv"):
-        raise CommandError(f"--output is '{path}'; with --engine, write the table to a file .parquet or .csv")
+    suffix = format_of(path, VERDICTS, "with --engine, write the table")
     try:
         with replacing(path) as new:
             if suffix == ".csv":

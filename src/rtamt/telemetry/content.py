@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
+from rtamt.language.distinct import distinct
 from rtamt.language.value_types import value_names
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
@@ -147,15 +148,7 @@ def _keys(names: Iterable[str]) -> dict[str, str]:
     >>> _keys(["gap", "/odom.x", "/odom/x"])
     {'gap': 'gap', '/odom.x': 'odom_x', '/odom/x': 'odom_x_2'}
     """
-    found: dict[str, str] = {}
-    for name in names:
-        plain = key = _OTHER.sub("_", name).strip("_")[:_LONGEST] or "unnamed"
-        number, taken = 1, set(found.values())
-        while key in taken:
-            number += 1
-            key = f"{plain}_{number}"
-        found[name] = key
-    return found
+    return distinct(names, lambda name: _OTHER.sub("_", name).strip("_")[:_LONGEST] or "unnamed")
 
 
 def _variable(name: str, key: str, result: Result) -> Variable:

@@ -57,3 +57,18 @@ def test_a_formula_and_devices_may_be_called_like_the_output(run, files):
     )
     assert run("check", "x.stl", "t.csv", "-o", os.devnull, "--junit", os.devnull).code == 0
     assert files["t.csv"] == Path("t.csv").read_text()
+
+
+@pytest.mark.parametrize("output", ["r.parquet", "r.json", "r.CSV.gz", "folder.csv/r.txt"])
+def test_a_file_of_any_other_format_was_written_as_csv(run, files, output):
+    message = f"rtamt: --output is '{output}'; write the robustness to a file .csv or .mcap\n"
+    assert run("check", "x.stl", "t.csv", "-o", output) == (2, "", message)
+    assert {path.name: path.read_text() for path in Path().iterdir()} == files
+    assert run("check", "x.stl", "t.csv", "-o", "R.CSV", "--quiet") == (0, "", "")
+
+
+@pytest.mark.parametrize("output", ["r.json", "r"])
+def test_verdicts_of_an_engine_have_two_formats(run, files, output):
+    assert output not in files
+    message = f"rtamt: --output is '{output}'; with --engine, write the table to a file .parquet or .csv\n"
+    assert run("check", "x.stl", "t.csv", "--engine", "local", "-o", output) == (2, "", message)

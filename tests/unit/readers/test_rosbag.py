@@ -227,6 +227,30 @@ def test_the_written_bag_keeps_nanoseconds_types_and_qualities_of_service(tmp_pa
     assert {stamp for stamp, _ in timestamps["/rtamt/robustness"]} <= set(exact)
 
 
+def test_requirements_whose_topics_become_equal_were_written_beside_each_other_as_offline(
+    drive, tmp_path, capsys
+):
+    out, spec = tmp_path / "out.mcap", tmp_path / "a.stl"
+    formulas = [
+        f'require {name}: always("/other.data" >= {k})' for k, name in enumerate(("REQ-1", "REQ_1", "REQ.1"))
+    ]
+    spec.write_text("\n".join(formulas))
+    assert main(["check", str(spec), str(drive), "--quiet", "-o", str(out), "--period", "1"]) == 1
+    assert capsys.readouterr().err == (
+        "rtamt: note: 'REQ_1' is written to /rtamt/REQ_1_2, because /rtamt/REQ_1 is the topic of 'REQ-1'\n"
+        "rtamt: note: 'REQ.1' is written to /rtamt/REQ_1_3, because /rtamt/REQ_1 is the topic of 'REQ-1'\n"
+    )
+    with AnyReader([out]) as reader:
+        names = {
+            connection.topic: reader.deserialize(raw, connection.msgtype).name
+            for connection, _, raw in reader.messages()
+            if connection.topic.endswith("/verdict")
+        }
+    assert names == {
+        "/rtamt/REQ_1/verdict": "REQ-1", "/rtamt/REQ_1_2/verdict": "REQ_1", "/rtamt/REQ_1_3/verdict": "REQ.1"
+    }  # fmt: skip
+
+
 def test_a_recorded_robustness_topic_stays_and_the_offline_one_lies_beside_it(drive, tmp_path):
     once, twice = tmp_path / "once.mcap", tmp_path / "twice.mcap"
     main(["check", str(LISTING_8), str(drive), "--quiet", "-o", str(once), "--period", "1"])
