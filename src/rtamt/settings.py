@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from enum import Enum
-from math import isnan
+from math import inf, isinf, isnan
 from types import MappingProxyType
 
 from rtamt.engine import BACKENDS, engine_of
@@ -13,6 +13,7 @@ from rtamt.language.contents import variables
 from rtamt.language.formula import Formula
 from rtamt.language.operators import Language
 from rtamt.language.value_types import BOOLEAN, Enumeration
+from rtamt.lazy.patterns import lazy_pattern
 from rtamt.lazy.typing import TYPE_CHECKING, Any, TypeAlias
 from rtamt.rewrite.semantics import ROLES, PredicateSemantics
 from rtamt.signals.arrays import is_number, is_truth
@@ -32,6 +33,9 @@ Semantics: TypeAlias = str | Enum | PredicateSemantics
 #: Formulas that a monitor evaluates in addition to its own: names, texts or formulas.
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
+
+_NUMBER = lazy_pattern(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_INFINITE = lazy_pattern(r"[+-]?inf")
 
 #: The names of the settings of :meth:`Specification.evaluate` that functions pass on.
 EVALUATION_SETTINGS = ("time", "period", "resolution", "semantics", "time_unit")
@@ -125,6 +129,9 @@ def check_constants(constants: Mapping[str, float]) -> None:
 def assignments(texts: Iterable[str]) -> dict[str, float | str]:
     """Return parameter values from texts; texts that are not numbers are kept for :func:`parameter_value`.
 
+    Numbers are those of formulas, with a sign: Python also reads ``1_0`` and digits of other scripts. Raises
+    :class:`UsageError` for a text that sets nothing, and for a parameter that is set twice.
+
     >>> assignments(["limit=3", "battery.low = 3.5", "strict=true", "start=AUTO"])
     {'limit': 3.0, 'battery.low': 3.5, 'strict': True, 'start': 'AUTO'}
     """
@@ -132,15 +139,22 @@ def assignments(texts: Iterable[str]) -> dict[str, float | str]:
     values: dict[str, float | str] = {}
     for text in texts:
         name, equals, given = text.rpartition("=")
-        value = given.strip()
-        if not equals or not name.strip() or not value:
+        name, value = name.strip(), given.strip()
+        if not equals or not name or not value:
             raise UsageError(f"'{text}' sets no parameter; write NAME=VALUE, such as limit=3")
+        if name in values:
+            raise UsageError(f"the parameter '{name}' is set twice; leave out one of the values")
         truth = truths.get(value.lower())
-        try:
-            values[name.strip()] = float(value) if truth is None else truth
-        except ValueError:
-            values[name.strip()] = value
+        values[name] = _number(value) if truth is None else truth
     return values
+
+
+def _number(text: str) -> float | str:
+    """Return the number that a text is in formulas, which are finite unless they are ``inf``; else the text."""
+    if _INFINITE.fullmatch(text):
+        return float(text)
+    number = float(text) if _NUMBER.fullmatch(text) else inf
+    return text if isinf(number) else number
 
 
 def require_parameters(names: Iterable[str], known: Collection[str]) -> None:

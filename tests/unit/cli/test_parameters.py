@@ -63,11 +63,29 @@ def test_of_several_specifications_those_with_the_parameter_have_its_value(run, 
         ("limt=3", "there is no parameter 'limt'; did you mean 'limit'? (parameters: limit, within)"),
         ("limit", "'limit' sets no parameter; write NAME=VALUE, such as limit=3"),
         ("limit=high", "the parameter 'limit' is 'high'; give a number"),
-        ("limit=nan", "the parameter 'limit' is nan; give a number"),
+        ("limit=nan", "the parameter 'limit' is 'nan'; give a number"),
+        ("limit=1_0", "the parameter 'limit' is '1_0'; give a number"),
+        ("limit=\u0663", "the parameter 'limit' is '\u0663'; give a number"),
+        ("limit=infinity", "the parameter 'limit' is 'infinity'; give a number"),
+        ("limit=1e999", "the parameter 'limit' is '1e999'; give a number"),
     ],
 )
 def test_what_cannot_be_set_is_one_sentence(run, files, given, sentence):
     assert run("check", *files, "--set", given) == (2, "", f"rtamt: {sentence}\n")
+
+
+@pytest.mark.parametrize("second", ["limit=4", "limit=3", " limit =4"])
+def test_the_second_of_two_values_won_silently(run, files, second):
+    error = "rtamt: the parameter 'limit' is set twice; leave out one of the values\n"
+    assert run("check", *files, "--set", "limit=3", "--set", second) == (2, "", error)
+
+
+@pytest.mark.parametrize(
+    ("given", "value"), [("3", 3), ("-3", -3), ("+.5", 0.5), ("5.", 5), ("1E-3", 0.001), ("-inf", "-inf")]
+)
+def test_numbers_are_set_as_formulas_have_them(run, files, given, value):
+    told = json.loads(run("info", files[0], "--set", f"limit={given}", "--json").out)
+    assert told["parameters"][0]["value"] == value
 
 
 def test_a_bound_that_is_set_is_pointed_at(run, files):
