@@ -273,8 +273,9 @@ bool regular(std::span<const double> times, std::optional<double> before, double
 
 namespace {
 
-// The limits of infer_period(): of its `_COARSE`, and of gaps that do not differ.
+// The limits of infer_period(): `_COARSE`, `_UNCERTAIN`, and that of gaps that do not differ.
 constexpr double coarse_precision = 1e-4;
+constexpr double uncertain_precision = 1e-2;
 constexpr double same_gap = 1e-6;
 
 // Whether doubles may have been floats of 32 bits.
@@ -301,14 +302,32 @@ constexpr double same_gap = 1e-6;
     return (*std::max_element(gaps.begin(), middle) + *middle) / 2.0;
 }
 
+// How far timestamps are from those that follow the first in equal gaps.
+[[nodiscard]] double largest_distance(std::span<const double> times, double gap) noexcept {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double regular = gap * static_cast<double>(i);
+        largest = std::max(largest, std::fabs(times[i] - times.front() - regular));
+    }
+    return largest;
+}
+
 } // namespace
 
 std::optional<double> inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
-    const double gap = median_gap(times);
-    const double blur = blur_of(gap, times);
-    if (blur > coarse_precision * gap) return std::nullopt;
+    double gap = median_gap(times);
+    double blur = blur_of(gap, times);
     if (!regular(times, {}, gap, same_gap) && are_single(times)) return std::nullopt;
+    if (blur > coarse_precision * gap) { // the precision of the timestamps, then
+        const auto gaps = static_cast<double>(times.size() - 1);
+        const double mean = (times.back() - times.front()) / gaps;
+        if (largest_distance(times, mean) <= 0.75 * blur) {
+            gap = mean;
+            blur = std::max(1e-6 * mean, blur / gaps);
+        }
+        if (blur > uncertain_precision * gap) return std::nullopt;
+    }
     for (int digits = 1; digits <= 16; ++digits) {
         char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
         if (text == nullptr) throw nb::python_error();

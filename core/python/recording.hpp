@@ -86,7 +86,8 @@ struct GivenColumns {
 [[nodiscard]] bool all_numbers(std::span<const double> values) noexcept;
 
 // As infer_period() in rtamt.signals.sampling_period: the median gap, as the shortest decimal
-// within its precision; 1 for a single timestamp. Nothing where the precision is low, or may be.
+// within its precision; 1 for a single timestamp. Nothing where floats of 32 bits or an uncertain
+// period are to be judged.
 [[nodiscard]] std::optional<double> inferred_period(std::span<const double> times);
 
 // As has_period() there, of timestamps in order: whether more than half of the gaps are a period,

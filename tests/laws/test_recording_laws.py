@@ -234,6 +234,31 @@ def test_the_core_finds_a_period_where_the_definition_does(
         assert native.has_period(times, expected) == has_period(times, expected)
 
 
+@given(
+    st.sampled_from([0.1, 1e-3, 1 / 300, 1 / 1024, 20.833e-6, 1e-5, 4.8e-5]),
+    st.sampled_from([0.0, 100.0, 1000.0, 1.7e9, -1.7e9]),
+    st.integers(2, 60),
+    st.sampled_from([0.0, 1e-7, 1e-3, 0.05]),
+    st.sampled_from([float, np.float32]),
+    st.integers(0, 9),
+)
+@example(1e-3, 1000.0, 5, 0.0, np.float32, 0)
+def test_the_core_infers_the_period_of_the_definition(
+    period: float, start: float, count: int, jitter: float, kind: type, seed: int
+) -> None:
+    off = np.random.default_rng(seed).uniform(-jitter, jitter, count)
+    times = (start + period * (np.arange(count) + off)).astype(kind)
+    data = {"time": times, "x": np.ones(count)}
+    spec = rtamt.parse("x >= 0")
+    found = [
+        outcome(lambda given=given: spec.evaluate(given).trace) for given in (data, MappingProxyType(data))
+    ]
+    if isinstance(found[0], str):
+        assert found[0] == found[1]
+    else:
+        assert found[0].period == found[1].period
+
+
 @pytest.mark.parametrize(
     ("times", "x"),
     [
