@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from enum import Enum
+from fractions import Fraction
 from math import inf, isinf, isnan
 from types import MappingProxyType
 
@@ -34,6 +35,8 @@ Semantics: TypeAlias = str | Enum | PredicateSemantics
 Watch: TypeAlias = str | Formula | Iterable[str | Formula]
 
 
+#: More decimal digits than the least and the greatest double are away from 1.
+_DIGITS = 330
 _NUMBER = lazy_pattern(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _INFINITE = lazy_pattern(r"[+-]?inf")
 
@@ -173,14 +176,18 @@ def require_parameters(names: Iterable[str], known: Collection[str]) -> None:
 def parameter_value(name: str, given: Any, type_: ValueType | None, *, whole: bool = False) -> float:
     """Return the value of a parameter as a number; raise :class:`UsageError` for a value of another type.
 
+    A number that is no double, such as ``Fraction(1, 3)``, is an :class:`~rtamt.language.exact_number.ExactNumber`.
     ``whole``: whether it is declared as a whole number.
 
     >>> mode = Enumeration("Mode", (("MANUAL", 0), ("AUTO", 4)))
     >>> parameter_value("start", "AUTO", mode), parameter_value("strict", True, BOOLEAN)
     (4.0, 1.0)
     """
+    from rtamt.language.exact_number import as_double
+
     if isinstance(type_, Enumeration):
         return _code(name, given, type_)
+    given = _rational(given)
     if not is_number(given) or isnan(given):
         needed = "it is a bool, so give true or false" if type_ is BOOLEAN else "give a number"
         raise UsageError(f"the parameter '{name}' is {shown(given)}; {needed}")
@@ -193,7 +200,16 @@ def parameter_value(name: str, given: Any, type_: ValueType | None, *, whole: bo
         raise UsageError(
             f"the parameter '{name}' is {shown(given)}, and declared as a whole number; declare it as float"
         )
-    return float(given)
+    return as_double(given)
+
+
+def _rational(given: Any) -> Any:
+    """Return a Decimal in the range of doubles as a fraction; everything else unchanged."""
+    from decimal import Decimal
+
+    if not isinstance(given, Decimal) or not given.is_finite() or given.adjusted() > _DIGITS:
+        return given
+    return Fraction(given) if given.adjusted() > -_DIGITS else 0.0
 
 
 def _code(name: str, given: Any, type_: Enumeration) -> float:

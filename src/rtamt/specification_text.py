@@ -164,7 +164,8 @@ class SpecificationText:
         """Return the specification with these values of its parameters; the others keep theirs.
 
         The text is not parsed and the formula is not compiled again, unless a value bounds an interval. Pass names that
-        are not words in a mapping: ``with_parameters(**{"battery.low": 3.5})``. A Boolean is set to True or False, a
+        are not words in a mapping: ``with_parameters(**{"battery.low": 3.5})``. Bounds have the exact value of a
+        ``Fraction`` or a ``Decimal``. A Boolean is set to True or False, a
         parameter of an enumeration to a member: its name, its code, or a member of a Python ``enum`` of that name.
         Raises :class:`UsageError` for names that are not parameters and values that do not have the type,
         :class:`BoundError` for an impossible bound.
@@ -176,6 +177,7 @@ class SpecificationText:
         >>> dict(spec.with_parameters(limit=3).parameters)
         {'limit': 3.0}
         """
+        from rtamt.language.exact_number import is_same
         from rtamt.language.parameters import assigned, bounding
 
         current = self.parameters
@@ -186,7 +188,7 @@ class SpecificationText:
             name: parameter_value(name, value, types.get(name), whole=name in whole)
             for name, value in values.items()
         }
-        new = {name: value for name, value in given.items() if value != current[name]}
+        new = {name: value for name, value in given.items() if not is_same(value, current[name])}
         if not new:
             return self
         if new.keys() & bounding(self.document):
@@ -194,7 +196,8 @@ class SpecificationText:
                 original, members = self.resolved
                 return self._selected_from(original.with_parameters(**{**current, **new}).over(members))
             return self._parsed_with({**current, **new})
-        return replace(self, document=assigned(self.document, new))
+        doubles = {name: float(value) for name, value in new.items()}
+        return replace(self, document=assigned(self.document, doubles))
 
     def _selected_from(self, whole: Any) -> Self:
         """Return the same requirement of another specification."""

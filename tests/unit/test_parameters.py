@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+from decimal import Decimal
+from fractions import Fraction
 
 import pytest
 
@@ -263,3 +265,53 @@ def test_the_sum_of_a_parameter_follows_its_value():
     for value in (1, 3, 0):
         found = spec.with_parameters(k=value).evaluate({"x": [0, 0, 0, 0]}).signal.values
         assert found.tolist() == [value, 2 * value, 3 * value, 3 * value]
+
+
+WINDOW = "input float x  parameter float w = 1  parameter float limit = 3  always[0:w](x <= limit)"
+
+
+@pytest.mark.parametrize(
+    ("value", "period", "bound"),
+    [
+        (Fraction(1, 3), Fraction(1, 3), "1/3"),
+        (Fraction(2, 3), Fraction(1, 3), "2/3"),
+        (Fraction(1, 2), Fraction(1, 2), "0.5"),
+        (Decimal("0.3"), Fraction(1, 10), "0.3"),
+        (Decimal("1.1"), Decimal("0.1"), "1.1"),
+    ],
+)
+def test_the_exact_value_of_a_bound_was_lost_to_a_double(value, period, bound):
+    spec = rtamt.parse(WINDOW, period=Fraction(period)).with_parameters(w=value)
+    assert str(spec.formula) == f"always[0:{bound}](x <= 3)"
+    assert spec.parameters["w"] == float(value)
+    for one in (spec.with_parameters(limit=4), pickle_round_trip(spec), copy.deepcopy(spec)):
+        assert str(one.formula).startswith(f"always[0:{bound}]")
+    assert str(spec.with_parameters(w=1).formula) == "always[0:1](x <= 3)"
+
+
+def test_a_fraction_replaces_the_double_that_it_is_rounded_to():
+    text = "input float x  parameter float w = 0.3333333333333333  always[0:w](x <= 3)"
+    spec = rtamt.parse(text).with_parameters(w=Fraction(1, 3))
+    assert str(spec.formula) == "always[0:1/3](x <= 3)"
+
+
+def test_a_fraction_bounds_the_interval_of_a_constant():
+    spec = rtamt.parse("always[0:w](x <= 3)", constants={"w": Fraction(1, 3)}, period=Fraction(1, 3))
+    assert str(spec.formula) == "always[0:1/3](x <= 3)"
+
+
+@pytest.mark.parametrize("value", [Decimal("1e400"), Decimal("nan"), Decimal("1e999999999")])
+def test_decimals_that_are_no_doubles_are_one_sentence(value):
+    with pytest.raises(UsageError) as error:
+        rtamt.parse(WINDOW).with_parameters(limit=value)
+    assert str(error.value) == f"the parameter 'limit' is {value!r}; give a number"
+
+
+@pytest.mark.parametrize(
+    "value",
+    [Fraction(1, 10**320), Fraction(1, 10**400), Fraction(10**308), Decimal("1e-999999999"), Fraction(1, 3)],
+)
+def test_fractions_at_the_ends_of_the_range_of_doubles_are_values(value):
+    spec = rtamt.parse(WINDOW).with_parameters(limit=value)
+    assert spec.parameters["limit"] == float(value)
+    assert type(spec.parameters["limit"]) is float

@@ -25,6 +25,7 @@ tables           ``table name = {(x, y), ...}``, a function of one number
 substitution     formulas with one part replaced
 parameters       values of parameters, set without parsing again
 distinct         distinct names for formats that have fewer characters
+exact_number     numbers that bound intervals: doubles with the exact value that they were given as
 undefined_value  the error for undefined values, shared by both back ends
 definitions      define what each operator means: pure functions, and their interval extensions
 parsing          convert text to formulas and documents: tokens, grammar, declarations, templates, imports

@@ -255,6 +255,8 @@ def _literal(parser: FormulaParser, at: int) -> Fraction:
 
 
 def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
+    from rtamt.language.exact_number import exact_value
+
     constants, name = parser.scope.constants, token.name
     value = constants.get(name)
     if value is None:
@@ -273,4 +275,4 @@ def _constant(parser: FormulaParser, token: Token) -> Fraction | None:
     if isinf(value):
         # Minus infinity is negative, too.
         return None if value > 0 else Fraction(-1)
-    return exact(str(float(value)))
+    return exact_value(value)
