@@ -144,13 +144,15 @@ def update_many() -> Callable[[int], None]:
     return run
 
 
-def evaluate(samples: int, *, timed: bool = False) -> Callable[[], Callable[[int], None]]:
-    """``spec.evaluate`` of arrays, with timestamps or without."""
+def evaluate(
+    samples: int, *, start: float | None = None, period: float = 1.0
+) -> Callable[[], Callable[[int], None]]:
+    """``spec.evaluate`` of arrays, with timestamps from a start on or without."""
 
     def prepare() -> Callable[[int], None]:
         spec, data = rtamt.parse(TWO), noise(samples)
-        if timed:
-            data["time"] = np.arange(samples) * 1.0
+        if start is not None:
+            data["time"] = start + period * np.arange(samples)
 
         def run(n: int) -> None:
             for _ in range(n):
@@ -310,7 +312,8 @@ PATHS: Mapping[str, tuple[int, Callable[[], Callable[[int], None]]]] = {
     ),
     "update_many, 100 samples": (20, update_many),
     "evaluate, 100 samples": (20, evaluate(100)),
-    "evaluate, 100 samples with timestamps": (20, evaluate(100, timed=True)),
+    "evaluate, 100 samples with timestamps": (20, evaluate(100, start=0.0)),
+    "evaluate, 100 samples at 1 kHz since 1970": (20, evaluate(100, start=1.7e9, period=1e-3)),
     "evaluate, 10000 samples": (4, evaluate(10_000)),
     "evaluate, 100 samples in dense time": (20, dense_evaluate),
     "evaluate(data).satisfied, 100 samples": (20, verdict),
