@@ -127,7 +127,12 @@ def test_a_requirement_with_a_name_that_c2po_does_not_read_is_left_out_alone() -
 
 @pytest.mark.parametrize(
     ("number", "written"),
-    [("1e-9", "0.000000001"), ("-2.5e-7", "-0.00000025"), ("1e20", "100000000000000000000.0"), ("0.1", "0.1")],
+    [
+        ("1e-9", "0.000000001"),
+        ("-2.5e-7", "-0.00000025"),
+        ("1e20", "100000000000000000000.0"),
+        ("0.1", "0.1"),
+    ],
 )
 def test_numbers_of_c2po_have_no_exponents(number: str, written: str) -> None:
     found = write_c2po(rtamt.parse(f"require R: always(x1e5 > {number})", period=1))
