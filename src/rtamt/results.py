@@ -297,6 +297,7 @@ class Result(_Slots):
             at=at,
             text=spec.text,
             semantics=lambda predicate: spec._apply_semantics(predicate, self.semantics),
+            signal=self.signal,
         )
 
     def plot(

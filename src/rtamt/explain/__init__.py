@@ -14,6 +14,7 @@ propagate    required truth values, from the verdict down to the predicates
 necessary    intervals that every implicant contains
 witnesses    choose between several sufficient operands or times
 shares       choose instants for a share of each of many windows
+bands        a band of values around the robustness
 spare        windows of a share that have no cell to spare
 intervals    intervals of predicates, and groups of them
 forcing      whether intervals force the verdict

@@ -40,8 +40,11 @@ class Point:
 class Values(Protocol):
     """The values of sub-formulas."""
 
-    def of(self, node: Formula, /) -> StepFunction:
-        """Return the values of a sub-formula that reads other instants, or that one reads."""
+    def of(self, node: Formula, value: float | None = None, /) -> StepFunction:
+        """Return the values of a sub-formula that reads other instants, or that one reads; see ``Signals.of``."""
+
+    def largest(self, node: Formula, sign: int, begin: int, end: int, /) -> int:
+        """Return the first cell in [begin, end) at which such a value is, times a sign, the largest."""
 
     def at(self, node: Formula, cell: int, /) -> float:
         """Return the value of a sub-formula at a cell."""
@@ -77,13 +80,13 @@ class Walk:
 
     def extreme(self, node: Formula, reduce: str, begin: int, end: int) -> int:
         """Return the first cell in [begin, end) at which a sub-formula is largest (or smallest)."""
-        changes, values = self._signals.of(node).between(begin, end)
-        return int(changes[values.argmax() if reduce == "max" else values.argmin()])
+        return self._signals.largest(node, 1 if reduce == CHOOSING[1] else -1, begin, end)
 
     def _equal(self, node: Apply, cell: int, begin: int, end: int) -> int | None:
         """Return the first cell in [begin, end) at which the operand has the value of ``node`` at ``cell``."""
-        changes, values = self._signals.of(node.args[0]).between(begin, end)
-        found = changes[values == self._signals.at(node, cell)]
+        value = self._signals.at(node, cell)
+        changes, values = self._signals.of(node.args[0], value).between(begin, end)
+        found = changes[values == value]
         return int(found[0]) if len(found) else None
 
     def elsewhere(self, node: Apply, cell: int) -> tuple[Formula, int] | None:
@@ -102,7 +105,8 @@ class Walk:
             return (
                 (node.args[0], self.extreme(node.args[0], kernel.reduce, begin, end)) if begin < end else None
             )
-        hold, goal = (self._signals.of(arg) for arg in node.args)
+        value = self._signals.at(node, cell)
+        hold, goal = (self._signals.of(arg, value) for arg in node.args)
         base = cell
         if isinstance(kernel, Since):
             oldest = max(cell - last, 0)

@@ -6,7 +6,6 @@ from itertools import islice
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from rtamt.engine import Evaluators
 from rtamt.errors import EvaluationError
 from rtamt.explain.critical import Point, Walk
 from rtamt.explain.description import Description
@@ -17,22 +16,23 @@ from rtamt.explain.minimise import minimal
 from rtamt.explain.moves import Moves
 from rtamt.explain.necessary import Needs
 from rtamt.explain.propagate import Demands
-from rtamt.explain.signals import Signals, near, truths
+from rtamt.explain.signals import Signals, has_share, near, truths
 from rtamt.explain.wording import cause, predicate_text, summary
+from rtamt.language.formula import Apply
 from rtamt.language.printing.printer import to_text
 from rtamt.language.printing.writing import PAGE
+from rtamt.language.records import Tense, Window
 from rtamt.lazy.modules import np
 from rtamt.rewrite.semantics import boolean, no_verdict
-from rtamt.rewrite.structure import Structure, reaches
+from rtamt.rewrite.structure import CHOOSING, Structure, opcode, reaches, window_of
 from rtamt.signals.instants import Cells, StepFunction, two_valued
-from rtamt.verdicts.offline import first_violation
-from rtamt.verdicts.robustness_and_truth import outputs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from rtamt.engine import TimeAxis
     from rtamt.language.formula import Formula
+    from rtamt.signals.signal import Signal
     from rtamt.signals.time_domain_interface import DomainTrace
 
 #: How many places are tried for one that overturns the verdict alone.
@@ -47,15 +47,16 @@ def explain(
     at: Any = None,
     text: str | None = None,
     semantics: Callable[[Formula], Formula] = lambda predicate: predicate,
+    signal: Signal | None = None,
 ) -> Explanation:
     """Explain a formula's verdict and robustness at an instant (by default the first).
 
     ``recording``: normalised, as a result holds it. ``at``: a time in the caller's format. ``text``: from
     which the formula was read, to quote predicates as they were written. ``semantics`` gives the
-    formula whose value counts as that of a predicate. Raises :class:`UsageError` if ``at`` is not in the
-    recording.
+    formula whose value counts as that of a predicate. ``signal``: the robustness, if it has been evaluated; then less
+    is to be. Raises :class:`UsageError` if ``at`` is not in the recording.
     """
-    return _Explainer(formula, recording, backend, text, semantics, at).explanation()
+    return _Explainer(formula, recording, backend, text, semantics, at, signal).explanation()
 
 
 class _Explainer:
@@ -69,12 +70,11 @@ class _Explainer:
         text: str | None,
         semantics: Callable[[Formula], Formula],
         at: Any,
+        signal: Signal | None,
     ) -> None:
         (formula,) = recording.domain.ground(formula)
         self._formula = formula
         self._text = text
-        self._recording = recording
-        self._evaluators = Evaluators(backend)
         self._line: TimeAxis = recording.domain.part("time_axis")(recording, backend)
         self._dense = recording.domain.continuous
         self._structure = Structure.of(formula, self._line.period if self._dense else None)
@@ -91,7 +91,15 @@ class _Explainer:
         window = self._cell - behind, self._cell + ahead + 1
         read = {name: near(steps, *window) for name, steps in self._values.items()}
         holds = {name: near(steps, *window) for name, steps in self._truth.items()}
-        self._signals = Signals(self._structure, self._line, read)
+        value = None  # to look for; it need not be the robustness
+        if signal is not None and self._dense and has_share(self._structure.order):
+            place = 1
+            if self._cell:
+                place = np.searchsorted(
+                    signal.times, recording.times_at(np.array([self._cell])), side="right"
+                )[0]
+            value = float(signal.values[place - 1])
+        self._signals = Signals(self._structure, self._line, read, value)
         self._holds = truths(self._structure.order, self._line, holds)
         self._robustness = self._signals.at(self._structure.core, self._cell)
         self._moves = Moves(self._structure, self._line, read, self._signals, self._cell, dense=self._dense)
@@ -113,7 +121,7 @@ class _Explainer:
         text = to_text(self._formula, limit=PAGE)
         violation = None
         if not satisfied and cell == 0:
-            violation = first_violation(outputs_of(self._formula).truth, self._recording, self._evaluators)
+            violation = self._line.time(self._violated())
         show = self._line.show
         return Explanation(
             text,
@@ -136,6 +144,29 @@ class _Explainer:
             _rank(implicant, point),
         )
 
+    def _violated(self) -> int:
+        """Return the cell at which the formula, violated at the first one, is so: see ``offline.first_violation``."""
+        found: list[int] = []
+        parts: list[tuple[Formula, Formula]] = [(self._formula, self._structure.core)]
+        met: set[tuple[Formula, Formula]] = set()
+        while parts:
+            written, node = part = parts.pop()
+            if part in met:
+                continue
+            met.add(part)
+            if isinstance(written, Apply) and isinstance(node, Apply) and written.op.kernel == node.op.kernel:
+                if opcode(node) == CHOOSING[0]:
+                    parts += zip(written.args, node.args, strict=True)
+                    continue
+                if node.op.kernel == Window(CHOOSING[0]) and node.op.tense is Tense.FUTURE:
+                    first, last = window_of(node, self._line.period)
+                    window = Cells.of([(first, min(last + 1, self._line.end))])
+                    found += (window - self._holds[node.args[0]]).starts[:1].tolist()
+                    continue
+            if 0 not in self._holds[node]:
+                found.append(0)
+        return min(found)
+
     # ---- the critical point ------------------------------------------------------------------------
 
     def _critical(self, implicant: Intervals) -> tuple[CriticalPoint, int]:
@@ -144,10 +175,13 @@ class _Explainer:
         Where several places have the value of the robustness it is, if there is one, a place that overturns
         the verdict alone; such a place is in every implicant.
         """
-        first = self._describe(self._walk.down(self._structure.core, self._cell))
+        walked = self._walk.down(self._structure.core, self._cell)
+        first = self._describe(walked)
         if overturns(first[0]):
             return first
-        found = self._alone(list(islice(self._places(implicant), _TRIED)))
+        tried = self._moving(walked) if walked.name else None
+        places = islice(self._places(implicant), _TRIED)
+        found = self._alone([point for point in places if self._moving(point) != tried])
         return first if found is None else self._describe(found)
 
     def _alone(self, points: Sequence[Point]) -> Point | None:

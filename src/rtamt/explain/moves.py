@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf, ulp
 from typing import TYPE_CHECKING, TypeAlias
 
-from rtamt.explain.signals import clipped, near, spliced
+from rtamt.explain.signals import clipped, has_share, near, spliced
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, Formula, Var
-from rtamt.language.records import Rank
 from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import NEGATION, NEVER, literal, opcode, reaches
 from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from rtamt.engine import TimeAxis
-    from rtamt.engine.time_axis import Runner
     from rtamt.explain.intervals import Interval
     from rtamt.explain.signals import Signals
     from rtamt.rewrite.structure import Place, Structure
@@ -61,9 +60,7 @@ class Moves:
         self._values = {
             (name, sign): leaves[name] for name in leaves if name not in self._fixed for sign in (1, -1)
         }
-        self._limits = any(
-            isinstance(node, Apply) and isinstance(node.op.kernel, Rank) for node in structure.order
-        )
+        self._limits = has_share(structure.order)
         self._parts: dict[Place, Var] = {}
         self._bounded = max(self._reaches[structure.core]) < NEVER
         whole = structure.polar[structure.core, 1] if self._bounded or not dense else self._over_parts()
@@ -103,6 +100,8 @@ class Moves:
 
     def extreme(self, place: Interval, toward: float) -> float:
         """Return the robustness when the values at a place go, up to sign, to -inf or to +inf."""
+        if self._run_parts is not None:
+            return self._over_parts_moved(place, toward)
         found = self._robustness
         for limit in dict.fromkeys((self._beyond(toward), toward)):  # once where they are equal
             low, high = sorted((self._robustness, limit))
@@ -110,6 +109,29 @@ class Moves:
             if found != limit:
                 break
         return found
+
+    def _over_parts_moved(self, place: Interval, toward: float) -> float:
+        """Return the same over parts. Of their values elsewhere, those beyond a band do not matter in general.
+
+        They do not where the robustness is the same whether they are at the edge of the band or infinite.
+        """
+        low, high = sorted((self._robustness, toward))
+        moved = self._parts_moved([place], toward, (low, high))
+        signals = self._fixed | _changed(self._rest, [place], toward)
+
+        def found(values: Callable[[Place], StepFunction]) -> float:
+            robustness = self._run(signals | self._spliced(moved, values))[0].at(self._cell)
+            return min(max(robustness, low), high)
+
+        band = self._signals.band
+        if band is not None and band.contains(self._robustness):
+            edge = band.edge(self._robustness, toward)
+            nearest, farthest = (
+                found(partial(self._signals.beyond, edge, toward, value)) for value in (edge, toward)
+            )
+            if nearest == farthest:
+                return nearest
+        return found(lambda part: self._signals.of(part[0]))
 
     def _beyond(self, toward: float) -> float:
         """Return a value that many values of predicates are closer to the robustness than."""
@@ -125,22 +147,31 @@ class Moves:
         values = self._limited(self._rest, limits) if self._bounded else self._rest
         signals = self._fixed | _changed(values, places, toward)
         if self._run_parts is not None:
-            signals |= self._parts_moved(self._run_parts, places, toward, limits)
+            moved = self._parts_moved(places, toward, limits)
+            signals |= self._spliced(moved, lambda part: self._signals.of(part[0]))
         low, high = limits
         return min(max(self._run(signals)[0].at(self._cell), low), high)
 
     def _parts_moved(
-        self, run: Runner, places: Sequence[Interval], toward: float, limits: tuple[float, float]
-    ) -> dict[str, StepFunction]:
-        """Return the values of the parts, which are new, and within limits, where they read one of the places."""
+        self, places: Sequence[Interval], toward: float, limits: tuple[float, float]
+    ) -> tuple[int, int, list[StepFunction]]:
+        """Return where the parts may read one of the places, [begin, end), and their values there, within limits."""
+        assert self._run_parts is not None
         behind, ahead = (max(self._reaches[node][which] for node, _ in self._parts) for which in (0, 1))
         begin = min(place.start for place in places) - ahead
         end = max(place.end for place in places) + behind
         around = {each: near(steps, begin - behind, end + ahead) for each, steps in self._values.items()}
-        found = run(self._fixed | _changed(self._limited(around, limits), places, toward))
+        found = self._run_parts(self._fixed | _changed(self._limited(around, limits), places, toward))
+        return begin, end, found
+
+    def _spliced(
+        self, moved: tuple[int, int, list[StepFunction]], values: Callable[[Place], StepFunction]
+    ) -> dict[str, StepFunction]:
+        """Return the values of the parts: new ones where they read one of the places, elsewhere others."""
+        begin, end, found = moved
         return {
-            var.name: spliced(self._signals.of(node), steps, begin, end)
-            for ((node, _), var), steps in zip(self._parts.items(), found, strict=True)
+            var.name: spliced(values(part), steps, begin, end)
+            for (part, var), steps in zip(self._parts.items(), found, strict=True)
         }
 
     def _limited(self, values: _Values, limits: tuple[float, float]) -> _Values:

@@ -291,11 +291,17 @@ class _Parts:
                     conditions = _conditions(node)
                     stack.extend((arg, False) for arg in node.args if arg not in conditions)
 
-    def of(self, node: Formula) -> StepFunction:
-        """Return the values of a part."""
+    def of(self, node: Formula, value: float | None = None) -> StepFunction:
+        """Return the values of a part: all of them."""
+        del value
         if node not in self._steps:
             self._steps[node] = self._axis.measured([node])[0]
         return self._steps[node]
+
+    def largest(self, node: Formula, sign: int, begin: int, end: int) -> int:
+        """Return the first cell in [begin, end) at which the value of a part is, times a sign, the largest."""
+        changes, values = self.of(node).between(begin, end)
+        return int(changes[(sign * values).argmax()])
 
     def at(self, node: Formula, cell: int) -> float:
         """Return the value of a part at a cell."""

@@ -22,6 +22,29 @@ if TYPE_CHECKING:
 _MOST_CELLS = 2**28
 
 
+def windows_with(found: Cells, before: int, after: int, need: int) -> Cells:
+    """Return the cells k such that [k + before, k + after] has ``need`` cells of ``found`` or more.
+
+    From k to k + 1 their number stays, rises by one or falls by one: so until an interval enters, leaves or ends there.
+
+    >>> windows_with(Cells.of([(3, 5), (7, 9)]), 0, 3, 2)
+    Cells.of([(1, 8)])
+    """
+    edges = np.column_stack((found.starts, found.ends)).ravel()
+    entering = np.tile([1, -1], len(found))
+    points = np.concatenate((edges - (after + 1), edges - before))
+    order = np.argsort(points, kind="stable")
+    points = points[order]
+    slopes = np.cumsum(np.concatenate((entering, -entering))[order])[:-1]
+    counts = np.concatenate((np.zeros(1, np.int64), np.cumsum(slopes * np.diff(points))))[:-1]
+    missing = need - counts
+    starts, ends = points[:-1], points[1:]
+    starts = np.where(slopes > 0, starts + np.maximum(missing, 0), starts)
+    ends = np.where(slopes < 0, np.minimum(ends, points[:-1] - missing + 1), ends)
+    enough = (missing <= 0) | (slopes > 0)
+    return Cells.union(starts[enough], ends[enough])
+
+
 def sharing(asked: Cells, found: Cells, before: int, after: int, need: int) -> Cells:
     """Return as few cells of ``found`` as possible: each k of ``asked`` has ``need`` in [k + before, k + after].
 

@@ -11,12 +11,20 @@ import rtamt
 from rtamt.explain import shares
 from rtamt.explain.explanation import Listed
 from rtamt.explain.forcing import Forcing
-from rtamt.explain.shares import sharing
+from rtamt.explain.shares import sharing, windows_with
 from rtamt.signals.instants import Cells
 
 
 def cells(numbers):
     return Cells.of((k, k + 1) for k in numbers)
+
+
+@given(st.sets(st.integers(0, 30)), st.integers(-6, 4), st.integers(0, 7), st.integers(1, 8))
+def test_windows_with_enough_cells_are_those_counted(inside, before, width, need):
+    after = before + width
+    found = [k for begin, end in windows_with(cells(inside), before, after, need) for k in range(begin, end)]
+    windows = {k: inside & set(range(k + before, k + after + 1)) for k in range(-20, 50)}
+    assert found == [k for k, window in windows.items() if len(window) >= need]
 
 
 @given(
