@@ -18,7 +18,7 @@ from rtamt.explain.spare import ShareWindows
 from rtamt.language.formula import Apply, Var
 from rtamt.language.records import Rank
 from rtamt.lazy.modules import np
-from rtamt.rewrite.structure import literal, reaches
+from rtamt.rewrite.structure import NEVER, literal, reaches
 from rtamt.signals.instants import NONE, Cells, StepFunction, two_valued
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from rtamt.language.formula import Formula
     from rtamt.rewrite.structure import Place, Structure
     from rtamt.signals.instants import Ints
+
+    #: Choices with their demands, and what evaluates them.
+    Runner = tuple[list[tuple[Place, Cells]], Callable[[Mapping[str, StepFunction]], list[StepFunction]]]
 
 
 class Forcing:
@@ -53,13 +56,17 @@ class Forcing:
         self._shares = [
             _Share(place, surely, demands) for place, surely in choices if self._is_share(place[0])
         ]
-        formulas = [structure.polar[place] for place, _ in self._choices]
-        self._run = axis.runner(formulas) if formulas else None
         found = reaches(structure.order, axis.period)
-        nodes = [node for (node, _), _ in choices]
-        #: How many cells behind and ahead a choice can look.
-        self.behind = max((found[node][0] for node in nodes), default=0)
-        self.ahead = max((found[node][1] for node in nodes), default=0)
+        near = [each for each in choices if max(found[each[0][0]]) < NEVER]
+        #: How many cells behind and ahead a choice can look, of those that do not look at the whole recording.
+        self.behind = max((found[node][0] for (node, _), _ in near), default=0)
+        self.ahead = max((found[node][1] for (node, _), _ in near), default=0)
+        self._near = self._runner([each for each in self._choices if each in near])
+        self._far = self._runner([each for each in self._choices if each not in near])
+
+    def _runner(self, choices: list[tuple[Place, Cells]]) -> Runner | None:
+        formulas = [self._structure.polar[place] for place, _ in choices]
+        return (choices, self._axis.runner(formulas)) if formulas else None
 
     def _signals(self, intervals: Intervals) -> dict[str, StepFunction]:
         """Return replacements for the predicates: unchanged on the intervals, worst case elsewhere."""
@@ -113,16 +120,24 @@ class Forcing:
     def failures(self, intervals: Intervals, begins: Ints, ends: Ints) -> Cells:
         """Return cells at which something falls that the verdict cannot do without: in each [begin, end) with any.
 
-        These are sorted and apart.
+        These are sorted and apart. Choices that look at the whole recording are left to :meth:`fails`.
         """
-        failed = NONE
-        if self._run is not None:
-            signals = self._signals(intervals)
-            for ((_, sign), surely), steps in zip(self._choices, self._run(signals), strict=True):
-                holds = Cells.where(steps.changes, (steps.values > 0) == self._demands.truth(sign), self._end)
-                failed = failed | (surely - holds)
+        failed = self._failed(self._near, intervals)
         for share in self._shares:
             failed = failed | share.failures(intervals, begins, ends)
+        return failed
+
+    def fails(self, intervals: Intervals) -> bool:
+        """Return whether a choice that looks at the whole recording loses what the verdict cannot do without."""
+        return len(self._failed(self._far, intervals)) > 0
+
+    def _failed(self, runner: Runner | None, intervals: Intervals) -> Cells:
+        failed = NONE
+        if runner is not None:
+            choices, run = runner
+            for ((_, sign), surely), steps in zip(choices, run(self._signals(intervals)), strict=True):
+                holds = Cells.where(steps.changes, (steps.values > 0) == self._demands.truth(sign), self._end)
+                failed = failed | (surely - holds)
         return failed
 
 

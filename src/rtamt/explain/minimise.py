@@ -23,8 +23,8 @@ def minimal(intervals: Intervals, needs: Demands, forcing: Forcing) -> Intervals
     """Return those of ``intervals`` that are left when as many as possible are taken away.
 
     Taken away on trial, where it is not plain from ``needs`` that they cannot be, are first large groups
-    of neighbours, then smaller ones. Groups so far apart that nothing looks at two of them are tried in
-    one run; groups that clearly cannot be taken away are not tried.
+    of neighbours, then smaller ones. Groups so far apart that nothing of bounded reach looks at two of them are tried
+    in one run; groups that clearly cannot be taken away are not tried.
     """
     plain = _which_needed(intervals, needs)
     kept, open_ = np.flatnonzero(plain), np.flatnonzero(~plain)
@@ -102,7 +102,22 @@ class _Trials:
                 left = self._with(members[staying[group_of]])
                 failed = self._forcing.failures(left, begins[trial], ends[trial])
                 staying[trial] = failed.intersects(begins[trial], ends[trial])
+                self._settle(trial[~staying[trial]], staying, members, group_of)
         return groups.take(staying)
+
+    def _settle(self, taken: Ints, staying: NDArray[np.bool_], members: Ints, group_of: Ints) -> None:
+        """Put back those of the groups that were taken away without which a choice of unbounded reach falls.
+
+        These are few: where taking all away does no harm, one run decides about them.
+        """
+        if not len(taken) or not self._forcing.fails(self._with(members[staying[group_of]])):
+            return
+        staying[taken] = True
+        if len(taken) > 1:
+            half = len(taken) // 2
+            for part in taken[:half], taken[half:]:
+                staying[part] = False
+                self._settle(part, staying, members, group_of)
 
 
 def _either(flags: NDArray[np.bool_], count: int) -> NDArray[np.bool_]:

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 from rtamt.explain.propagate import Asked, Demands
 from rtamt.explain.spare import ShareWindows
+from rtamt.explain.witnesses import up_to_gaps
 from rtamt.language.formula import Var
 from rtamt.lazy.modules import np
 from rtamt.rewrite.structure import NEVER
-from rtamt.signals.instants import NONE, Cells
+from rtamt.signals.instants import Cells
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -69,7 +70,7 @@ class Needs(Demands):
         first, last = window
         if not self.truth(sign):
             gaps = _needed_cells(node.args[0], only_gaps(cells, hold, goal, first, last), hold)
-            return gaps, NONE if first else cells
+            return gaps, up_to_gaps(cells, hold, first, last)
         # Where φ need not hold, t' is at once or not at all.
         goals = _needed_cells(node.args[1], only_goals(cells, hold, goal, first, last), goal)
         return (cells, goals) if first else (cells - goal, goals | (cells - hold))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.explain.critical import around
 from rtamt.explain.shares import TickWindow, sharing
-from rtamt.explain.witnesses import blocking, reaching, witnesses
+from rtamt.explain.witnesses import blocking, reaching, up_to_gaps, witnesses
 from rtamt.language.formula import Apply, Formula, Var
 from rtamt.language.records import Rank, Shift, Since, Tense, Window
 from rtamt.language.shares import rank_of
@@ -145,10 +145,10 @@ class Demands:
             )
         else:
             self.choices.append(((node, sign), asked.surely))
-            self._choose(node, sign, asked.cells)
+            self._choose(node, sign, asked)
 
-    def _choose(self, node: Apply, sign: int, cells: Cells) -> None:
-        kernel = node.op.kernel
+    def _choose(self, node: Apply, sign: int, asked: Asked) -> None:
+        kernel, cells = node.op.kernel, asked.cells
         if opcode(node) is not None:
             self._choose_operands(node, sign, cells)
         elif isinstance(kernel, Window):
@@ -156,23 +156,26 @@ class Demands:
         elif isinstance(kernel, Rank):
             self._add(node.args[0], sign, Asked(self._deciding(node, sign, cells)))
         else:
-            self._choose_in_time(node, sign, cells)
+            self._choose_in_time(node, sign, asked)
 
-    def _choose_in_time(self, node: Apply, sign: int, cells: Cells) -> None:
+    def _choose_in_time(self, node: Apply, sign: int, asked: Asked) -> None:
         """Choose cells of both operands of until, and of since and precedes, which are until in disguise."""
         window = window_of(node, self._period)
         hold, goal = (self._having(arg, sign) for arg in node.args)
         if not self.truth(sign):  # then it matters where ψ may hold
             goal = self._all - goal
+        cells, surely = asked.cells, asked.surely
         turned = isinstance(node.op.kernel, Since)
         if turned:  # since is until, backwards
-            cells, hold, goal = cells.mirrored(), hold.mirrored(), goal.mirrored()
+            cells, surely, hold, goal = (each.mirrored() for each in (cells, surely, hold, goal))
         elif node.op.tense is Tense.PAST:  # precedes is until, read from where the window begins
-            cells = cells.widened(-window[1], -window[1])
+            cells, surely = (each.widened(-window[1], -window[1]) for each in (cells, surely))
             if self.truth(sign):  # and requires nothing of φ before the start
                 hold = hold | Cells.of([(-2 * NEVER, 0)])
-        for arg, found in zip(node.args, self._until(node, sign, cells, (hold, goal), window), strict=True):
-            self._add(arg, sign, Asked(found.mirrored() if turned else found))
+        holds, goals = self._until(node, sign, cells, (hold, goal), window)
+        sure = NONE if self.truth(sign) else up_to_gaps(surely, hold, *window)
+        for arg, found in zip(node.args, (Asked(holds), Asked(goals | sure, sure)), strict=True):
+            self._add(arg, sign, Asked(found.cells.mirrored(), found.surely.mirrored()) if turned else found)
 
     def _until(
         self, node: Apply, sign: int, cells: Cells, having: tuple[Cells, Cells], window: tuple[int, int]

@@ -124,3 +124,18 @@ def blocking(
         cell = covered + 1
         i = bisect_right(stops, cell)
     return Cells.of(blocks), Cells.of(fails)
+
+
+def up_to_gaps(asked: Cells, gaps: Cells, first: int, last: int) -> Cells:
+    """Return where ψ must fail for φ until[first, last] ψ to fail at ``asked``, if φ fails only in ``gaps``.
+
+    From the beginning of the window up to the first gap: φ need only hold before ψ does.
+    """
+    starts = gaps.starts.tolist()
+    found = [] if first else list(asked & gaps)
+    for begin, end in asked - gaps:
+        gap = bisect_left(starts, end)
+        stop = min(end + last, starts[gap] + 1 if gap < len(starts) else 4 * NEVER)
+        if begin + first < stop:
+            found.append((begin + first, stop))
+    return Cells.of(found)

@@ -1,6 +1,7 @@
 """Instants for a share of many windows: enough for each, and none to spare."""
 
 import pickle
+from time import process_time
 
 import numpy as np
 import pytest
@@ -113,3 +114,19 @@ def test_an_explanation_can_be_pickled():
         explanation.critical,
         str(explanation),
     )
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_a_violated_until_over_shares_was_explained_in_quadratic_time(time):
+    """Each cause was tried alone over the whole recording: 100 000 samples took minutes."""
+    n = 100_000
+    random = np.random.default_rng(3)
+    data = {"time": np.arange(n) * 1.0, "a": random.normal(size=n), "b": random.normal(size=n)}
+    data["b"][:99_000] = 0.0
+    data["b"][99_000] = -5.0
+    result = rtamt.parse("(b >= -4.5) until (atleast[0:100](90%, a >= 1))", time=time).evaluate(data)
+    start = process_time()
+    explanation = result.explain()
+    assert process_time() - start < 30
+    assert not explanation.satisfied
+    assert len(explanation.causes) > 1
