@@ -273,10 +273,18 @@ bool regular(std::span<const double> times, std::optional<double> before, double
 
 namespace {
 
-// The limits of infer_period(): `_COARSE`, `_UNCERTAIN`, and that of gaps that do not differ.
+// The limits of infer_period(): `_COARSE`, `_UNCERTAIN`, that of gaps that do not differ, and
+// `_ROUNDED`.
 constexpr double coarse_precision = 1e-4;
 constexpr double uncertain_precision = 1e-2;
 constexpr double same_gap = 1e-6;
+constexpr double rounded_precision = 1e-3;
+
+// A length of gaps, and its precision.
+struct Gap {
+    double length = 0.0;
+    double blur = 0.0;
+};
 
 // Whether doubles may have been floats of 32 bits.
 [[nodiscard]] bool are_single(std::span<const double> times) noexcept {
@@ -312,22 +320,55 @@ constexpr double same_gap = 1e-6;
     return largest;
 }
 
+// As `_mean_of_rounded` there, without its last step: the mean gap and its precision.
+[[nodiscard]] std::optional<Gap> mean_of_rounded(std::span<const double> times) noexcept {
+    double shortest = std::numeric_limits<double>::infinity();
+    double longest = 0.0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        shortest = std::min(shortest, times[i] - times[i - 1]);
+        longest = std::max(longest, times[i] - times[i - 1]);
+    }
+    const double range = longest - shortest;
+    const auto gaps = static_cast<double>(times.size() - 1);
+    const double mean = (times.back() - times.front()) / gaps;
+    const double blur = std::max(1e-6 * mean, 2.0 * range / gaps);
+    const double noise = blur_of(mean, times);
+    if (range <= noise || blur > rounded_precision * mean) return std::nullopt;
+    const double step = range / 2.0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double more = times[i] - times[i - 1] - shortest;
+        if (std::fabs(more - std::rint(more / step) * step) > noise) return std::nullopt;
+    }
+    if (largest_distance(times, mean) > range + noise) return std::nullopt;
+    return Gap{mean, blur};
+}
+
+// As `_rounded_period` there, without its last step. Nothing for floats of 32 bits and errors.
+[[nodiscard]] std::optional<Gap> rounded_gap(std::span<const double> times, double median,
+                                             bool differ) noexcept {
+    Gap found{median, blur_of(median, times)};
+    if (differ && are_single(times)) return std::nullopt;
+    if (found.blur > coarse_precision * found.length) { // the precision of the timestamps, then
+        const auto gaps = static_cast<double>(times.size() - 1);
+        const double mean = (times.back() - times.front()) / gaps;
+        if (largest_distance(times, mean) <= 0.75 * found.blur)
+            found = {mean, std::max(1e-6 * mean, found.blur / gaps)};
+        if (found.blur > uncertain_precision * found.length) return std::nullopt;
+    }
+    return found;
+}
+
 } // namespace
 
 std::optional<double> inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
-    double gap = median_gap(times);
-    double blur = blur_of(gap, times);
-    if (!regular(times, {}, gap, same_gap) && are_single(times)) return std::nullopt;
-    if (blur > coarse_precision * gap) { // the precision of the timestamps, then
-        const auto gaps = static_cast<double>(times.size() - 1);
-        const double mean = (times.back() - times.front()) / gaps;
-        if (largest_distance(times, mean) <= 0.75 * blur) {
-            gap = mean;
-            blur = std::max(1e-6 * mean, blur / gaps);
-        }
-        if (blur > uncertain_precision * gap) return std::nullopt;
-    }
+    const double median = median_gap(times);
+    const bool differ = !regular(times, {}, median, same_gap);
+    std::optional<Gap> found;
+    if (differ) found = mean_of_rounded(times);
+    if (!found) found = rounded_gap(times, median, differ);
+    if (!found) return std::nullopt;
+    const auto [gap, blur] = *found;
     for (int digits = 1; digits <= 16; ++digits) {
         char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
         if (text == nullptr) throw nb::python_error();

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from rtamt.cli.command import PACK, CommandError, read_specifications
-from rtamt.cli.outcome import Requirement, applicable
+from rtamt.cli.outcome import Requirement, applicable, nothing_checked
 from rtamt.cli.parser import complain
 from rtamt.cli.reading_options import (
     completed_for,
@@ -246,7 +246,5 @@ def _results(requirements: list[Requirement], trace: str, reading: Reading) -> E
         elif outcome.error:
             raise CommandError(outcome.error)
     if not found:
-        raise CommandError(
-            f"{shown(trace)}: nothing was checked: every requirement reads signals that the recording lacks"
-        )
+        raise CommandError(nothing_checked(shown(trace)))
     return Evaluated(shown(trace), found, list(notes))

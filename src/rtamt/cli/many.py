@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.cli.arguments import is_specification, prepared_specs, specification_files
 from rtamt.cli.command import CommandError, json_number, json_text, short, warn, warnings_of
+from rtamt.cli.outcome import nothing_checked
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
 from rtamt.cli.terminal import Progress, say, table, use_color, width_of
 from rtamt.cli.written_formats import VERDICTS, format_of
@@ -142,10 +143,14 @@ class _Summary:
         self._worst: dict[str, tuple[float, str]] = {}
         self._errors: dict[str, None] = {}
         self._total: Counter[str] = Counter()
+        self._unchecked = 0
 
     def add(self, found: VerdictTable) -> None:
-        for row in found:
-            verdict = _verdict(row)
+        verdicts = [_verdict(row) for row in found]
+        if verdicts and set(verdicts) == {"unchecked"}:
+            self._unchecked += 1
+            self._errors[nothing_checked(found.rows[0].recording)] = None
+        for row, verdict in zip(found, verdicts, strict=True):
             self._counts[row.requirement][verdict] += 1
             self._total[verdict] += 1
             if row.robustness is not None:
@@ -167,7 +172,9 @@ class _Summary:
 
     @property
     def code(self) -> int:
-        return ERROR if self._total["error"] else VIOLATED if self._total["violated"] else OK
+        return (
+            ERROR if self._total["error"] or self._unchecked else VIOLATED if self._total["violated"] else OK
+        )
 
     def text(self, recordings: int, known: int, color: bool) -> str:
         rows: list[tuple[str, ...]] = [("requirement", *_VERDICTS, "worst robustness", "recording")]

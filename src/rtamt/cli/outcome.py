@@ -150,14 +150,17 @@ def together(found: Sequence[Outcome], unchecked: Sequence[Outcome]) -> dict[str
     return of
 
 
+def nothing_checked(recording: str) -> str:
+    """Return the error for a recording on which no requirement can be checked."""
+    return f"{recording}: nothing was checked: every requirement reads signals that the recording lacks"
+
+
 def exit_code(outcomes: Sequence[Outcome]) -> int:
     """Return the exit code of a check: the gravest verdict, and an error where nothing of a recording was checked."""
     checked = {outcome.trace for outcome in outcomes if not outcome.unchecked}
     for trace in dict.fromkeys(outcome.trace for outcome in outcomes):
         if trace not in checked:
-            complain(
-                f"{trace}: nothing was checked: every requirement reads signals that the recording lacks"
-            )
+            complain(nothing_checked(trace))
     unchecked = any(outcome.trace not in checked for outcome in outcomes)
     return max(ERROR if unchecked else OK, *(CODES[outcome.verdict] for outcome in outcomes))
 

@@ -23,8 +23,6 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.readers.selection import has_one_clock, select, with_clock_of
-from rtamt.signals.arrays import TIME
-from rtamt.signals.data_errors import FILE_MENDS, missing_sample
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch
 
@@ -346,13 +344,6 @@ def with_stamps(data: Trace, spec: Specification) -> Trace:
     if spec.domain.own_time_bases and any(data.channel(name).times is None for name in data):
         raise TraceError(NO_STAMPS)
     return data
-
-
-def require_all_samples(data: Trace, names: Sequence[str]) -> None:
-    """Raise :class:`TraceError` if one of these variables lacks a sample of its table."""
-    for name in names:
-        if name != TIME and (gap := data.channel(name).first_gap) is not None:
-            raise missing_sample(name, gap, data.source, FILE_MENDS)
 
 
 def notes_on(data: Trace, spec: Specification, reading: Reading) -> tuple[str, ...]:

@@ -28,7 +28,6 @@ from rtamt.cli.reading_options import (
     notes_on,
     on_time_base,
     read_for,
-    require_all_samples,
     with_stamps,
 )
 from rtamt.errors import BoundError, StlError
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
 
     from rtamt.cli.outcome import Requirement
     from rtamt.cli.reading_options import Reading
+    from rtamt.readers.source import Source
     from rtamt.results import Result
     from rtamt.signals.trace import Trace
     from rtamt.verdicts.chunks import StreamResult
@@ -127,18 +127,26 @@ def evaluate(requirements: Sequence[Requirement], trace: str, reading: Reading) 
             signals = completed_for(source, specs).signals
             kept, unchecked = applicable(requirements, signals, trace)
             # A source that is read in chunks is opened quickly; any other is not opened a second time.
-            if kept and not source.in_chunks:
-                whole = trace_of(
-                    source, choice_for([requirement.spec for requirement in kept], trace, reading)
-                )
-                rest = [o for requirement in kept for o in _check(requirement, trace, whole, reading)]
-            else:
-                rest = None
+            whole = None if source.in_chunks or not kept else _read_together(source, kept, trace, reading)
+        rest = None
+        if whole is not None:
+            rest = [o for requirement in kept for o in _check(requirement, trace, whole, reading)]
     except StlError:  # the check reports what is wrong
         kept, unchecked, rest = list(requirements), [], None
     found = _check_requirements(kept, trace, reading) if rest is None else rest
     of = together(found, unchecked)
     return [of[row.label] for requirement in requirements for row in requirement.rows or (requirement,)]
+
+
+def _read_together(
+    source: Source, requirements: Sequence[Requirement], trace: str, reading: Reading
+) -> Trace | None:
+    try:
+        return trace_of(
+            source, choice_for([requirement.spec for requirement in requirements], trace, reading)
+        )
+    except StlError:  # each reads what it needs, and reports what is wrong with that
+        return None
 
 
 def _over_members(requirement: Requirement, trace: str, reading: Reading) -> list[Outcome]:
@@ -158,7 +166,7 @@ def _over_members(requirement: Requirement, trace: str, reading: Reading) -> lis
             choice = choice_of_members(spec, source, lambda over: choice_for([over], trace, reading))
             whole = spec.binding.applied(trace_of(source, choice))
         if not has_own_time_bases(spec, trace, reading):
-            require_all_samples(whole, spec.input_names)
+            whole.require_all_samples(spec.input_names)
         bound = members.bound(whole, spec.groups, spec.input_names, own_time_bases=True, source=shown(trace))
         over = spec.over(bound.members)
     except StlError as error:

@@ -10,6 +10,7 @@ module                purpose
 recordings            the recordings that patterns and addresses name, each with its version
 job                   what is done with one recording, on every engine
 bags                  the same with a bag, of which each requirement reads its own topics
+members               what a requirement over the members of groups reads of a recording
 manifest              the results so far, in a file: nothing is computed twice
 local                 the engine on this machine: a process pool
 spark                 the engine on Apache Spark

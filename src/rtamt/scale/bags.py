@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rtamt.errors import StlError
-from rtamt.fleet.groups import way_of
 from rtamt.readers.assemble import trace_of
-from rtamt.readers.member_columns import choice_of_members
 from rtamt.readers.selection import has_one_clock
-from rtamt.signals.members import bound
+from rtamt.scale.members import over_members
 from rtamt.signals.sampling import sampled_messages
 
 if TYPE_CHECKING:
@@ -39,16 +37,11 @@ def table_of_bag(suite: Suite, source: Source, choice_of: ChoiceOf, recording: s
 
     def read(way: Way, spec: Specification | None) -> tuple[Specification | None, Trace]:
         if spec is not None and spec.groups:
-            return over_members(way, spec)
+            over, found = over_members(source, spec, lambda mine: choice_of(signals, [mine]), recording)
+            return over, _samples(found, way)
         choice = choice_of(signals, [way])
         data = trace_of(source, choice) if shared is None else shared.select(choice.columns or shared.names)
         return None, _samples(data, way)
-
-    def over_members(way: Way, spec: Specification) -> tuple[Specification, Trace]:
-        choice = choice_of_members(spec, source, lambda over: choice_of(signals, [way_of(over)]))
-        data = spec.binding.applied(trace_of(source, choice))
-        found = bound(data, spec.groups, spec.input_names, own_time_bases=True, source=recording)
-        return spec.over(found.members), _samples(found.data, way)
 
     return suite.evaluate_apart(signals, read, recording=recording)
 

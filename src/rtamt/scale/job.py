@@ -13,6 +13,7 @@ from rtamt.readers.assemble import trace_of
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.scale.bags import table_of_bag
+from rtamt.scale.members import over_members
 from rtamt.scale.recordings import fetched
 from rtamt.signals.arrays import TIME
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from rtamt.specification import Specification
 
 #: Increased with every change of what an operator means: results of other versions are computed again.
-SEMANTICS_VERSION = 2
+SEMANTICS_VERSION = 3
 
 
 class ReaderOptions(TypedDict, total=False):
@@ -106,22 +107,27 @@ class Job:
         with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
             if isinstance(data, (str, os.PathLike)) and is_bag(os.fspath(data)):
                 return table_of_bag(suite, source, self._choice, name)
-            signals, trace = source.signals, self._together(source)
+            signals = source.signals
+            trace = None if suite.reads_everything else self._together(source)
         if trace is not None:
             return suite.evaluate(trace, recording=name, signals=signals)
 
         def read(way: Way, spec: Specification | None) -> tuple[Specification | None, Trace]:
-            whole = spec is not None and bool(spec.groups)
             # Many a source can be read only once.
             with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
-                return None, trace_of(source, self._choice(signals, [way], whole))
+                if spec is None or not spec.groups:
+                    return None, trace_of(source, self._choice(signals, [way]))
+                complete = way.domain.sampled and way.rule is None
+                return over_members(
+                    source, spec, lambda mine: self._choice(signals, [mine]), name, complete=complete
+                )
 
         return suite.evaluate_apart(signals, read, recording=name)
 
     def _together(self, source: Source) -> Trace | None:
         """Return what the requirements that can be checked read of a recording; None where one cannot read it."""
         signals, suite = source.signals, self.suite
-        choice = self._choice(signals, suite.ways_over(signals), suite.reads_everything)
+        choice = self._choice(signals, suite.ways_over(signals))
         if not signals.issuperset(name for name in choice.columns or () if name != TIME):
             return None
         try:
@@ -129,8 +135,8 @@ class Job:
         except StlError:  # reported with the requirements that it concerns
             return None
 
-    def _choice(self, signals: Collection[str], ways: Iterable[Way], whole: bool = False) -> Choice:
-        """Return what some requirements read of a recording with these signals; ``whole``: all of it."""
+    def _choice(self, signals: Collection[str], ways: Iterable[Way]) -> Choice:
+        """Return what some requirements read of a recording with these signals."""
         options = self.options
         columns: dict[str, None] = {}
         skipped: dict[str, None] = {}
@@ -146,7 +152,7 @@ class Job:
                     skipped[column] = None
         return choice(
             options.get("time"),
-            None if whole else columns or None,
+            columns or None,
             None,
             None,
             [column for column in skipped if column in signals],

@@ -29,6 +29,8 @@ _SAME = 1e-5
 _COARSE = 1e-4
 #: A period of a lower precision, as a fraction of it, is not inferred.
 _UNCERTAIN = 1e-2
+#: Up to this precision, as a fraction of it, the mean gap of timestamps that were rounded to a unit is the period.
+_ROUNDED = 1e-3
 
 
 class DeferredTimes(ABC):
@@ -150,30 +152,59 @@ def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
 def infer_period(times: Timestamps, exact: FloatArray | None = None) -> Fraction:
     """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
 
-    Doubles since 1970 have a precision of about 0.2 µs, and floats of 32 bits one of 61 µs at 1000 s, which limits that
-    of the gaps. Where that is low, and the timestamps are regular but for their rounding, the mean gap is taken, which
-    is more precise by their number. ``exact``: the times as :func:`elapsed` returns them. Their gaps are exact unless
-    they were made of doubles, which shows in gaps that differ and yet add up to a period with fewer digits.
+    Timestamps that are rounded limit the precision of the gaps: doubles since 1970 to about 0.2 µs, floats of 32 bits
+    at 1000 s to 61 µs, whole milliseconds to 1 ms. Where that is low, and the timestamps are regular but for their
+    rounding, the mean gap is taken, which is more precise by their number. ``exact``: the times as :func:`elapsed`
+    returns them. Their gaps are exact unless they were made of doubles, which shows in gaps that differ and yet add up
+    to a period with fewer digits.
 
     Raises :class:`TraceError` where rounding leaves the period uncertain.
     """
     seconds = times.seconds
     if len(seconds) < 2:
         return Fraction(1)
+    known = seconds if exact is None else exact
+    gaps = np.diff(known)
+    gap = _median(gaps)
+    mean = _mean_of_rounded(known, gaps) if _differ(gaps, gap) else None
+    if mean is not None:
+        return mean
     coarse, blur = _rounded_period(times)
-    if exact is not None and exact is not seconds:
-        gaps = np.diff(exact)
-        gap = _median(gaps)
+    if known is not seconds:
         differ = float(np.abs(gaps - gap).max())
         if differ <= _NO_DIFFERENCE:
             short = _shortest(gap, _precision(gap, seconds))
-            return short if abs(float(short) - gap) <= _SAME * gap else _shortest(gap, _precision(gap, exact))
-        off = abs(float(coarse) * len(gaps) - float(exact[-1]))
+            return short if abs(float(short) - gap) <= _SAME * gap else _shortest(gap, _precision(gap, known))
+        off = abs(float(coarse) * len(gaps) - float(known[-1]))
         if blur > _UNCERTAIN * coarse or off > _precision(gap, seconds) + 2 * differ:
-            return _shortest(gap, _precision(gap, exact))
+            return _shortest(gap, _precision(gap, known))
     if blur > _UNCERTAIN * coarse:
         raise _uncertain(times, coarse)
     return coarse
+
+
+def _differ(gaps: FloatArray, gap: float) -> bool:
+    return bool((np.abs(gaps - gap) > 1e-6 * gap).any())
+
+
+def _mean_of_rounded(times: FloatArray, gaps: FloatArray) -> Fraction | None:
+    """Return the mean gap of timestamps that were rounded to a unit: whole milliseconds of 60 Hz are 16 or 17 ms apart.
+
+    The gaps then have two lengths, one unit apart, or three after rounding twice, and the timestamps are near regular
+    ones. None for others, and where the mean gap is not much more precise than a gap.
+    """
+    short, range_ = float(gaps.min()), float(gaps.max() - gaps.min())
+    mean = float(times[-1] - times[0]) / len(gaps)
+    blur = max(1e-6 * mean, 2 * range_ / len(gaps))
+    noise = _precision(mean, times)
+    if range_ <= noise or blur > _ROUNDED * mean:
+        return None
+    step = range_ / 2
+    more = gaps - short
+    if (np.abs(more - np.rint(more / step) * step) > noise).any():
+        return None
+    off = np.abs(times - times[0] - mean * np.arange(len(times))).max()
+    return _shortest(mean, blur) if off <= range_ + noise else None
 
 
 def _rounded_period(times: Timestamps) -> tuple[Fraction, float]:
@@ -181,7 +212,7 @@ def _rounded_period(times: Timestamps) -> tuple[Fraction, float]:
     seconds = times.seconds
     gaps = np.diff(seconds)
     gap = _median(gaps)
-    spacing = _spacing(times, bool((np.abs(gaps - gap) > 1e-6 * gap).any()))
+    spacing = _spacing(times, _differ(gaps, gap))
     blur = max(1e-6 * gap, 2 * spacing)
     if blur > _COARSE * gap:
         mean = float(seconds[-1] - seconds[0]) / len(gaps)

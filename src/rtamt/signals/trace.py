@@ -18,13 +18,13 @@ from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
-from rtamt.signals.data_errors import TRACE_MENDS, missing_sample, possible_times
+from rtamt.signals.data_errors import FILE_MENDS, TRACE_MENDS, missing_sample, possible_times
 from rtamt.signals.listing import extent, html, listing
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal, read_only
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
     from fractions import Fraction
 
     from numpy.typing import NDArray
@@ -285,9 +285,7 @@ class Trace(WithTimeBases):
         Raises :class:`TraceError` if the signals have different time bases.
         """
         channels = {name: self.channel(name) for name in names if name != TIME}
-        for name, channel in channels.items():
-            if channel.first_gap is not None:
-                raise missing_sample(name, channel.first_gap, self._source, TRACE_MENDS)
+        self.require_all_samples(channels, TRACE_MENDS)
         chosen = channels or self._channels
         self._check_one_time_base(chosen)
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
@@ -295,6 +293,12 @@ class Trace(WithTimeBases):
         if times is not None:
             return {TIME: times, **result}
         return result or {name: channel.values for name, channel in self._channels.items()}
+
+    def require_all_samples(self, names: Iterable[str], mends: str = FILE_MENDS) -> None:
+        """Raise :class:`TraceError` if one of these signals lacks a sample of its table; ``mends``: how to mend it."""
+        for name in names:
+            if name != TIME and (gap := self.channel(name).first_gap) is not None:
+                raise missing_sample(name, gap, self._source, mends)
 
     def require_period(self, names: Collection[str]) -> None:
         """Raise :class:`TraceError` where samples can only be taken to be one period apart, and none is given.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.engine.discrete.monitor import push_samples
 from rtamt.engine.native import has_period
+from rtamt.lazy.modules import np
 from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
 from rtamt.signals.sampling_period import check_increasing, elapsed, infer_period
@@ -35,6 +36,7 @@ class DiscreteStream(Stream):
         self._group = Group(self.requirements, spec.input_names)
         self._monitor: Monitor | None = None
         self._read = [one.input_names for one in spec.requirements.values()]
+        self._latest: float | None = None
         # Of the chunks so far: the rest of a recording may show that its first column holds no timestamps.
         self._lacks_times: TraceError | None = None
         # The timestamps of positions where something is violated, and of the first.
@@ -62,7 +64,11 @@ class DiscreteStream(Stream):
             self._monitor = self._begin(timestamps)
         known = push_samples(self._monitor, timestamps, columns, n)
         if self._inferred and timestamps is not None and self._period is not None:
-            self.steady = self.steady and has_period(timestamps.seconds, self._period)
+            seconds = timestamps.seconds
+            # With the gap from the previous chunk: each gap of the recording is one of one chunk.
+            gaps_of = seconds if self._latest is None else np.concatenate(([self._latest], seconds))
+            self.steady = self.steady and has_period(gaps_of, self._period)
+            self._latest = float(seconds[-1])
         self._known(self._monitor, known)
         self.samples += n
 

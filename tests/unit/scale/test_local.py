@@ -240,3 +240,45 @@ def test_a_column_that_one_requirement_lacks_was_the_error_of_all(tmp_path, caps
     alone = outcomes()
     assert outcomes("--engine", "local") == alone
     assert (has == "complete") == all(row["error"] is None and row["unchecked"] is None for row in alone)
+
+
+GROUPED = """
+input float x = "sig.x"
+input group cars = "car_*" { float s }
+require R1: always(x > 0)
+require R2: always(forall v in cars: v.s > -2)
+require R3: always[0:1](forall v in cars: v.s > 3 and x > 0)
+"""
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "time,sig.x,car_1.s\n0,5,4\n1,5,4\n2,6,5\n",
+        "time,sig.x,car_1.s,car_2.s\n0,5,4,ERR\n1,5,4,ERR\n",
+        "time,x,car_1.s\n0,5,4\n1,5,4\n",
+        "time,sig.x,car_1.s\n0,5,4\n1,5,4\n2,,5\n",
+        "time,sig.x,car_1.s,junk\n0,5,4,nan\n1,5,4,\n",
+    ],
+    ids=["complete", "texts", "another name", "gap", "column that nothing reads"],
+)
+def test_requirements_over_members_are_those_of_a_check(tmp_path, capsys, rows):
+    """One quantifier in a file made all requirements read all columns, under any name and with gaps."""
+    (tmp_path / "a.csv").write_text(rows)
+    (tmp_path / "s.stl").write_text(GROUPED)
+
+    def outcomes(*more):
+        code = main(["check", str(tmp_path / "s.stl"), str(tmp_path / "a.csv"), "--json", *more])
+        found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        read = ("requirement", "satisfied", "robustness", "first_violation")
+        return code, [({name: row.get(name) for name in read}, "error" in row) for row in found]
+
+    assert outcomes("--engine", "local") == outcomes()
+
+
+def test_a_recording_on_which_nothing_is_checked_was_no_error(tmp_path, capsys):
+    (tmp_path / "a.csv").write_text("time,x\n0,5\n1,5\n")
+    (tmp_path / "s.stl").write_text("optional input float y\nrequire R: always(y > 0)")
+    for more in [], ["--engine", "local"]:
+        assert main(["check", str(tmp_path / "s.stl"), str(tmp_path / "a.csv"), *more]) == 2
+        assert "a.csv: nothing was checked: every requirement reads signals" in capsys.readouterr().err

@@ -150,3 +150,39 @@ def test_streams_ignored_the_settings_of_a_time_domain():
     assert rtamt.check_stream(rtamt.parse("always(x >= 0)", time=rough), [chunk]).satisfied
     with pytest.raises(rtamt.errors.TraceError, match=r"expected 100 ms \(within 10%\)"):
         rtamt.check_stream(spec, [chunk], period="100ms")
+
+
+@pytest.mark.parametrize("rate", [24, 30, 48, 60, 70, 75])
+@pytest.mark.parametrize("rounded", [np.round, np.floor])
+def test_the_period_of_whole_milliseconds_was_a_whole_number_of_them(rate, rounded):
+    times = rounded(np.arange(1000) * 1000 / rate)
+    for seconds, options in [
+        (times / 1000, {}),
+        (times, {"time_unit": "ms"}),
+        (times.astype(np.int64).astype("M8[ms]"), {}),
+    ]:
+        assert abs(period_of(seconds, **options) * rate - 1) < 5e-5
+
+
+@pytest.mark.parametrize("rate", [48_000, 44_100, 22_050])
+def test_the_period_of_nanoseconds_made_of_doubles_since_1970_was_the_most_frequent_gap(rate):
+    times = np.array([int(time * 1e9) for time in 1.7e9 + np.arange(2000) / rate])
+    assert abs(period_of(times, time_unit="ns") * rate - 1) < 2e-5
+
+
+@pytest.mark.parametrize("options", [[], ["--early"]], ids=["whole", "early"])
+def test_a_first_chunk_had_another_period_than_the_recording(tmp_path, options):
+    """16 kHz in whole microseconds: gaps of 62 and 63 in turn, of which a chunk has more of the first."""
+    index = np.arange(40_001)
+    rows = "\n".join(f"{time},{x}" for time, x in zip(index * 125 // 2, index * 62.5e-3, strict=True))
+    (tmp_path / "a.csv").write_text(f"time [us],x\n{rows}\n")
+    assert main(["check", "always[0:1550ms](x <= 1560)", str(tmp_path / "a.csv"), *options]) == 0
+
+
+def test_the_gap_between_chunks_is_one_of_the_recording():
+    """A last chunk of one sample has no other gap, and others may have one more of the first chunk's period."""
+    times = np.cumsum([0, *[62, 63] * 100])[:201] / 1e6
+    chunks = [{"time": times[i : i + 40], "x": np.ones(len(times[i : i + 40]))} for i in range(0, 201, 40)]
+    result = rtamt.check_stream(rtamt.parse("always(x >= 0)"), chunks)
+    whole = rtamt.parse("always(x >= 0)").evaluate({"time": times, "x": np.ones(201)})
+    assert not result.steady or result.period == whole.trace.period

@@ -9,6 +9,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Watched
+from rtamt.engine.native import has_period
+from rtamt.errors import TraceError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
 from rtamt.lazy.dataclasses import dataclass, replace
@@ -178,6 +180,10 @@ class DiscreteEarlyCheck(EarlyCheck):
             seconds, last, dated = timestamps.seconds, self._last, arrays.are_dates(timestamps.original)
             check_increasing(seconds, last, self._samples, dated=dated)
             check_regular(seconds, self._period, self._tolerance, last, self._samples, dated=dated)
+            if not self._given and not has_period(
+                seconds if last is None else np.concatenate(([last], seconds)), self._period
+            ):
+                raise TraceError("the period is that of the whole recording", variable=arrays.TIME)
             self._last = float(seconds[-1])
         step = float(self._period)
         self._times += (
