@@ -13,6 +13,7 @@ from rtamt.engine.native import has_period
 from rtamt.errors import TraceError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
+from rtamt.language.units.durations import format_duration
 from rtamt.lazy.dataclasses import dataclass, replace
 from rtamt.lazy.modules import np
 from rtamt.rewrite.early import ends_differently
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from rtamt.language.formula import Formula
+    from rtamt.signals.arrays import FloatArray
     from rtamt.signals.outcomes import Verdict
     from rtamt.signals.trace import Trace
     from rtamt.specification import Specification
@@ -145,6 +147,18 @@ class EarlyCheck(ABC):
         )
 
 
+def _require_period(times: FloatArray, period: Fraction) -> None:
+    """Raise :class:`TraceError` where timestamps may have another period than the first ones.
+
+    Only the whole recording shows its period then: the check of that follows.
+    """
+    if not has_period(times, period):
+        raise TraceError(
+            f"the sampling period may be another than {format_duration(period)}: give it with --period",
+            variable=arrays.TIME,
+        )
+
+
 class DiscreteEarlyCheck(EarlyCheck):
     """The check in discrete time, whose positions count samples."""
 
@@ -180,10 +194,8 @@ class DiscreteEarlyCheck(EarlyCheck):
             seconds, last, dated = timestamps.seconds, self._last, arrays.are_dates(timestamps.original)
             check_increasing(seconds, last, self._samples, dated=dated)
             check_regular(seconds, self._period, self._tolerance, last, self._samples, dated=dated)
-            if not self._given and not has_period(
-                seconds if last is None else np.concatenate(([last], seconds)), self._period
-            ):
-                raise TraceError("the period is that of the whole recording", variable=arrays.TIME)
+            if not self._given:
+                _require_period(seconds if last is None else np.concatenate(([last], seconds)), self._period)
             self._last = float(seconds[-1])
         step = float(self._period)
         self._times += (
