@@ -57,12 +57,13 @@ class Forcing:
             _Share(place, surely, demands) for place, surely in choices if self._is_share(place[0])
         ]
         found = reaches(structure.order, axis.period)
-        near = [each for each in choices if max(found[each[0][0]]) < NEVER]
+        bounded = {node for node, reach in found.items() if max(reach) < NEVER}
         #: How many cells behind and ahead a choice can look, of those that do not look at the whole recording.
-        self.behind = max((found[node][0] for (node, _), _ in near), default=0)
-        self.ahead = max((found[node][1] for (node, _), _ in near), default=0)
-        self._near = self._runner([each for each in self._choices if each in near])
-        self._far = self._runner([each for each in self._choices if each not in near])
+        reaching = [found[node] for (node, _), _ in choices if node in bounded]
+        self.behind = max((behind for behind, _ in reaching), default=0)
+        self.ahead = max((ahead for _, ahead in reaching), default=0)
+        self._near = self._runner([each for each in self._choices if each[0][0] in bounded])
+        self._far = self._runner([each for each in self._choices if each[0][0] not in bounded])
 
     def _runner(self, choices: list[tuple[Place, Cells]]) -> Runner | None:
         formulas = [self._structure.polar[place] for place, _ in choices]
