@@ -143,12 +143,12 @@ class _Summary:
         self._worst: dict[str, tuple[float, str]] = {}
         self._errors: dict[str, None] = {}
         self._total: Counter[str] = Counter()
-        self._unchecked = 0
+        self._lacking = False  # whether a recording has the signals of no requirement
 
     def add(self, found: VerdictTable) -> None:
         verdicts = [_verdict(row) for row in found]
         if verdicts and set(verdicts) == {"unchecked"}:
-            self._unchecked += 1
+            self._lacking = True
             self._errors[nothing_checked(found.rows[0].recording)] = None
         for row, verdict in zip(found, verdicts, strict=True):
             self._counts[row.requirement][verdict] += 1
@@ -172,9 +172,9 @@ class _Summary:
 
     @property
     def code(self) -> int:
-        return (
-            ERROR if self._total["error"] or self._unchecked else VIOLATED if self._total["violated"] else OK
-        )
+        if self._total["error"] or self._lacking:
+            return ERROR
+        return VIOLATED if self._total["violated"] else OK
 
     def text(self, recordings: int, known: int, color: bool) -> str:
         rows: list[tuple[str, ...]] = [("requirement", *_VERDICTS, "worst robustness", "recording")]

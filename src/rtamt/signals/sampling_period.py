@@ -150,13 +150,13 @@ def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
 
 
 def infer_period(times: Timestamps, exact: FloatArray | None = None) -> Fraction:
-    """Return the median gap, as the shortest decimal within its precision; 1 s for a single sample.
+    """Return the median gap, or the mean gap of rounded timestamps, as a short decimal; 1 s for a single sample.
 
-    Timestamps that are rounded limit the precision of the gaps: doubles since 1970 to about 0.2 µs, floats of 32 bits
-    at 1000 s to 61 µs, whole milliseconds to 1 ms. Where that is low, and the timestamps are regular but for their
-    rounding, the mean gap is taken, which is more precise by their number. ``exact``: the times as :func:`elapsed`
-    returns them. Their gaps are exact unless they were made of doubles, which shows in gaps that differ and yet add up
-    to a period with fewer digits.
+    It is the shortest decimal within the precision of the gap. Timestamps that are rounded limit that: doubles since
+    1970 to about 0.2 µs, floats of 32 bits at 1000 s to 61 µs, whole milliseconds to 1 ms. Where the precision is low,
+    and the timestamps are regular but for their rounding, the mean gap is taken, which is more precise by their number.
+    ``exact``: the times as :func:`elapsed` returns them. Their gaps are exact unless they were made of doubles, which
+    shows in gaps that differ and yet add up to a period with fewer digits.
 
     Raises :class:`TraceError` where rounding leaves the period uncertain.
     """
