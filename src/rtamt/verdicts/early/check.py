@@ -9,7 +9,6 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rtamt.engine import Watched
-from rtamt.engine.native import has_period
 from rtamt.errors import TraceError
 from rtamt.language.formula import Apply
 from rtamt.language.operators import Tense, Window
@@ -26,6 +25,7 @@ from rtamt.signals.sampling_period import (
     check_increasing,
     check_regular,
     elapsed,
+    has_period,
     infer_period,
     merged,
 )
