@@ -339,6 +339,7 @@ class Specification(OnlineSpecification):
 
     def __reduce__(self) -> tuple[Any, ...]:
         from rtamt.language.printing.printer import to_text
+        from rtamt.specification_parameters import given_constants
 
         if self.resolved is not None:
             other = self.formula if self.document.replaced else None
@@ -348,7 +349,7 @@ class Specification(OnlineSpecification):
         settings = {name: getattr(self, name) for name in names}
         replaced = self.document.replaced
         formula = to_text(self.formula, self.language, parameters=True) if replaced else None
-        values = self._given, dict(self.parameters), library_of(self.document)
+        values = given_constants(self), dict(self.parameters), library_of(self.document)
         return _factory, (
             self.text,
             values,

@@ -12,17 +12,13 @@ from rtamt.language.contents import types_of, variables
 from rtamt.language.formula import Formula, outermost
 from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.grammar import is_number
-from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.parser import parse_formula
-from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.parsing.type_rules import as_formula
 from rtamt.language.units.durations import NANOSECOND, positive_period
-from rtamt.language.value_types import WHOLE
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import SEMANTICS, apply_semantics, semantics_of, standard
-from rtamt.settings import parameter_value, require_parameters
 from rtamt.signals.discrete import DISCRETE, Discrete
 from rtamt.signals.time_domains import Defaults, time_domain
 
@@ -177,55 +173,9 @@ class SpecificationText:
         >>> dict(spec.with_parameters(limit=3).parameters)
         {'limit': 3.0}
         """
-        from rtamt.language.exact_number import is_same
-        from rtamt.language.parameters import assigned, bounding
+        from rtamt.specification_parameters import with_values
 
-        current = self.parameters
-        require_parameters(values, current)
-        types = self.document.types
-        whole = {each.name for each in self.document.declarations if each.type in WHOLE}
-        given = {
-            name: parameter_value(name, value, types.get(name), whole=name in whole)
-            for name, value in values.items()
-        }
-        new = {name: value for name, value in given.items() if not is_same(value, current[name])}
-        if not new:
-            return self
-        if new.keys() & bounding(self.document):
-            if self.resolved is not None:
-                original, members = self.resolved
-                return self._selected_from(original.with_parameters(**{**current, **new}).over(members))
-            return self._parsed_with({**current, **new})
-        doubles = {name: float(value) for name, value in new.items()}
-        return replace(self, document=assigned(self.document, doubles))
-
-    def _selected_from(self, whole: Any) -> Self:
-        """Return the same requirement of another specification."""
-        found: Self = whole if self.document.selected is None else whole.select(self.document.selected)
-        return found
-
-    def _parsed_with(self, values: Mapping[str, float]) -> Self:
-        """Return the specification with values of parameters of which some bound an interval."""
-        from rtamt.language.parameters import bounding
-
-        if self.document.replaced:
-            names = ", ".join(f"'{name}'" for name in sorted(bounding(self.document) & values.keys()))
-            raise UsageError(
-                f"the formula was replaced, and {names} bounds an interval: set it before with_formula()"
-            )
-        document = parse_document(
-            self.text,
-            language=self.language,
-            unit=self.unit,
-            constants=self._given,
-            parameters=values,
-            library=library_of(self.document),
-        )
-        if self.document.selected is not None:
-            document = document.select(self.document.selected)
-        spec = replace(self, document=document)
-        spec._check_bounds()
-        return spec
+        return with_values(self, values)
 
     def _check_bounds(self) -> None:
         """Raise :class:`BoundError` for a bound that is no multiple of the period or tick."""
@@ -243,12 +193,6 @@ class SpecificationText:
         {'limit': 4.0}
         """
         return self.document.parameters
-
-    @property
-    def _given(self) -> dict[str, float]:
-        """The constants that were given in addition to the text."""
-        declared = {declaration.name for declaration in self.document.declarations}
-        return {name: v for name, v in self.document.constants.items() if name not in declared}
 
     def with_formula(self, formula: Formula) -> Self:
         """Return the specification of another formula over the same names, such as a pastified one.

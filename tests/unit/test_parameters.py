@@ -153,7 +153,7 @@ def test_other_values_are_neither_parsed_nor_compiled_again(spec, monkeypatch):
     modes = ("delayed", "eager", "interval", "causation")
     spec.evaluate(DATA), spec.evaluate(dense, time="dense"), spec.monitor(time="dense")
     monitors = [spec.monitor(verdict=mode) for mode in modes]
-    for place in ("rtamt.compiler.shared", "rtamt.specification", "rtamt.specification_text"):
+    for place in ("rtamt.compiler.shared", "rtamt.specification", "rtamt.specification_parameters"):
         for name in ("compile_program", "compile_plan", "compile_graph", "parse_document"):
             monkeypatch.setattr(f"{place}.{name}", again, raising=False)
     new = spec.with_parameters(limit=1)
