@@ -7,6 +7,7 @@ from functools import partial
 
 from rtamt.engine import OnlineMonitor, Watched, engine_of
 from rtamt.errors import UsageError
+from rtamt.language.contents import variables
 from rtamt.language.quantifiers import quantifiers
 from rtamt.language.records import Sort
 from rtamt.lazy.dataclasses import replace
@@ -201,6 +202,11 @@ class OnlineSpecification(QuantifiedText):
         domain = self._domain_for(time, period, tolerance, resolution).online
         require_samples(domain, worst_case=worst_case)
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
+        if self.document.origin is not None and not variables(self.formula):
+            from rtamt.verdicts.robustness_and_truth import align_inputs
+
+            formula = align_inputs(formula, self.input_names)
+            requirements = [formula]
         make = engine_of(domain).monitor if mode.name == DELAYED else monitor_of(mode, domain)
         monitor = make(
             formula,

@@ -224,19 +224,32 @@ class SpecificationText:
 
     @cached_property
     def input_names(self) -> tuple[str, ...]:
-        """The variables that the formula (or any of several requirements) reads, in order of appearance."""
+        """The variables that the formula (or any of several requirements) reads, in order of appearance.
+
+        In dense time, a requirement that reads none reads those of its text: they determine its trace.
+        """
         names = variables(self.formula)
         if self.resolved is None:
-            return names
+            return names or self._names_beside
         # Over few members, no pair of them may be left to read what starts and ends the trace.
         names = tuple(dict.fromkeys((*names, *self.resolved[0].input_names)))
         return names or tuple(each.name for each in self.document.declarations if each.kind == "var")
+
+    @property
+    def _names_beside(self) -> tuple[str, ...]:
+        """The variables that the other requirements read in dense time; those that recordings may lack if need be."""
+        origin = self.document.origin
+        if origin is None or not self.domain.own_time_bases:
+            return ()
+        names = variables(origin.formula)
+        optional = {each.name for each in self.document.declarations if each.optional}
+        return tuple(name for name in names if name.partition(".")[0] not in optional) or names
 
     @cached_property
     def types(self) -> Mapping[str, ValueType]:
         """The types of those variables of the formula that are Booleans or enumerations."""
         found = types_of(self.formula)
-        if self.resolved is not None:
+        if self.resolved is not None or not variables(self.formula):
             declared = self.document.types
             found |= {name: declared[name] for name in self.input_names if name in declared}
         return MappingProxyType(found)

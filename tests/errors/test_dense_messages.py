@@ -200,7 +200,8 @@ def test_wrong_settings() -> None:
     with pytest.raises(rtamt.UsageError) as info:
         rtamt.parse("3 >= 2").evaluate({}, time="dense")
     assert str(info.value) == (
-        "the formula reads no variable, so in dense time nothing says when to evaluate it"
+        "the formula reads no variable, so that it has no instants in dense time: let it read a variable, or "
+        "evaluate it in discrete time"
     )
     with pytest.raises(rtamt.BoundError) as bound:
         rtamt.parse("once[0:1/3] x").monitor(time="dense")
@@ -217,7 +218,8 @@ def test_a_monitor_of_a_formula_without_variables(backend: str, verdict: str) ->
     with pytest.raises(rtamt.UsageError) as info:
         spec.monitor(time="dense", verdict=verdict)
     assert str(info.value) == (
-        "the formula reads no variable, so in dense time nothing says when to evaluate it"
+        "the formula reads no variable, so that it has no instants in dense time: let it read a variable, or "
+        "evaluate it in discrete time"
     )
 
 

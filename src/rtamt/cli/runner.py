@@ -268,6 +268,8 @@ class _ChunkedRun:
 
         spec, reading = self._requirement.spec, self._reading
         check_streamable(spec)
+        if not spec.input_names:  # its instants are those of all columns
+            return None
         with opened(self._trace, reading.sheet, reading.query, reading.recover) as source:
             if len(source.tables) != 1 or source.tables[0].chunks is None:
                 return None

@@ -350,4 +350,7 @@ def record_dense(
 
 def _require_variables(names: Collection[str]) -> None:
     if not names:
-        raise UsageError("the formula reads no variable, so in dense time nothing says when to evaluate it")
+        raise UsageError(
+            "the formula reads no variable, so that it has no instants in dense time: let it read a variable, or "
+            "evaluate it in discrete time"
+        )

@@ -327,7 +327,10 @@ def test_a_bound_finer_than_a_nanosecond_is_refused():
 
 
 def test_a_formula_without_variables_has_no_time():
-    message = "the formula reads no variable, so in dense time nothing says when to evaluate it"
+    message = (
+        "the formula reads no variable, so that it has no instants in dense time: let it read a variable, or "
+        "evaluate it in discrete time"
+    )
     assert message_of(declared("true").evaluate) == message_of(declared("true").update) == message
 
 
