@@ -27,6 +27,7 @@ from rtamt.ros.bags import columns_of
 from rtamt.scale.engines import check_recordings
 from rtamt.scale.job import Job
 from rtamt.scale.recordings import recordings_of
+from rtamt.signals.data_errors import FILE_MENDS, NAN_MEND
 
 if TYPE_CHECKING:
     import argparse
@@ -41,6 +42,8 @@ _PRINTED = 10
 _SINGLE = {
     **dict.fromkeys(("early", "junit", "sarif", "html", "resample", "how", "sql", "query"), None),
 }
+#: How to mend a missing sample where recordings are not resampled.
+_GAP_MENDS = "fill the gap, hold the value before it (--hold-for DURATION), or use dense time (--time dense)"
 _VERDICTS = ("satisfied", "violated", "unchecked", "error")
 
 
@@ -80,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
             jobs=args.jobs,
             progress=counter.show,
         )
-        for found in tables:
+        for found in map(_with_options, tables):
             summary.add(found)
             write(found)
             if args.json and not args.quiet:
@@ -188,6 +191,20 @@ class _Summary:
             f"{table(rows, (1, 2, 3, 4, 5), width=width_of(sys.stdout), color=color)}\n\n"
             f"{recordings} recordings{earlier}: {escaped(verdicts)}"
         )
+
+
+def _with_options(found: VerdictTable) -> VerdictTable:
+    """Return rows whose errors about NaN and gaps name the options that this command has."""
+    if all(row.error is None for row in found):
+        return found
+    return VerdictTable([row._replace(error=_mended(row.error)) for row in found], found.select)
+
+
+def _mended(error: str | None) -> str | None:
+    if error is None or not error.endswith(NAN_MEND):
+        return error and error.replace(FILE_MENDS, _GAP_MENDS)
+    name = error.split("'")[1]  # it begins with the variable
+    return f"{error} (--skip-nan {name})"
 
 
 def _verdict(row: Row) -> str:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from rtamt.errors import StlError, UsageError, choices
 from rtamt.fleet.verdict_table import Row, VerdictTable
+from rtamt.lazy.dataclasses import replace
 from rtamt.readers.assemble import trace_of
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
@@ -80,7 +82,8 @@ class Job:
 
         def found() -> VerdictTable:
             with fetched(path) as local:
-                return self._evaluate(path, local)
+                table = self._table(path, lambda: self._evaluate(path, local))
+            return table if local == path else _with_name(table, local, path)
 
         return self._table(path, found)
 
@@ -106,7 +109,7 @@ class Job:
         options, suite = self.options, self.suite
         with opened(data, options.get("sheet"), None, options.get("recover", False)) as source:
             if isinstance(data, (str, os.PathLike)) and is_bag(os.fspath(data)):
-                return table_of_bag(suite, source, self._choice, name)
+                return table_of_bag(suite, source, partial(self._choice, bag=True), name)
             signals = source.signals
             trace = None if suite.reads_everything else self._together(source)
         if trace is not None:
@@ -135,13 +138,16 @@ class Job:
         except StlError:  # reported with the requirements that it concerns
             return None
 
-    def _choice(self, signals: Collection[str], ways: Iterable[Way]) -> Choice:
-        """Return what some requirements read of a recording with these signals."""
+    def _choice(self, signals: Collection[str], ways: Iterable[Way], *, bag: bool = False) -> Choice:
+        """Return what some requirements read of a recording with these signals; ``bag``: whether it is a bag."""
         options = self.options
         columns: dict[str, None] = {}
         skipped: dict[str, None] = {}
         types: dict[str, Any] = {}
+        gaps = bag
         for way in ways:
+            # In discrete time a gap is an error, unless each signal has its own time base, or is sampled.
+            gaps = gaps or way.domain.own_time_bases or way.rule is not None
             places = way.binding.found_in(signals)
             for name in way.inputs:
                 column = places.get(name, name)
@@ -150,7 +156,7 @@ class Job:
                     types[column] = way.types[name]
                 if name in options.get("skip_nan", ()) or (way.rule is not None and way.rule.skip_nan):
                     skipped[column] = None
-        return choice(
+        made = choice(
             options.get("time"),
             columns or None,
             None,
@@ -160,6 +166,7 @@ class Job:
             options.get("time_unit"),
             types,
         )
+        return replace(made, gaps=gaps)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _job, (*self.suite.sent(), dict(self.options))
@@ -167,3 +174,9 @@ class Job:
 
 def _job(make: Callable[..., Suite], given: Iterable[Any], options: dict[str, Any]) -> Job:
     return Job(make(*given), **options)
+
+
+def _with_name(table: VerdictTable, local: str, path: str) -> VerdictTable:
+    """Return rows whose errors name a recording by its address, in place of the temporary copy."""
+    rows = [row if row.error is None else row._replace(error=row.error.replace(local, path)) for row in table]
+    return VerdictTable(rows, table.select)

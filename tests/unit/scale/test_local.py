@@ -6,7 +6,9 @@ import json
 import os
 
 import pandas as pd
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
 
 import rtamt
 from rtamt.cli import main
@@ -282,3 +284,50 @@ def test_a_recording_on_which_nothing_is_checked_was_no_error(tmp_path, capsys):
     for more in [], ["--engine", "local"]:
         assert main(["check", str(tmp_path / "s.stl"), str(tmp_path / "a.csv"), *more]) == 2
         assert "a.csv: nothing was checked: every requirement reads signals" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "time", "message"),
+    [
+        (
+            "gap.csv",
+            "time,x\n0,1\n1,\n2,3\n",
+            "discrete",
+            "'x' is missing at sample 1 of {}, but discrete time needs a value at every sample: fill the gap, hold the "
+            "value before it (--hold-for DURATION), or use dense time (--time dense)",
+        ),
+        (
+            "nan.csv",
+            "time,x\n0,1\n1,nan\n2,3\n",
+            "dense",
+            "{}, line 3: 'x' is NaN: fill the gap, or leave such samples out with skip_nan=, on the command line "
+            "--skip-nan",
+        ),
+        ("y.csv", "time,y\n0,1\n", "discrete", "{} has no column 'x'; columns: time, y"),
+        (
+            "damaged.parquet",
+            "no",
+            "dense",
+            "'{}' cannot be read as Parquet: Parquet file size is 2 bytes, smaller than the minimum file footer "
+            "(8 bytes); the file is damaged, incomplete or of another kind: copy or export it again",
+        ),
+    ],
+)
+@pytest.mark.parametrize("scheme", ["", "file://"])
+def test_errors_name_the_address_and_options_of_the_command(
+    tmp_path, capsys, name, content, time, message, scheme
+):
+    if scheme:
+        pytest.importorskip("fsspec")
+    (tmp_path / name).write_text(content)
+    recording = f"{scheme}{tmp_path / name}"
+    assert main(["check", "always(x >= 0)", recording, "--time", time, "--engine", "local", "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["error"] == message.format(recording)
+
+
+def test_errors_about_nan_name_the_option_that_leaves_it_out(tmp_path, capsys):
+    file = tmp_path / "nan.parquet"
+    parquet.write_table(pa.table({"time": [0.0, 1.0], "x": [1.0, float("nan")]}), file)
+    main(["check", "always(x >= 0)", str(file), "--engine", "local", "--json"])
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error == "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out (--skip-nan x)"
