@@ -109,8 +109,8 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 def _plots(item: pytest.Item, error: UnsatisfiedError) -> list[str]:
     """Write a plot of each failed requirement; return the files, or why there are none."""
     from rtamt.errors import StlError
-    from rtamt.files import replacing
     from rtamt.plot.axes import matplotlib
+    from rtamt.plot.saving import save
 
     try:
         figures = matplotlib("figure")
@@ -121,8 +121,7 @@ def _plots(item: pytest.Item, error: UnsatisfiedError) -> list[str]:
     for name, part in error.failures.items():
         file = folder / (re.sub(r"[^\w.-]+", "_", "-".join(filter(None, (item.nodeid, name)))) + ".png")
         figure = part.plot(figure=figures.Figure())
-        with replacing(str(file)) as new:
-            figure.savefig(new, dpi=110)
+        save(figure, str(file), 110)
         lines.append(f"plot: {file}")
     return lines
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from rtamt.cli.command import OUTPUT, CommandError, json_number, json_text, options
 from rtamt.cli.parser import ERROR, OK, VIOLATED
 from rtamt.cli.terminal import paint, say, use_color
-from rtamt.files import replacing
 from rtamt.language.units.durations import format_duration
 from rtamt.plot.axes import matplotlib
+from rtamt.plot.saving import save
 
 if TYPE_CHECKING:
     import argparse
@@ -109,8 +109,7 @@ def _plot(name: str, analysis: Analysis, folder: str) -> dict[Conclusion, str]:
             path = os.path.join(folder, f"{about}.png")
             figure = matplotlib().Figure()
             each.witness.plot(figure)
-            with replacing(path) as new:
-                figure.savefig(new, dpi=110)
+            save(figure, path, 110)
             found[each] = path
     except OSError as error:
         raise CommandError(f"cannot write plots into '{folder}': {error.strerror}") from None

@@ -11,8 +11,8 @@ from rtamt.cli.parameters import add_set_option, assigned
 from rtamt.cli.parser import OK, VIOLATED
 from rtamt.cli.terminal import Progress, paint, say, use_color
 from rtamt.errors import UsageError
-from rtamt.files import replacing
 from rtamt.lazy.dataclasses import replace
+from rtamt.plot.saving import save
 
 if TYPE_CHECKING:
     import argparse
@@ -103,8 +103,7 @@ def run(args: argparse.Namespace) -> int:
     if args.plot:
         axes = found.plot()
         try:
-            with replacing(args.plot) as new:
-                axes.figure.savefig(new, dpi=120)
+            save(axes.figure, args.plot, 120)
         except (OSError, ValueError) as error:
             raise UsageError(f"cannot write the plot '{args.plot}': {error}") from error
     return VIOLATED if found.falsified else OK

@@ -12,9 +12,9 @@ from rtamt.cli.parser import OK
 from rtamt.cli.reading_options import add_input_options, add_instant_option, instant
 from rtamt.cli.terminal import Progress, say
 from rtamt.errors import StlError
-from rtamt.files import replacing
 from rtamt.plot.axes import matplotlib
 from rtamt.plot.figure import draw
+from rtamt.plot.saving import save
 from rtamt.plot.scene import scene
 from rtamt.plot.tree import draw_tree
 
@@ -96,8 +96,7 @@ def run(args: argparse.Namespace) -> int:
         matplotlib("pyplot").show()
         return OK
     try:
-        with replacing(args.output) as new:
-            figure.savefig(new, dpi=150)
+        evaluated.notes.extend(save(figure, args.output, 150))
     except OSError as error:
         raise CommandError(f"cannot write '{args.output}': {error.strerror}") from None
     say(f"{args.output}: {seen.verdict}{evaluated.listed_notes}")

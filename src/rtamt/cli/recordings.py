@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.cli.command import CommandError
 from rtamt.cli.reading_options import on_time_base, read_for, reading_of, recording
-from rtamt.files import replacing
+from rtamt.plot.saving import save
 from rtamt.readers.sql import shown
 
 if TYPE_CHECKING:
@@ -46,7 +46,6 @@ def save_plot(axes: Any, path: str) -> None:
 def save_figure(figure: Any, path: str) -> None:
     """Write a plot completely or not at all; an error is one sentence."""
     try:
-        with replacing(path) as new:
-            figure.savefig(new, dpi=130)
+        save(figure, path, 130)
     except (OSError, ValueError) as error:
         raise CommandError(f"cannot write the plot '{path}': {error}") from None

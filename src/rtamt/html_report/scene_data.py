@@ -137,7 +137,9 @@ def _values(line: Line, store: Store, share: float | None, panels: Iterable[Pane
             if len(signal.values) == len(line.values):
                 for limit in panel.thresholds:
                     for sign in (1, -1):
-                        if (sign * signal.values - sign * limit == line.values).all():
+                        with np.errstate(over="ignore"):
+                            moved = sign * signal.values - sign * limit
+                        if (moved == line.values).all():
                             number = store.put(signal.values, share)
                             return None if number is None else {"blob": number, "sign": sign, "limit": limit}
     number = store.put(line.values, share)

@@ -8,6 +8,7 @@ from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.lazy.modules import np
 from rtamt.plot import style
+from rtamt.plot.texts import literal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,10 +107,10 @@ def _by_recording(found: Mined, axes: Any) -> Any:
         markersize=6.5,
         color=style.FAILS,
     )
-    axes.set_yticks(range(len(names)), [name.rpartition("/")[2] for name in names])
+    axes.set_yticks(range(len(names)), [literal(name.rpartition("/")[2]) for name in names])
     axes.set_ylim(-0.7, len(names) - 0.3)
     axes.set_xlabel(_label(found, 0))
-    axes.set_title(f"{role.name} = {tight:.6g}", fontsize=9, color=style.FAILS, loc="right")
+    axes.set_title(f"{literal(role.name)} = {tight:.6g}", fontsize=9, color=style.FAILS, loc="right")
     return style.apply_style(axes)
 
 
@@ -176,7 +177,7 @@ def strips(found: Classifier, figure: Any = None) -> Any:
         axes.set_ylim(-0.5, 1.5)
         word = "if" if not place else "else if"
         axes.set_title(
-            f"{word} {rule.text} then {'good' if rule.good else 'bad'}",
+            f"{word} {literal(rule.text)} then {'good' if rule.good else 'bad'}",
             fontsize=9,
             color=style.INK,
             loc="left",
@@ -193,7 +194,7 @@ def strips(found: Classifier, figure: Any = None) -> Any:
 def _label(found: Mined, place: int) -> str:
     name = found.roles[place].name
     unit = found.specification.document.units.get(name, "")
-    return f"{name} [{unit}]" if unit else name
+    return literal(f"{name} [{unit}]" if unit else name)
 
 
 def _axes(axes: Any, size: tuple[float, float]) -> Any:

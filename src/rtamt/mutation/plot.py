@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.extras import library
 from rtamt.lazy.modules import np
 from rtamt.plot import style
+from rtamt.plot.texts import literal, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,8 +52,8 @@ def matrix(found: Mutation, axes: Any = None) -> Any:
 def _short(names: Sequence[str]) -> list[str]:
     """Return the names of recordings, without folders where they are distinct without."""
     short = [name.rpartition("/")[2] for name in names]
-    return short if len(set(short)) == len(names) else list(names)
+    return list(map(literal, short if len(set(short)) == len(names) else names))
 
 
 def _label(name: str, change: str) -> str:
-    return f"{change if len(change) <= _LONGEST else change[: _LONGEST - 1] + '…'}  {name}"
+    return f"{literal(shorten(change, _LONGEST))}  {literal(name)}"

@@ -15,6 +15,7 @@ figure     draw a scene with matplotlib
 uncertain  draw bounds where samples are missing or uncertain
 axes       matplotlib, and vertical axes with infinities
 texts      names and formulas as there is room for them
+saving     write a figure to a file
 tree       draw a formula as a tree
 style      colours and markers
 =========  ===============================================================

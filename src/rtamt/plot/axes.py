@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.extras import library
 from rtamt.lazy.modules import np
 from rtamt.plot import style
-from rtamt.plot.texts import shorten
+from rtamt.plot.texts import literal, shorten
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 #: Names of values that have room at an axis, and the characters of each.
 _NAMES, _LONGEST = 6, 9
+
+#: The largest value that matplotlib draws without overflow, and the factor of panels with larger ones.
+_LARGEST, _SCALE = 1e290, 1e-20
 
 
 def matplotlib(module: str = "figure") -> Any:
@@ -49,6 +52,8 @@ class Edges:
 
     def __init__(self, axis: Any, finite: FloatArray, lines: Sequence[Line]) -> None:
         low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+        self._scale = _SCALE if max(-low, high) > _LARGEST else 1.0
+        low, high = self._scale * low, self._scale * high
         if low == high:
             low, high = low - 1.0, high + 1.0
         pad = 0.09 * (high - low)
@@ -63,7 +68,8 @@ class Edges:
             ticks = [
                 t for t in matplotlib("ticker").MaxNLocator(3).tick_values(low, high) if low <= t <= high
             ]
-        labels = [shorten(names.get(t, style.number(t)), _LONGEST) for t in ticks]
+        values = [t / self._scale for t in ticks]
+        labels = [literal(shorten(names.get(t, style.number(t)), _LONGEST)) for t in values]
         for is_above, there in enumerate(infinite):
             if there:
                 ticks.append(self._ends[is_above])
@@ -74,4 +80,8 @@ class Edges:
 
     def shown(self, values: FloatArray) -> FloatArray:
         """Return values as they are drawn."""
-        return np.clip(values, *self._ends)
+        return np.clip(self._scale * values, *self._ends)
+
+    def place(self, value: float) -> float:
+        """Return one value as it is drawn."""
+        return float(self.shown(np.array([value]))[0])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.lazy.modules import np
 from rtamt.plot import style
 from rtamt.plot.axes import matplotlib
-from rtamt.plot.texts import in_lines, label_width, names_height, shorten, wrap_formula
+from rtamt.plot.texts import in_lines, label_width, literal, names_height, shorten, wrap_formula
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,8 +67,10 @@ class Canvas:
         for axis in axes:
             self.frame(axis)
         left, y = LEFT / WIDTH, total - 0.3
-        self.figure.text(left, y / total, verdict, color=color, fontsize=13, fontweight="bold", va="center")
-        text = "\n".join(lines)
+        self.figure.text(
+            left, y / total, literal(verdict), color=color, fontsize=13, fontweight="bold", va="center"
+        )
+        text = literal("\n".join(lines))
         self.figure.text(
             left, (y - 0.2) / total, text, fontsize=9, family="monospace", va="top", color=style.INK
         )
@@ -131,7 +133,7 @@ class Canvas:
         shift = max(places[-1][0] - high, 0.0)
         for y, name, color in places:
             axis.annotate(
-                name,
+                literal(name),
                 (1.012, (y - shift - low) / (high - low)),
                 xycoords="axes fraction",
                 color=color,
@@ -145,7 +147,7 @@ class Canvas:
     def row_title(axis: Any, text: str, *, bold: bool) -> None:
         """Write the formula of a row above it."""
         axis.set_title(
-            shorten(text, 92),
+            literal(shorten(text, 92)),
             loc="left",
             fontsize=8.5,
             family="monospace",

@@ -76,7 +76,7 @@ class _Drawing(Canvas):
         self._draw_causes(axis, panel.because)
         for limit in panel.thresholds:
             if isfinite(limit):
-                axis.axhline(limit, color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
+                axis.axhline(edges.place(limit), color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
         labels = []
         for i, line in enumerate(lines):
             color = style.SIGNALS[i % len(style.SIGNALS)]
@@ -93,7 +93,7 @@ class _Drawing(Canvas):
         critical = self._scene.nodes[number].formula
         for line in panel.lines:
             if line.name in variables(critical):
-                self._diamond(axis, position, float(edges.shown(np.array([line.at(position)]))[0]))
+                self._diamond(axis, position, edges.place(line.at(position)))
 
     # ---- robustness --------------------------------------------------------------------------------
 
@@ -134,7 +134,7 @@ class _Drawing(Canvas):
             and self.sees(self._scene.critical[1])
         ):
             position = self._scene.critical[1]
-            self._diamond(axis, position, float(edges.shown(np.array([node.line.at(position)]))[0]))
+            self._diamond(axis, position, edges.place(node.line.at(position)))
 
     def _fails(self, axis: Any, node: Node) -> None:
         self.shade(axis, node.fails, "does not hold", style.FAILS)
@@ -160,7 +160,7 @@ class _Drawing(Canvas):
         )
         for values in (lower, upper):
             axis.plot(self.places(places), values, color=style.BAND, linewidth=1.2, drawstyle="steps-post")
-        axis.axhline(float(edges.shown(np.array([band.robustness]))[0]), color=style.INK, linewidth=1.4)
+        axis.axhline(edges.place(band.robustness), color=style.INK, linewidth=1.4)
         axis.set_title(
             "bounds of the robustness at the start, after each sample",
             loc="left",

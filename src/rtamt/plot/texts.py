@@ -5,6 +5,8 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
+from rtamt.errors import escaped
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -47,6 +49,15 @@ def wrap_formula(text: str) -> list[str]:
     """Return the lines of a formula, at most four."""
     lines = textwrap.wrap(text, _TEXT)
     return lines if len(lines) <= 4 else [*lines[:3], shorten(lines[3], _TEXT - 2) + " …"]
+
+
+def literal(text: str) -> str:
+    r"""Return a text as matplotlib draws it literally: dollars begin no mathematics, control characters are escaped.
+
+    >>> print(literal("$x^{2$"), literal("a\x07\tb"))
+    \$x^{2\$ a\x07 b
+    """
+    return escaped(text).replace("\t", " ").replace("$", r"\$")
 
 
 def shorten(text: str, most: int) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.extras import library
 from rtamt.plot import style
+from rtamt.plot.texts import literal
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,13 +54,14 @@ def draw_tree(scene: Scene, figure: Any) -> None:
     axis.text(
         -shift + 0.25,
         0.3,
-        f"{style.SIGNS[explanation.satisfied]} {scene.verdict}",
+        f"{style.SIGNS[explanation.satisfied]} {literal(scene.verdict)}",
         fontsize=12,
         fontweight="bold",
         va="center",
         color=style.HOLDS if explanation.satisfied else style.FAILS,
     )
-    axis.text(-shift + 0.25, 0.58, explanation.summary[-2], fontsize=8, va="center", color=style.QUIET)
+    about = literal(explanation.summary[-2])
+    axis.text(-shift + 0.25, 0.58, about, fontsize=8, va="center", color=style.QUIET)
     _draw(root, axis, None if scene.critical is None else scene.nodes[scene.critical[0]])
 
 
@@ -134,7 +136,7 @@ def _draw(root: _Box, axis: Any, critical: Node | None) -> None:
         axis.text(
             middle,
             box.y + 0.2,
-            box.lines[0],
+            literal(box.lines[0]),
             ha="center",
             va="center",
             fontsize=9,
@@ -154,7 +156,6 @@ def _draw(root: _Box, axis: Any, critical: Node | None) -> None:
             zorder=3,
         )
         if box.title:
-            axis.text(
-                box.x, box.y - 0.09, box.title, fontsize=8, va="center", color=style.QUIET, style="italic"
-            )
+            title = literal(box.title)
+            axis.text(box.x, box.y - 0.09, title, fontsize=8, va="center", color=style.QUIET, style="italic")
         stack.extend(box.below)

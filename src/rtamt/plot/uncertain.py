@@ -168,13 +168,13 @@ class _Drawing(Canvas):
         edges = Edges(axis, np.concatenate([*finite, thresholds]), ends)
         for limit in thresholds:
             if isfinite(limit):
-                axis.axhline(limit, color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
+                axis.axhline(edges.place(limit), color=style.QUIET, linewidth=0.9, linestyle=(0, (5, 3)))
         labels = []
         for i, each in enumerate(signals):
             color = style.SIGNALS[i % len(style.SIGNALS)]
             self._band(each, axis, edges, color, color)
             known = each.lower.values[np.isfinite(each.lower.values)]
-            labels.append((float(known[-1]) if len(known) else edges.middle, each.lower.label, color))
+            labels.append((edges.place(known[-1]) if len(known) else edges.middle, each.lower.label, color))
         self.names(axis, labels)
 
     def _row(self, bounds: _Robustness, axis: Any, position: float, *, bold: bool) -> None:

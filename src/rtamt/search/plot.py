@@ -8,6 +8,7 @@ from rtamt.errors import UsageError
 from rtamt.extras import library
 from rtamt.lazy.modules import np
 from rtamt.plot import style
+from rtamt.plot.texts import literal
 
 if TYPE_CHECKING:
     from rtamt.search.falsify import Falsification
@@ -60,8 +61,8 @@ def landscape(found: Sensitivity, axes: Any = None) -> Any:
         else:
             made = axes.scatter(*points.values(), c=values, **colors)
         axes.figure.colorbar(made, ax=axes, label="robustness")
-        axes.set_ylabel(names[1])
-    axes.set_xlabel(names[0])
+        axes.set_ylabel(literal(names[1]))
+    axes.set_xlabel(literal(names[0]))
     return style.apply_style(axes)
 
 

@@ -1,5 +1,7 @@
 """``rtamt plot``, as a user calls it."""
 
+from xml.etree import ElementTree as ET
+
 import pytest
 
 from rtamt.cli import main
@@ -79,3 +81,20 @@ def test_requirements_that_start_at_different_times_have_a_report_and_no_plot(tm
         "'rtamt report' plots each of them\n",
     )
     assert main(["report", TEXT, str(log), "--time", "dense", "-o", str(tmp_path / "late.html")]) == 1
+
+
+@pytest.mark.filterwarnings("error")
+def test_characters_that_the_fonts_lack_are_a_note(tmp_path, capsys):
+    log, path = tmp_path / "log.csv", tmp_path / "x.png"
+    log.write_text("time,速度\n0,1\n1,3\n", encoding="utf-8")
+    assert main(["plot", "always(速度 >= 1)", str(log), "-o", str(path)]) == 0
+    told = capsys.readouterr()
+    assert told.err == ""
+    assert told.out.endswith(f"\nnote: {log}: the fonts of the plot lack 速 度, drawn as boxes\n")
+
+
+def test_a_drawing_has_control_characters_escaped(tmp_path):
+    log, path = tmp_path / "log.csv", tmp_path / "x.svg"
+    log.write_text("time,a\x07b\n0,1\n1,3\n", encoding="utf-8")
+    assert main(["plot", 'always("a\x07b" >= 1)', str(log), "-o", str(path)]) == 0
+    ET.parse(path)

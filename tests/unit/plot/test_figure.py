@@ -1,10 +1,12 @@
 """Pictures: what is drawn, read from the figure."""
 
+from io import BytesIO
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import rtamt
 
@@ -154,3 +156,24 @@ def test_band_of_a_visible_part_begins_with_the_bounds_known_before(time):
     lower, _ = (line for line in figure.axes[-1].lines if line.get_drawstyle() == "steps-post")
     assert lower.get_xdata()[:2].tolist() == [1.5, 2.0]
     assert lower.get_ydata()[:2].tolist() == [-1.0, 4.0]
+
+
+@pytest.mark.parametrize("name", ["$x^{2$", "$x$", "a\\$b", "cost $", "a\x07b"])
+def test_dollars_and_control_characters_of_a_name_are_drawn_as_they_are(name):
+    spec = rtamt.parse(f'always("{name}" >= 2)')
+    result = spec.evaluate({name: [1.0, 3.0]})
+    for figure in (result.plot(figure=Figure()), result.plot_tree(figure=Figure())):
+        drawn = [text._preprocess_math(text.get_text()) for text in figure.findobj(Text)]
+        assert not any(mathematics for _, mathematics in drawn)
+        shown = name.replace("\x07", r"\x07")
+        assert any(shown in text for text, _ in drawn)
+        figure.savefig(BytesIO())
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("time", "last"), [("discrete", 0), ("dense", 0), ("discrete", None)])
+def test_values_near_the_largest_double_are_drawn(time, last):
+    data = {"time": range(4), "x": [1e308, -1e308, 1e308, last]}
+    figure = rtamt.parse("always(x >= -1e307)").evaluate(data, time=time).plot(figure=Figure())
+    figure.savefig(BytesIO())
+    assert "8e+307" in [label.get_text() for label in figure.axes[0].get_yticklabels()]
