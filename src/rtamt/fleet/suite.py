@@ -41,8 +41,9 @@ class Suite:
     robustness, or the other two, halves state and work. The other settings are those of
     :meth:`Specification.evaluate`.
 
-    The values are those of :meth:`Specification.evaluate` on each requirement, bit for bit. Samples must be complete: a
-    missing one is an error in the rows of the requirements that read it. Programs are split so that
+    The values are those of :meth:`Specification.evaluate` on each requirement, bit for bit. Without the robustness,
+    they are those of ``semantics="boolean"``, which compares infinities whose difference has no value. Samples must be
+    complete: a missing one is an error in the rows of the requirements that read it. Programs are split so that
     the registers of each fit the second-level cache. A suite is pickled as bytes of programs, see :meth:`to_bytes`.
 
     >>> import rtamt
@@ -152,8 +153,11 @@ class Suite:
     def _row_apart(self, recording: str, number: int, spec: Specification, data: Any) -> Row:
         """Return the row of a requirement that has its own program."""
         name, robustness, violated, satisfied = self.requirements[number].name, None, None, None
+        settings = dict(self._settings)
+        if "robustness" not in self.select:
+            settings["semantics"] = "boolean"
         try:
-            result = spec.evaluate(data, **self._settings)
+            result = spec.evaluate(data, **settings)
             robustness = result.robustness if "robustness" in self.select else None
             if len(self.select) > ("robustness" in self.select):
                 satisfied = result.satisfied

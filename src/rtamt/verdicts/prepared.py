@@ -163,7 +163,17 @@ class Prepared:
         try:
             return self._truths(self._verdict_windows(trace))[0]._replace(robustness=robustness)
         except EvaluationError as error:
-            return Found(robustness, error=no_verdict(error))
+            # Without a robustness, the error is that of Boolean semantics.
+            return Found(robustness, error=no_verdict(error) if self.outputs else self._error(trace, error))
+
+    def _error(self, trace: DomainTrace, error: EvaluationError) -> EvaluationError:
+        """Return the error of the leaves over a trace, whose times are the caller's and not steps, if there is one."""
+        assert self.leaves is not None
+        try:
+            self._evaluator(self.leaves)(trace)
+        except EvaluationError as same:
+            return same
+        return error
 
     def _robustness(self, trace: DomainTrace) -> list[float]:
         if not self.outputs:

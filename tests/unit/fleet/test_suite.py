@@ -237,6 +237,22 @@ def test_an_undefined_value_concerns_one_requirement_whatever_is_selected(name):
         assert [getattr(row, name) for row in table] == expected.get(name, [None] * 3)
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+def test_verdicts_alone_are_those_of_boolean_semantics(time, backend):
+    texts = ("always(x >= y)", "always(x - y >= 0)", "always(x * 0 == 0)")
+    period = 1 if time == "discrete" else None
+    specs = [rtamt.parse(text, time=time, period=period, backend=backend) for text in texts]
+    data = {"time": [5, 6], "x": [np.inf, 1], "y": [np.inf, 1]}
+    table = rtamt.Suite(specs, select=["satisfied", "first_violation"]).evaluate(data)
+    assert table.rows[0][2:] == (None, True, None, None, None)
+    assert specs[0].evaluate(data, semantics="boolean").satisfied
+    for spec, row in zip(specs[1:], table.rows[1:], strict=True):
+        with pytest.raises(rtamt.EvaluationError, match="has no value at (sample 0, )?time 5 s: ") as error:
+            spec.evaluate(data, semantics="boolean")
+        assert (row.satisfied, row.error) == (None, str(error.value))
+
+
 def test_first_violations_are_numbers_in_the_times_of_the_recording():
     suite = rtamt.Suite(rtamt.parse("always(x >= 3)", period=1))
     start = np.datetime64("2024-05-01T10:00:00", "ns")
