@@ -205,7 +205,7 @@ class OnlineSpecification(QuantifiedText):
         if self.document.origin is not None and not variables(self.formula):
             from rtamt.verdicts.robustness_and_truth import align_inputs
 
-            formula = align_inputs(formula, self.input_names)
+            formula = align_inputs(formula, self.input_names, self.types)
             requirements = [formula]
         make = engine_of(domain).monitor if mode.name == DELAYED else monitor_of(mode, domain)
         monitor = make(

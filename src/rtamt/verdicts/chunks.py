@@ -202,4 +202,4 @@ class Group:
         self.outputs = {formula: Output() for formula in self.formulas}
         for each in self.requirements.values():
             each.begin(step, domain.continuous, self.outputs)
-        return spec.with_formula(align_inputs(self.formulas[0], self.names))
+        return spec.with_formula(align_inputs(self.formulas[0], self.names, spec.types))

@@ -15,6 +15,7 @@ from rtamt.signals.time_domain_interface import DomainTrace
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from rtamt.language.value_types import ValueType
     from rtamt.rewrite.semantics import PredicateSemantics
 
 #: Returns the signal of each formula over a trace, all from one program: an ``Evaluators`` of the engine.
@@ -47,11 +48,14 @@ def outputs_under(formula: Formula, semantics: str | PredicateSemantics, roles: 
     return outputs_of(formula, apply_semantics(formula, semantics, roles))
 
 
-def align_inputs(formula: Formula, names: Sequence[str]) -> Formula:
-    """Return a formula with the same values that reads all the names: so several formulas begin and end together."""
+def align_inputs(formula: Formula, names: Sequence[str], types: Mapping[str, ValueType]) -> Formula:
+    """Return a formula with the same values that reads all the names: so several formulas begin and end together.
+
+    ``types``: of the variables that are no plain numbers.
+    """
     if not names:
         return formula
-    everything: Formula = Var(names[0])
+    everything: Formula = Var(names[0], type=types.get(names[0]))
     for name in names[1:]:
-        everything = STL["and"](everything, Var(name))
+        everything = STL["and"](everything, Var(name, type=types.get(name)))
     return STL["and"](formula, STL["or"](Const(float("inf")), everything))

@@ -248,7 +248,7 @@ def test_verdicts_alone_are_those_of_boolean_semantics(time, backend):
     assert table.rows[0][2:] == (None, True, None, None, None)
     assert specs[0].evaluate(data, semantics="boolean").satisfied
     for spec, row in zip(specs[1:], table.rows[1:], strict=True):
-        with pytest.raises(rtamt.EvaluationError, match="has no value at (sample 0, )?time 5 s: ") as error:
+        with pytest.raises(rtamt.EvaluationError, match=r"has no value at (sample 0, )?time 5 s: ") as error:
             spec.evaluate(data, semantics="boolean")
         assert (row.satisfied, row.error) == (None, str(error.value))
 

@@ -102,11 +102,12 @@ def test_without_any_variable_dense_time_has_no_instants(tmp_path, capsys):
         with pytest.raises(rtamt.UsageError, match=message):
             each.monitor()
     assert {row.error for row in rtamt.Suite(spec).evaluate(DATA)} == {message}
-    (tmp_path / "log.csv").write_text("time,x\n0,1\n")
-    for options in ([], ["--early"], ["--engine", "local"]):
-        given = ["always(1 >= 0)", str(tmp_path / "log.csv"), "--time", "dense", "--json"]
-        assert main(["check", *given, *options]) == 2
-        assert json.loads(capsys.readouterr().out)["error"].endswith(message)
+    for header in ("time,x", "y,x"):
+        (tmp_path / "log.csv").write_text(f"{header}\n0,1\n")
+        for options in ([], ["--early"], ["--engine", "local"]):
+            given = ["always(1 >= 0)", str(tmp_path / "log.csv"), "--time", "dense", "--json"]
+            assert main(["check", *given, *options]) == 2
+            assert json.loads(capsys.readouterr().out)["error"].endswith(message)
 
 
 def test_of_variables_that_recordings_may_lack_others_are_read():

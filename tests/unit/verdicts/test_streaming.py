@@ -412,3 +412,26 @@ def test_a_value_that_does_not_exist_after_all_that_is_read_is_no_error():
     assert (result.satisfied, first_violation(result)) == (True, None)
     (part,) = evaluate_requirements(spec, data).values()
     assert (part.robustness, part.satisfied) == (result.robustness, True)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "input bool b; float x; require X: x >= 0; require B: eventually(b == 1)",
+        "input bool b; float x; require X: always(x >= 0); require B: always(b)",
+        "input bool b; float x; always(x >= 0) and always(b)",
+    ],
+)
+def test_a_number_was_a_boolean_beside_a_requirement_that_does_not_read_it(text, backend, time):
+    spec = rtamt.parse(text, time=time, backend=backend)
+    message = "'b' is 2 at sample 0, time 0 s, and declared as bool, which is 1 or 0"
+    data = {"time": [0, 1, 2], "x": [0, 1, 2], "b": [2, 1, 1]}
+    with pytest.raises(rtamt.TraceError, match=message):
+        spec.evaluate(data)
+    with pytest.raises(rtamt.TraceError, match=message):
+        rtamt.check_stream(spec, [data])
+    check = spec.domain.part("early_check")([*spec.requirements.values()])
+    with pytest.raises(rtamt.TraceError, match=message):
+        check.take(data)

@@ -244,8 +244,8 @@ class Watch(ABC):
         self._parts = [_Part(part, unit) for part in conjuncts(outputs.truth)]
         first, *others = (part.formula for part in self._parts)
         self._formulas = (
-            align_inputs(first, self.names),
-            align_inputs(outputs.robustness, self.names),
+            align_inputs(first, self.names, spec.types),
+            align_inputs(outputs.robustness, self.names, spec.types),
         )
         self._watched = [Watched(str(i), formula, None) for i, formula in enumerate(others, 1)]
 
