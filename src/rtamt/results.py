@@ -242,6 +242,11 @@ class Result(_Slots):
             return min((each for each in violations if each is not None), default=None)
         if isinstance(self.known, Findings) and self.known.violations:
             return self.known.violations[0]
+        if self.trace.bounds:
+            if self._verdict_at_start():
+                return None
+            if verdicts.is_violated_at_start(spec._outputs().truth, self.trace):
+                return self.trace.time(0)
         return verdicts.first_violation(spec._outputs().truth, self.trace, spec._signals_of)
 
     def episodes(self) -> list[Episode]:

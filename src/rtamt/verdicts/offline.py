@@ -90,8 +90,21 @@ def first_violation(truth: Formula, trace: DomainTrace, evaluate: Evaluate) -> A
     try:
         _, violations = _outputs((), [truth], trace, evaluate)
     except EvaluationError as error:
+        if trace.bounds:
+            raise EvaluationError(
+                "the samples do not decide when the formula is first violated, because some are missing or uncertain; "
+                "read result.intervals"
+            ) from error
         raise no_verdict(error) from error
     return violations[0]
+
+
+def is_violated_at_start(truth: Formula, trace: DomainTrace) -> bool:
+    """Return whether the first violation of a formula that does not hold can only be the first instant."""
+    (grounded,) = trace.domain.ground(truth)
+    anchored = anchor(grounded)
+    leaves = (anchored.leaf(part) for part in anchored.conjuncts())
+    return all(leaf is None or leaf.reduce != "min" for leaf in leaves)
 
 
 # ---- traces ----------------------------------------------------------------------------------------

@@ -219,3 +219,31 @@ def test_bounds_of_a_file_contain_the_robustness_of_every_completion(text, tmp_p
             exact = spec.evaluate(data).signal.values
             assert np.all(result.lower <= exact)
             assert np.all(exact <= result.upper)
+
+
+@pytest.mark.parametrize("time", ["discrete", "dense"])
+@pytest.mark.parametrize(
+    ("text", "samples", "expected"),
+    [
+        ("always(x >= 0 or y >= 0)", [1, None, 1], None),
+        ("eventually(x >= 2)", [1, None, 3], None),
+        ("historically(x >= 0)", [1, None, -1], None),
+        ("x >= 0", [1, None, -1], None),
+        ("x >= 0", [-1, None, 1], 0),
+        ("x >= 0 and eventually(x >= 2)", [-1, None, 1], 0),
+        ("always(x >= 0)", [1, None, -1], "when the formula is first violated"),
+        ("eventually(x >= 2)", [1, None, 1], "whether the formula holds"),
+    ],
+)
+def test_the_first_violation_was_an_error_about_truth(text, samples, expected, time):
+    # In dense time a missing sample is one of an array: masked.
+    x = np.ma.masked_invalid([np.nan if each is None else each for each in samples])
+    result = rtamt.parse(text, time=time).evaluate({"time": [0, 1, 2], "x": x, "y": [1, 1, 1]})
+    if isinstance(expected, str):
+        with pytest.raises(
+            rtamt.EvaluationError, match=f"^the samples do not decide {expected}, because some are"
+        ):
+            rtamt.first_violation(result)
+    else:
+        assert rtamt.first_violation(result) == expected
+        assert result.satisfied == (expected is None)
