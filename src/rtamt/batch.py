@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, TraceError, UsageError, no_specification, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
-from rtamt.specification_data import over_data, require_period, sample
+from rtamt.specification_data import over_data, require_times, sample
 from rtamt.verdicts.offline import findings_of
 
 if TYPE_CHECKING:
@@ -252,7 +252,7 @@ def evaluate_requirements(spec: Specification, data: Any) -> Mapping[str, Result
         return evaluate_requirements(over, bound)
     sampled = sample(spec, query, spec.binding.applied(data))
     recording = spec._with_units(query.record(sampled, spec.input_names, spec.types))
-    require_period(spec, query, sampled)
+    require_times(spec, query, sampled)
     if spec.resolved is not None:
         recording = recording.ended_by(spec.resolved[0].input_names)
     spec._check(query, recording)

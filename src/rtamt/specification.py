@@ -169,9 +169,9 @@ class Specification(OnlineSpecification):
             plain = plain and query.domain.own_time_bases and "_direct" not in self.__dict__
             plain = plain and self._has_one_start and not recording.bounds
         if len(self.requirements) > 1:  # a single one has been read with all that it needs
-            from rtamt.specification_data import require_period
+            from rtamt.specification_data import require_times
 
-            require_period(self, query, data)
+            require_times(self, query, data)
         if self.units:
             recording = self._with_units(recording)
         self._check(query, recording)

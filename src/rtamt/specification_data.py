@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
+from rtamt.signals.arrays import WithTimeBases
 
 if TYPE_CHECKING:
     from rtamt.engine import Query
@@ -33,12 +34,21 @@ def over_data(spec: Specification, query: Query, data: Any) -> tuple[Specificati
     return spec.over(found.members), found.data
 
 
-def require_period(spec: Specification, query: Query, data: Any) -> None:
-    """Raise :class:`TraceError` if one of the requirements needs a period that nothing gives."""
+def require_times(spec: Specification, query: Query, data: Any) -> None:
+    """Raise :class:`TraceError` if one of several requirements has no times that are its own.
+
+    It needs a period that nothing gives, or others changed the clock of its signals.
+    """
+    if len(spec.requirements) < 2:
+        return
+    names = [one.input_names for one in spec.requirements.values()]
+    if isinstance(data, WithTimeBases):
+        for each in names:
+            data.require_own_clock(each)
     if query.domain.sampled and query.domain.period is None:
         from rtamt.signals.assumed_period import require_times_of_each  # monitors do not wait for it
 
-        require_times_of_each(data, [one.input_names for one in spec.requirements.values()])
+        require_times_of_each(data, names)
 
 
 def sample(spec: Specification, query: Query, data: Any) -> Any:

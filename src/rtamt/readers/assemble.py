@@ -116,7 +116,12 @@ def _aligned(source: Source, choice: Choice) -> list[Selection]:
         (only,) = selections
         selections = [dataclasses.replace(only, possible=possible_field(only.table.fields))]
     if source.align is not None:
-        source.align(places_of(source, selections))
+        places = places_of(source, selections)
+        retimed = source.align(places)
+        selections = [
+            dataclasses.replace(each, retimed=place in retimed)
+            for each, place in zip(selections, places, strict=True)
+        ]
     return selections
 
 
@@ -210,10 +215,12 @@ def _channels(
         unit = choice.units.get(name, choice.units.get(field.column, field.unit))
         alias = field.alias if name == field.name else ""
         stepped = field.type is not None
-        made[name] = Channel(mine, numbers, unit, field.column, first_gap, table, alias, stepped)
+        made[name] = Channel(
+            mine, numbers, unit, field.column, first_gap, table, alias, stepped, selection.retimed
+        )
     if times is not None and TIME in (choice.columns or ()) and TIME not in choice.names:
         # The formula reads the time; in discrete time the engine gives it.
-        made[TIME] = Channel(times, in_seconds(times), "s", TIME)
+        made[TIME] = Channel(times, in_seconds(times), "s", TIME, retimed=selection.retimed)
     return made, left_out
 
 

@@ -69,6 +69,8 @@ class Selection:
     named: bool
     #: The first column, read in addition because it may hold the timestamps.
     possible: Field | None = None
+    #: Whether the timestamps are replaced by those of the recording, since other tables have another clock.
+    retimed: bool = False
 
     @property
     def fields(self) -> tuple[Field, ...]:

@@ -14,6 +14,7 @@ shortened              step functions without the middle of long stretches in wh
 outcomes               bounds and verdicts that are known before the whole trace is
 episodes               the maximal runs of violation
 trace                  ``Trace``: named signals, each with its own time base; resampling
+trace_checks           checks of the signals of a trace that a formula reads together
 members                the members of groups in recorded data, and where each is present
 member_chunks          chunks of streams with members of groups, any of which they may lack
 binding                variables under their recorded names, in their declared units

@@ -18,7 +18,7 @@ from rtamt.signals.coding import NO_TYPES, encoded, require_truths
 from rtamt.signals.time_columns import check_frame, check_mapping, is_labelled
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -53,6 +53,10 @@ class WithTimeBases(ABC):
     @abstractmethod
     def on_one_time_base(self, names: Collection[str]) -> Mapping[str, Any]:
         """Return n values for each name, and ``"time"`` in seconds if there are timestamps."""
+
+    @abstractmethod
+    def require_own_clock(self, names: Iterable[str]) -> None:
+        """Raise :class:`TraceError` where signals that are not among these changed the times of all these."""
 
     @abstractmethod
     def require_period(self, names: Collection[str]) -> None:

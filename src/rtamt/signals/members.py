@@ -378,7 +378,8 @@ def _trace(trace: Trace, members: Sequence[Member], names: Collection[str]) -> t
         if present is None:
             throughout.append(each.name)
             continue
-        made[channel_of(each.name)] = Channel(times, present)
+        retimed = all(channel.retimed for channel in channels.values())
+        made[channel_of(each.name)] = Channel(times, present, retimed=retimed)
         for field, column_values in values.items():
             column = each.column(field)
             if column in names:

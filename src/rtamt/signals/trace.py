@@ -19,9 +19,10 @@ from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any, overload
 from rtamt.signals.arrays import TIME, WithTimeBases, timestamps
 from rtamt.signals.data_errors import FILE_MENDS, TRACE_MENDS, missing_sample, possible_times
-from rtamt.signals.listing import extent, html, listing
+from rtamt.signals.listing import html, listing
 from rtamt.signals.sampling_period import merged
 from rtamt.signals.signal import Signal, read_only
+from rtamt.signals.trace_checks import require_one_time_base, require_own_clock
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -44,6 +45,7 @@ class Channel:
     ``first_gap``: the first sample of the source at which the signal has no value, so that its times are fewer
     than those of its ``table``; both None where it has all. ``alias``: another name, which listings leave out.
     ``stepped``: whether there is nothing between two values, as of truths and members of enumerations.
+    ``retimed``: whether its times are those of its recording, because others that were read with it have another clock.
     The arrays cannot be written.
 
     >>> import rtamt
@@ -61,6 +63,7 @@ class Channel:
     table: Times | None = None
     alias: str = ""
     stepped: bool = False
+    retimed: bool = False
 
     def __post_init__(self) -> None:
         if self.times is not None:
@@ -286,8 +289,9 @@ class Trace(WithTimeBases):
         """
         channels = {name: self.channel(name) for name in names if name != TIME}
         self.require_all_samples(channels, TRACE_MENDS)
+        require_own_clock(channels, self._source)
         chosen = channels or self._channels
-        self._check_one_time_base(chosen)
+        require_one_time_base(chosen)
         result: dict[str, Any] = {name: channel.values for name, channel in channels.items()}
         times = next((channel.times for channel in chosen.values()), None)
         if times is not None:
@@ -299,6 +303,10 @@ class Trace(WithTimeBases):
         for name in names:
             if name != TIME and (gap := self.channel(name).first_gap) is not None:
                 raise missing_sample(name, gap, self._source, mends)
+
+    def require_own_clock(self, names: Iterable[str]) -> None:
+        """Raise :class:`TraceError` if the times of these signals are others than where only they are read."""
+        require_own_clock({name: self.channel(name) for name in names if name != TIME}, self._source)
 
     def require_period(self, names: Collection[str]) -> None:
         """Raise :class:`TraceError` where samples can only be taken to be one period apart, and none is given.
@@ -312,6 +320,7 @@ class Trace(WithTimeBases):
 
     def on_own_time_bases(self, names: Collection[str]) -> dict[str, tuple[Times, FloatArray]]:
         """Return dense-time data: (times, values) for each name."""
+        self.require_own_clock(names)
         result = {}
         for name in names:
             channel = self.channel(name)
@@ -338,8 +347,9 @@ class Trace(WithTimeBases):
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
         earliest last sample; signals that were read as Booleans or enumerations, with ``types=`` of :func:`rtamt.read`,
         are held). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
-        left out and listed in :attr:`losses`. A time that the rounding of a double puts just behind an instant, such
-        as 3 * 0.1 s, counts as that instant. ``hold_for``: the maximum age of a held value; an older one is an error.
+        left out and listed in :attr:`losses`. A time that rounding puts next to an instant counts as that instant: of
+        a double, such as 3 * 0.1 s, of 32 bits, or to whole units, such as 60 Hz in milliseconds. ``hold_for``: the
+        maximum age of a held value; an older one is an error.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
@@ -410,21 +420,6 @@ class Trace(WithTimeBases):
             if not len(channel.times):
                 raise TraceError(f"'{name}' has no samples: give at least one", variable=name)
         return [channel.times for channel in self._channels.values() if channel.times is not None]
-
-    def _check_one_time_base(self, channels: Mapping[str, Channel]) -> None:
-        first, *others = channels.items()
-        for other in others:
-            mine, its = first[1].times, other[1].times
-            if mine is its or (mine is not None and its is not None and np.array_equal(mine, its)):
-                continue
-            if mine is None and its is None and len(first[1].values) == len(other[1].values):
-                continue
-            raise TraceError(
-                f"'{first[0]}' and '{other[0]}' have different time bases "
-                f"({extent(first[1])}; {extent(other[1])}): evaluate in dense time, or put them on one time base "
-                f"with trace.resample(period=...) or trace.hold(), on the command line with --resample PERIOD",
-                variable=other[0],
-            )
 
     def __repr__(self) -> str:
         return listing(self)

@@ -252,3 +252,28 @@ def test_a_whole_bag_has_one_clock_and_a_note(bag):
     assert trace["/x.value"].times[0] == trace["/y.data"].times[0]
     (note,) = trace.losses
     assert note.startswith("/x: the timestamps in its headers are ")
+
+
+@pytest.mark.parametrize("settings", [{"time": "dense"}, {"period": "500ms"}], ids=["dense", "discrete"])
+def test_a_formula_was_evaluated_with_the_times_that_topics_it_does_not_read_gave_it(bag, settings):
+    spec, trace = rtamt.parse(SIMULATED), rtamt.read(bag)
+    message = (
+        r"the times of '/x\.value' are those of its recording, because topics of \S+ that the formula does not read "
+        r"have another clock: read the bag with columns=\['/x\.value'\], on the command line give this requirement "
+        r"alone"
+    )
+    with pytest.raises(rtamt.TraceError, match=message):
+        spec.evaluate(trace, **settings)
+    with pytest.raises(rtamt.TraceError, match=message):
+        rtamt.parse("/x.value >= -2").monitor(**settings).update_many(trace)
+    both = rtamt.parse(f"require A: {SIMULATED}\nrequire B: {RECORDED}\n")
+    with pytest.raises(rtamt.TraceError, match=message):
+        both.evaluate(trace.resample("500ms"), **settings)
+    mine = rtamt.read(bag, columns=["/x.value"])
+    mine = mine if settings == {"time": "dense"} else mine.resample("500ms")
+    assert spec.evaluate(mine, **settings).satisfied
+
+
+@pytest.mark.parametrize("formula", ["always(/y.data >= 0)", "always(/x.value + /y.data >= -1)"])
+def test_a_formula_that_reads_a_topic_with_the_clock_of_the_bag_takes_the_whole_bag(bag, formula):
+    assert rtamt.parse(formula).evaluate(rtamt.read(bag), time="dense").satisfied
