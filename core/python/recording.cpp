@@ -274,16 +274,17 @@ bool regular(std::span<const double> times, std::optional<double> before, double
 namespace {
 
 // The limits of infer_period(): `_COARSE`, `_UNCERTAIN`, that of gaps that do not differ, and
-// `_ROUNDED`.
+// `_ROUNDED` of rtamt.signals.resolution.
 constexpr double coarse_precision = 1e-4;
 constexpr double uncertain_precision = 1e-2;
 constexpr double same_gap = 1e-6;
-constexpr double rounded_precision = 1e-3;
+constexpr double rounded_precision = 1e-2;
 
-// A length of gaps, and its precision.
-struct Gap {
+// A sampling period, and between which numbers it lies.
+struct Period {
     double length = 0.0;
-    double blur = 0.0;
+    double least = 0.0;
+    double most = 0.0;
 };
 
 // Whether doubles may have been floats of 32 bits.
@@ -310,18 +311,24 @@ struct Gap {
     return (*std::max_element(gaps.begin(), middle) + *middle) / 2.0;
 }
 
-// How far timestamps are from those that follow the first in equal gaps.
-[[nodiscard]] double largest_distance(std::span<const double> times, double gap) noexcept {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        const double regular = gap * static_cast<double>(i);
-        largest = std::max(largest, std::fabs(times[i] - times.front() - regular));
+// As mean_period() in rtamt.signals.resolution.
+[[nodiscard]] std::optional<Period> mean_period(std::span<const double> times,
+                                                double near) noexcept {
+    const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    double least = -std::numeric_limits<double>::infinity();
+    double most = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        const double since = times[i] - times.front();
+        least = std::max(least, (since - near) / static_cast<double>(i));
+        most = std::min(most, (since + near) / static_cast<double>(i));
     }
-    return largest;
+    if (!(least <= mean && mean <= most)) return std::nullopt;
+    const double millionth = 1e-6 * mean;
+    return Period{mean, std::min(least, mean - millionth), std::max(most, mean + millionth)};
 }
 
-// As `_mean_of_rounded` there, without its last step: the mean gap and its precision.
-[[nodiscard]] std::optional<Gap> mean_of_rounded(std::span<const double> times) noexcept {
+// As rounded_period() there.
+[[nodiscard]] std::optional<Period> rounded_period(std::span<const double> times) noexcept {
     double shortest = std::numeric_limits<double>::infinity();
     double longest = 0.0;
     for (std::size_t i = 1; i < times.size(); ++i) {
@@ -331,31 +338,28 @@ struct Gap {
     const double range = longest - shortest;
     const auto gaps = static_cast<double>(times.size() - 1);
     const double mean = (times.back() - times.front()) / gaps;
-    const double blur = std::max(1e-6 * mean, 2.0 * range / gaps);
     const double noise = blur_of(mean, times);
-    if (range <= noise || blur > rounded_precision * mean) return std::nullopt;
+    if (range <= noise || 2.0 * range / gaps > rounded_precision * mean) return std::nullopt;
     const double step = range / 2.0;
     for (std::size_t i = 1; i < times.size(); ++i) {
         const double more = times[i] - times[i - 1] - shortest;
         if (std::fabs(more - std::rint(more / step) * step) > noise) return std::nullopt;
     }
-    if (largest_distance(times, mean) > range + noise) return std::nullopt;
-    return Gap{mean, blur};
+    return mean_period(times, range + noise);
 }
 
-// As `_rounded_period` there, without its last step. Nothing for floats of 32 bits and errors.
-[[nodiscard]] std::optional<Gap> rounded_gap(std::span<const double> times, double median,
-                                             bool differ) noexcept {
-    Gap found{median, blur_of(median, times)};
+// As `_coarse_period` in rtamt.signals.inferred_period. Nothing for floats of 32 bits and errors.
+[[nodiscard]] std::optional<Period> coarse_period(std::span<const double> times, double median,
+                                                  bool differ) noexcept {
     if (differ && are_single(times)) return std::nullopt;
-    if (found.blur > coarse_precision * found.length) { // the precision of the timestamps, then
-        const auto gaps = static_cast<double>(times.size() - 1);
-        const double mean = (times.back() - times.front()) / gaps;
-        if (largest_distance(times, mean) <= 0.75 * found.blur)
-            found = {mean, std::max(1e-6 * mean, found.blur / gaps)};
-        if (found.blur > uncertain_precision * found.length) return std::nullopt;
-    }
-    return found;
+    const double blur = blur_of(median, times);
+    const Period gap{median, median - blur, median + blur};
+    if (!(blur > coarse_precision * median)) return gap;
+    // The precision is that of the timestamps, then.
+    const Period found = mean_period(times, 0.75 * blur).value_or(gap);
+    const double limit = uncertain_precision * found.length;
+    const bool certain = found.most - found.length <= limit && found.length - found.least <= limit;
+    return certain ? std::optional(found) : std::nullopt;
 }
 
 } // namespace
@@ -364,19 +368,18 @@ std::optional<double> inferred_period(std::span<const double> times) {
     if (times.size() < 2) return 1.0;
     const double median = median_gap(times);
     const bool differ = !regular(times, {}, median, same_gap);
-    std::optional<Gap> found;
-    if (differ) found = mean_of_rounded(times);
-    if (!found) found = rounded_gap(times, median, differ);
+    std::optional<Period> found;
+    if (differ) found = rounded_period(times);
+    if (!found) found = coarse_period(times, median, differ);
     if (!found) return std::nullopt;
-    const auto [gap, blur] = *found;
     for (int digits = 1; digits <= 16; ++digits) {
-        char* text = PyOS_double_to_string(gap, 'g', digits, 0, nullptr);
+        char* text = PyOS_double_to_string(found->length, 'g', digits, 0, nullptr);
         if (text == nullptr) throw nb::python_error();
         const double shortest = PyOS_string_to_double(text, nullptr, nullptr);
         PyMem_Free(text);
-        if (std::fabs(shortest - gap) <= blur) return shortest;
+        if (found->least <= shortest && shortest <= found->most) return shortest;
     }
-    return gap;
+    return found->length;
 }
 
 bool has_period(std::span<const double> times, double period, double coarse) noexcept {

@@ -85,7 +85,7 @@ struct GivenColumns {
 // Whether a column of doubles has no NaN.
 [[nodiscard]] bool all_numbers(std::span<const double> values) noexcept;
 
-// As infer_period() in rtamt.signals.sampling_period: the median gap, or the mean gap of rounded
+// As infer_period() in rtamt.signals.inferred_period: the median gap, or the mean gap of rounded
 // timestamps, as the shortest decimal within its precision; 1 for a single timestamp. Nothing for
 // timestamps that may have been floats of 32 bits, and where the period is uncertain.
 [[nodiscard]] std::optional<double> inferred_period(std::span<const double> times);

@@ -20,7 +20,8 @@ from rtamt.errors import StlError
 from rtamt.language.contents import variables
 from rtamt.signals.arrays import Timestamps
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.sampling_period import has_period, infer_period
+from rtamt.signals.inferred_period import infer_period
+from rtamt.signals.sampling_period import has_period
 from tests.support.strategies import chunkings, formulas, traces
 
 if TYPE_CHECKING:

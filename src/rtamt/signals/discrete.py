@@ -31,7 +31,6 @@ from rtamt.signals.sampling_period import (
     check_regular,
     check_tolerance,
     elapsed,
-    infer_period,
 )
 from rtamt.signals.signal import Signal, read_only
 from rtamt.signals.time_domain_interface import DomainTrace, TimeDomain
@@ -390,7 +389,10 @@ def record_discrete(
         exact = elapsed(stamped, unit)
         check_increasing(times, dated=dated, exact=exact)
         inferred = period is None
-        period = period or infer_period(stamped, exact)
+        if period is None:
+            from rtamt.signals.inferred_period import infer_period  # monitors have a period
+
+            period = infer_period(stamped, exact)
         check_regular(times, period, tolerance, dated=dated, exact=exact)
     for name, column in columns.items():
         check_numbers(name, column, times, type_=types.get(name), dated=dated)

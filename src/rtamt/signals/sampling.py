@@ -13,9 +13,10 @@ from rtamt.lazy.dataclasses import replace
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
 from rtamt.signals import arrays, dense_arrays
+from rtamt.signals.inferred_period import infer_period
 from rtamt.signals.listing import show_time
 from rtamt.signals.resampling import Sampler
-from rtamt.signals.sampling_period import check_increasing, check_regular, elapsed, infer_period
+from rtamt.signals.sampling_period import check_increasing, check_regular, elapsed
 from rtamt.signals.trace import Channel, Trace
 
 if TYPE_CHECKING:

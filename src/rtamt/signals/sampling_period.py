@@ -1,10 +1,9 @@
-"""Timestamps one sampling period apart: the period inferred, and the checks of order and distance."""
+"""Timestamps one sampling period apart: the checks of order and distance."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from decimal import Decimal
-from fractions import Fraction
 
 from rtamt.errors import TraceError, UsageError, shown
 from rtamt.language.units.durations import NANOSECOND, UNITS, format_duration
@@ -14,6 +13,7 @@ from rtamt.signals.arrays import TIME, is_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from fractions import Fraction
 
     from numpy.typing import NDArray
 
@@ -21,16 +21,6 @@ if TYPE_CHECKING:
 
 #: How far, as a fraction of the period, the gap between two samples may be from the period.
 TOLERANCE = 0.1
-#: Gaps, in seconds, that differ by less are the same numbers of nanoseconds.
-_NO_DIFFERENCE = 5e-10
-#: A period that differs from a gap by such a fraction is the gap, rounded.
-_SAME = 1e-5
-#: From this precision on, as a fraction of a gap, all timestamps together have a better one than their median gap.
-_COARSE = 1e-4
-#: A period of a lower precision, as a fraction of it, is not inferred.
-_UNCERTAIN = 1e-2
-#: Up to this precision, as a fraction of it, the mean gap of timestamps that were rounded to a unit is the period.
-_ROUNDED = 1e-3
 
 
 class DeferredTimes(ABC):
@@ -64,6 +54,7 @@ class DeferredTimes(ABC):
 class RegularTimes(DeferredTimes):
     """Timestamps one period apart from 0 s on.
 
+    >>> from fractions import Fraction
     >>> RegularTimes(3, Fraction(1, 2)).array
     array([0. , 0.5, 1. ])
     """
@@ -149,146 +140,25 @@ def elapsed(times: Timestamps, unit: str | None = None) -> FloatArray:
     return quotients(numbers - numbers[0], *size.as_integer_ratio())
 
 
-def infer_period(times: Timestamps, exact: FloatArray | None = None) -> Fraction:
-    """Return the median gap, or the mean gap of rounded timestamps, as a short decimal; 1 s for a single sample.
-
-    It is the shortest decimal within the precision of the gap. Timestamps that are rounded limit that: doubles since
-    1970 to about 0.2 µs, floats of 32 bits at 1000 s to 61 µs, whole milliseconds to 1 ms. Where the precision is low,
-    and the timestamps are regular but for their rounding, the mean gap is taken, which is more precise by their number.
-    ``exact``: the times as :func:`elapsed` returns them. Their gaps are exact unless they were made of doubles, which
-    shows in gaps that differ and yet add up to a period with fewer digits.
-
-    Raises :class:`TraceError` where rounding leaves the period uncertain.
-    """
-    seconds = times.seconds
-    if len(seconds) < 2:
-        return Fraction(1)
-    known = seconds if exact is None else exact
-    gaps = np.diff(known)
-    gap = _median(gaps)
-    mean = _mean_of_rounded(known, gaps) if _differ(gaps, gap) else None
-    if mean is not None:
-        return mean
-    coarse, blur = _rounded_period(times)
-    if known is not seconds:
-        differ = float(np.abs(gaps - gap).max())
-        if differ <= _NO_DIFFERENCE:
-            short = _shortest(gap, _precision(gap, seconds))
-            return short if abs(float(short) - gap) <= _SAME * gap else _shortest(gap, _precision(gap, known))
-        off = abs(float(coarse) * len(gaps) - float(known[-1]))
-        if blur > _UNCERTAIN * coarse or off > _precision(gap, seconds) + 2 * differ:
-            return _shortest(gap, _precision(gap, known))
-    if blur > _UNCERTAIN * coarse:
-        raise _uncertain(times, coarse)
-    return coarse
-
-
-def _differ(gaps: FloatArray, gap: float) -> bool:
-    return bool((np.abs(gaps - gap) > 1e-6 * gap).any())
-
-
-def _mean_of_rounded(times: FloatArray, gaps: FloatArray) -> Fraction | None:
-    """Return the mean gap of timestamps that were rounded to a unit: whole milliseconds of 60 Hz are 16 or 17 ms apart.
-
-    The gaps then have two lengths, one unit apart, or three after rounding twice, and the timestamps are near regular
-    ones. None for others, and where the mean gap is not much more precise than a gap.
-    """
-    short, range_ = float(gaps.min()), float(gaps.max() - gaps.min())
-    mean = float(times[-1] - times[0]) / len(gaps)
-    blur = max(1e-6 * mean, 2 * range_ / len(gaps))
-    noise = _precision(mean, times)
-    if range_ <= noise or blur > _ROUNDED * mean:
-        return None
-    step = range_ / 2
-    more = gaps - short
-    if (np.abs(more - np.rint(more / step) * step) > noise).any():
-        return None
-    off = np.abs(times - times[0] - mean * np.arange(len(times))).max()
-    return _shortest(mean, blur) if off <= range_ + noise else None
-
-
-def _rounded_period(times: Timestamps) -> tuple[Fraction, float]:
-    """Return the period that rounded timestamps show, and its precision."""
-    seconds = times.seconds
-    gaps = np.diff(seconds)
-    gap = _median(gaps)
-    spacing = _spacing(times, _differ(gaps, gap))
-    blur = max(1e-6 * gap, 2 * spacing)
-    if blur > _COARSE * gap:
-        mean = float(seconds[-1] - seconds[0]) / len(gaps)
-        if np.abs(seconds - seconds[0] - mean * np.arange(len(seconds))).max() <= 1.5 * spacing:
-            gap, blur = mean, max(1e-6 * mean, 2 * spacing / len(gaps))
-    return _shortest(gap, blur), blur
-
-
-def _spacing(times: Timestamps, differ: bool) -> float:
-    """Return the distance between neighbouring numbers of the timestamps' format; ``differ``: whether the gaps do."""
-    seconds = float(np.abs(times.seconds).max())
-    numbers = times.original
-    if differ and numbers.dtype.kind == "f" and _are_single(numbers):
-        largest = float(np.abs(numbers).max())
-        return float(np.spacing(np.float32(largest))) * (seconds / largest)
-    return float(np.spacing(seconds))
-
-
-def _are_single(numbers: NDArray[Any]) -> bool:
-    """Return whether doubles were floats of 32 bits, which shows in their digits.
-
-    Whole numbers are such floats as well, and other numbers with few digits; half of those that were rounded need the
-    last bit.
-    """
-    with np.errstate(over="ignore"):
-        single = numbers.astype(np.float32)
-    if not np.array_equal(single, numbers) or np.array_equal(np.rint(numbers), numbers):
-        return False
-    return 8 * int(np.count_nonzero(single.view(np.int32) & 1)) >= len(single)
-
-
-def _uncertain(times: Timestamps, period: Fraction) -> TraceError:
-    """Return the error for timestamps that are too coarse for their period."""
-    spacing, last = _spacing(times, differ=True), float(np.abs(times.seconds).max())
-    return TraceError(
-        f"the sampling period is about {float(period):.2g} s, but the timestamps resolve only {spacing:.2g} s at "
-        f"{last:.15g} s: give the period (period=, --period), or timestamps of a higher precision",
-        variable=TIME,
-    )
-
-
-def _shortest(gap: float, blur: float) -> Fraction:
-    """Return the shortest decimal within the precision of a gap."""
-    for digits in range(1, 17):
-        short = float(f"{gap:.{digits}g}")
-        if abs(short - gap) <= blur:
-            return Fraction(repr(short))
-    return Fraction(repr(gap))
-
-
-def _median(gaps: FloatArray) -> float:
-    """Return the median; that of numpy loads ``numpy.ma``, which takes as long as a short recording."""
-    high = len(gaps) // 2
-    if len(gaps) % 2:
-        return float(np.partition(gaps, high)[high])
-    lower, upper = np.partition(gaps, (high - 1, high))[high - 1 : high + 1].tolist()
-    return float(lower + upper) / 2
-
-
-def _precision(gap: float, times: FloatArray) -> float:
+def precision(gap: float, times: FloatArray) -> float:
     """Return the precision of a gap between timestamps in doubles."""
-    return max(1e-6 * gap, 2 * float(np.spacing(np.abs(times).max())))
+    return max(1e-6 * gap, 2 * float(np.spacing(np.abs(times[[0, -1]]).max())))
 
 
 def has_period(times: FloatArray, period: Fraction) -> bool:
     """Return whether more than half of the gaps are a period: so is then the median of chunks of which all are so.
 
-    A gap for which :func:`infer_period` has a decimal with fewer digits is not this period.
+    A gap for which :func:`~rtamt.signals.inferred_period.infer_period` has a decimal with fewer digits is not this
+    period.
 
+    >>> from fractions import Fraction
     >>> has_period(np.array([0, 1, 2, 2.5]), Fraction(1)), has_period(np.array([0, 1, 1.5]), Fraction(1))
     (True, False)
     """
     if len(times) < 2:
         return True
     gap, gaps = float(period), np.diff(times)
-    blur = _precision(gap, times)
+    blur = precision(gap, times)
     same = np.abs(gaps - gap) <= blur
     # With one digit less. All gaps with a shorter decimal lie on one side, so that the median is not among them.
     step = coarse_place(gap)

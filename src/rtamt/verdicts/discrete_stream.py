@@ -10,7 +10,8 @@ from rtamt.engine.native import has_period
 from rtamt.lazy.modules import np
 from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
-from rtamt.signals.sampling_period import check_increasing, elapsed, infer_period
+from rtamt.signals.inferred_period import infer_period
+from rtamt.signals.sampling_period import check_increasing, elapsed
 from rtamt.signals.signal import Signal
 from rtamt.verdicts.chunks import Group, StreamResult
 from rtamt.verdicts.streaming import Stream

@@ -19,6 +19,7 @@ from rtamt.rewrite.early import ends_differently
 from rtamt.rewrite.semantics import boolean
 from rtamt.signals import arrays, assumed_period
 from rtamt.signals.discrete import Discrete
+from rtamt.signals.inferred_period import infer_period
 from rtamt.signals.outcomes import Interval
 from rtamt.signals.sampling_period import (
     TOLERANCE,
@@ -26,7 +27,6 @@ from rtamt.signals.sampling_period import (
     check_regular,
     elapsed,
     has_period,
-    infer_period,
     merged,
 )
 from rtamt.verdicts.decompose import conjuncts
