@@ -350,7 +350,7 @@ def with_stamps(data: Trace, spec: Specification) -> Trace:
 
 def notes_on(data: Trace, spec: Specification, reading: Reading) -> tuple[str, ...]:
     """Return the notes of a verdict on a recording: on the data, and on a period that nothing determines."""
-    if not assumes_period(spec, reading.time) or any(data.channel(name).times is not None for name in data):
+    if any(data.channel(name).times is not None for name in data) or not assumes_period(spec, reading.time):
         return data.remarks
     return (*data.remarks, "no column holds timestamps: the samples are taken to be 1 s apart")
 

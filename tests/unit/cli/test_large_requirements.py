@@ -55,3 +55,12 @@ def test_four_times_the_parts_need_about_four_times_the_calls(command, shape, ru
         write("large.stl", SHAPES[shape](size))
         counts.append(calls_of(run, command, "large.stl", *([recording] if command in READING else [])))
     assert counts[2] < 4.8 * counts[1], counts
+
+
+def test_four_times_the_requirements_need_about_four_times_the_calls(run, write):
+    recording = write("trace.csv", "time,x\n" + "".join(f"{k},{k % 7}\n" for k in range(20)))
+    counts = []
+    for size in (2, SMALL, 4 * SMALL):
+        write("many.stl", "".join(f"require R-{k}: x >= {k}\n" for k in range(size)))
+        counts.append(calls_of(run, "check", "many.stl", recording))
+    assert counts[2] < 4.8 * counts[1], counts
