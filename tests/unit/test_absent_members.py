@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pandas as pd
@@ -96,3 +97,33 @@ def test_nan_of_pandas_in_a_field_of_a_group_names_how_to_make_the_member_absent
     with pytest.raises(rtamt.TraceError) as info:
         spec.monitor().update_many(frame)
     assert str(info.value) == expected
+
+
+@pytest.mark.parametrize("last", ["1", ""], ids=["present", "absent"])
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("0,1,1\n1,2,1\n1,-1,1\n2,{}", "'car_1.p' has two samples at 1 s (sample 2 and the one before"),
+        ("0,1,1\n1,,1\n1,-1,1\n2,{}", "'car_1.p' has two samples at 1 s (sample 2 and the one before"),
+        (
+            "0,1,1\n2,-1,1\n1,2,1\n3,{}",
+            "the time of 'car_1.p' does not increase at sample 2: 1 s comes after 2 s",
+        ),
+    ],
+    ids=["twice", "twice, once absent", "backwards"],
+)
+def test_two_samples_of_a_member_at_one_time_hid_a_violation(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: str, message: str, last: str
+) -> None:
+    text, lines = 'group cars = "car_*"\nalways forall c in cars: c.p > 0\n', rows.format(last)
+    path = tmp_path / "twice.csv"
+    path.write_text(f"time,car_1.p,x\n{lines},1\n")
+    assert main(["check", text, str(path), "--time", "dense"]) == 2
+    assert message in capsys.readouterr().err
+    cells = [line.split(",")[:2] for line in lines.splitlines()]
+    data = {
+        "time": [float(time) for time, _ in cells],
+        "car_1.p": [float(value) if value else None for _, value in cells],
+    }
+    with pytest.raises(rtamt.TraceError, match=re.escape(message)):
+        rtamt.parse(text).evaluate(data, time="dense")

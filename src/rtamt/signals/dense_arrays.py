@@ -182,6 +182,19 @@ def not_increasing(name: str, index: int, time: int, before: int, scale: TimeSca
     )
 
 
+def require_order(name: str, times: Any) -> None:
+    """Raise :class:`TraceError` unless times increase: where they are merged with others, their order is lost."""
+    base = np.asarray(times)
+    rising = base[1:] > base[:-1]
+    if not np.logical_and.reduce(rising):
+        from rtamt.signals.ticks import TimeScale
+
+        i = int(rising.argmin())
+        scale = TimeScale.of(NANOSECOND, [base])
+        before, time = scale.ticks(base[i : i + 2], name, i).tolist()
+        raise not_increasing(name, i + 1, time, before, scale)
+
+
 def minimum(signals: Sequence[Samples], before: Sequence[float]) -> Samples:
     """Return the minimum of step functions at each of their ticks; ``before``: what each is before its first tick.
 

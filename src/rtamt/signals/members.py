@@ -292,9 +292,10 @@ def _on_own_time_bases(
             column = each.column(field)
             if column in data:
                 recorded |= dense_arrays.columns_of(data, [column])
-                continue
-            ((times, objects),) = dense_arrays.columns_of(data, [each.name]).values()
-            recorded[column] = times, in_objects(objects, each.name, field)
+            else:
+                ((times, objects),) = dense_arrays.columns_of(data, [each.name]).values()
+                recorded[column] = times, in_objects(objects, each.name, field)
+            dense_arrays.require_order(column, recorded[column][0])
     start = _start(columns, recorded)
     throughout = []
     for each in members:
@@ -374,6 +375,8 @@ def _trace(trace: Trace, members: Sequence[Member], names: Collection[str]) -> t
             throughout.append(each.name)
             continue
         recorded = {field: with_gaps(channel) for field, channel in channels.items()}
+        for field, (base, _) in recorded.items():
+            dense_arrays.require_order(each.column(field), base)
         times, present, values = _in_steps(recorded, start, each.fields)
         if present is None:
             throughout.append(each.name)
