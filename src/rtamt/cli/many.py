@@ -189,7 +189,7 @@ class _Summary:
         earlier = f", {known} of them from the manifest" if known else ""
         return (
             f"{table(rows, (1, 2, 3, 4, 5), width=width_of(sys.stdout), color=color)}\n\n"
-            f"{recordings} recordings{earlier}: {escaped(verdicts)}"
+            f"{recordings} recording{'' if recordings == 1 else 's'}{earlier}: {escaped(verdicts)}"
         )
 
 

@@ -16,7 +16,7 @@ from rtamt.lint.found import Fix, Found
 from rtamt.lint.structure import JUNCTIONS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from rtamt.language.formula import Formula
     from rtamt.language.operators import Operator
@@ -142,6 +142,7 @@ def weaker_comparison(text: Text) -> Iterator[Found]:
     """``x > 3 and x > 5``, where the first one changes nothing."""
     for root, every, _ in text.chains:
         conjunction = JUNCTIONS[root.op] > 0
+        parents = _parents(root) if every else {}
         for bounds in every:
             one_sided = [each for each in bounds if len(_BOUNDS[each.comparison.op]) == 1]
             for sign in (1, -1):
@@ -158,24 +159,31 @@ def weaker_comparison(text: Text) -> Iterator[Found]:
                     yield Found(
                         bound.comparison.span,
                         f"{weaker} changes nothing beside {tighter}; remove it",
-                        _removal(text, root, bound.comparison),
+                        _removal(text, parents.get(id(bound.comparison), ()), bound.comparison),
                     )
 
 
-def _removal(text: Text, root: Apply, operand: Apply) -> Fix | None:
-    """Return the fix that removes an operand of a chain."""
+def _parents(root: Apply) -> dict[int, list[Apply]]:
+    """Return the nodes of a chain, outermost first, by the identity of each of their operands."""
+    found: dict[int, list[Apply]] = {}
     node = root
     while True:
         left, right = node.args
-        if right is operand and is_infix_here(text, node):
-            edit = keep_left(text, node)
-            return None if edit is None else Fix((edit,), node, left)
-        if left is operand and is_infix_here(text, node):
-            edit = keep_right(text, node)
-            return None if edit is None else Fix((edit,), node, right)
+        for operand in (right, left):
+            found.setdefault(id(operand), []).append(node)
         if not isinstance(left, Apply) or left.op is not root.op:
-            return None
+            return found
         node = left
+
+
+def _removal(text: Text, parents: Iterable[Apply], operand: Apply) -> Fix | None:
+    """Return the fix that removes an operand of a chain; ``parents``: the nodes of which it is an operand."""
+    for node in parents:
+        if is_infix_here(text, node):
+            left, right = node.args
+            edit = keep_left(text, node) if right is operand else keep_right(text, node)
+            return None if edit is None else Fix((edit,), node, left if right is operand else right)
+    return None
 
 
 def branch_tested_before(text: Text) -> Iterator[Found]:

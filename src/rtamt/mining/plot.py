@@ -71,8 +71,9 @@ def _front(found: Mined, axes: Any) -> Any:
     axes.set_xlabel(_label(found, 0))
     axes.set_ylabel(_label(found, 1))
     count, more = len(points), "" if not found.undecided else f"; {found.undecided:.0%} of the area undecided"
+    recordings = len(found.recordings)
     axes.set_title(
-        f"{count} point{'' if count == 1 else 's'}, {len(found.recordings)} recordings{more}",
+        f"{count} point{'' if count == 1 else 's'}, {recordings} recording{'' if recordings == 1 else 's'}{more}",
         fontsize=9,
         color=style.QUIET,
         loc="right",

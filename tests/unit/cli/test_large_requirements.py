@@ -31,12 +31,12 @@ SMALL = 80
 READING = ("check", "explain")
 
 
-def calls_of(run, *arguments) -> int:
+def calls_of(run, *arguments, events=("call",)) -> int:
     count = 0
 
     def counted(_frame, event, _function):
         nonlocal count
-        count += event == "call"
+        count += event in events
 
     sys.setprofile(counted)
     try:
@@ -63,4 +63,12 @@ def test_four_times_the_requirements_need_about_four_times_the_calls(run, write)
     for size in (2, SMALL, 4 * SMALL):
         write("many.stl", "".join(f"require R-{k}: x >= {k}\n" for k in range(size)))
         counts.append(calls_of(run, "check", "many.stl", recording))
+    assert counts[2] < 4.8 * counts[1], counts
+
+
+def test_four_times_the_comparisons_of_a_number_need_about_four_times_the_calls(run, write):
+    counts = []
+    for size in (2, SMALL, 4 * SMALL):
+        write("comparisons.stl", " and ".join(f"x > {k}" for k in range(size)))
+        counts.append(calls_of(run, "lint", "comparisons.stl", events=("call", "c_call")))
     assert counts[2] < 4.8 * counts[1], counts
