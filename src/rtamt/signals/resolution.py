@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _ROUNDINGS, _LEAST = 4, 4e-10
 #: Up to this precision, as a fraction of it, the mean gap of timestamps that were rounded to a unit is the period.
 _ROUNDED = 1e-2
+#: The share of the rarer gaps from which on they show a unit: a single longer one is a clock that slipped.
+_ALTERNATING = 0.1
 
 
 class Resolution(NamedTuple):
@@ -58,7 +60,10 @@ def resolution(times: Timestamps) -> Resolution:
     spacing = spacing_of(times, differ=True)
     unit = spacing if spacing > np.spacing(np.abs(seconds[[0, -1]]).max()) else 0.0
     if len(gaps) and rounded_period(seconds, gaps) is not None:
-        unit = max(unit, float(gaps.max() - gaps.min()))
+        short, long = float(gaps.min()), float(gaps.max())
+        longer = int((gaps > (short + long) / 2).sum())
+        if min(longer, len(gaps) - longer) >= _ALTERNATING * len(gaps):
+            unit = max(unit, long - short)
     return Resolution(spacing, unit)
 
 

@@ -86,6 +86,15 @@ def test_a_sample_behind_an_instant_is_none_of_that_instant(kind, behind):
     assert trace.resample("100ms")["y"].values.tolist() == list(range(100))
 
 
+@pytest.mark.parametrize("kind", ["doubles", "doubles since 1970", "nanoseconds of a sum"])
+def test_a_sample_after_a_slip_of_the_clock_was_taken_before_its_time(kind):
+    """Two lengths of gaps are no rounding where one of them occurs once."""
+    since = np.arange(200) / 100
+    since[100:] += 0.002
+    trace = rtamt.read({"time": FORMATS[kind](since), "x": np.arange(200.0)})
+    assert trace.resample("10ms")["x"].values.tolist() == [*range(100), *range(99, 199)]
+
+
 @pytest.mark.parametrize("options", [[], ["--early"]], ids=["whole", "early"])
 @pytest.mark.parametrize("rate", [100, 60, 30])
 @pytest.mark.parametrize("kind", ["milliseconds", "doubles", "nanoseconds of doubles", "floats of 32 bits"])
