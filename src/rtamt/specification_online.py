@@ -202,7 +202,7 @@ class OnlineSpecification(QuantifiedText):
         domain = self._domain_for(time, period, tolerance, resolution).online
         require_samples(domain, worst_case=worst_case)
         requirements = [self._watched(name, semantics).formula for name in self.requirements]
-        if self.document.origin is not None and not variables(self.formula):
+        if self.document.origin is not None and self.input_names and not variables(self.formula):
             from rtamt.verdicts.robustness_and_truth import align_inputs
 
             formula = align_inputs(formula, self.input_names, self.types)

@@ -14,6 +14,7 @@ from rtamt.language.operators import STL, Language
 from rtamt.language.parsing.grammar import is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.parsing.type_rules import as_formula
+from rtamt.language.quantifiers import quantifiers
 from rtamt.language.units.durations import NANOSECOND, positive_period
 from rtamt.lazy.dataclasses import dataclass, field, replace
 from rtamt.lazy.typing import TYPE_CHECKING, Any
@@ -239,7 +240,7 @@ class SpecificationText:
     def _names_beside(self) -> tuple[str, ...]:
         """The variables that the other requirements read in dense time; those that recordings may lack if need be."""
         origin = self.document.origin
-        if origin is None or not self.domain.own_time_bases:
+        if origin is None or not self.domain.own_time_bases or quantifiers(self.formula):
             return ()
         names = variables(origin.formula)
         optional = {each.name for each in self.document.declarations if each.optional}

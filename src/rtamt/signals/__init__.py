@@ -37,7 +37,7 @@ dense_arrays           dense-time data to int64 ticks and float64 values
 sample_count           the number of instants at which any of several signals has a sample
 sampling_period        check order and distance of timestamps that are one period apart
 inferred_period        infer the sampling period
-resolution             how far timestamps may lie from the instants they stand for
+resolution             the precision of timestamps, and the mean gap of rounded ones
 ticks                  times to int64 ticks and back
 counting               exact conversion of numbers to ticks, rounded once
 epoch                  times since 1970 as text: a date, and the seconds since the start

@@ -9,9 +9,7 @@ from rtamt.errors import TraceError, UsageError, choices
 from rtamt.language.units.durations import duration, format_duration
 from rtamt.lazy.modules import np
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals.arrays import Timestamps
 from rtamt.signals.listing import show_time
-from rtamt.signals.resolution import resolution, rounding
 from rtamt.signals.sampling_period import merged
 
 if TYPE_CHECKING:
@@ -26,6 +24,10 @@ if TYPE_CHECKING:
 #: Ways of filling in what lies between two samples.
 HOW = ("hold", "linear")
 
+#: How many units in the last place a time may be off: 3 * 0.1 s lies behind 0.3 s. Less than half a nanosecond is
+#: always rounding, since clocks count nanoseconds.
+ROUNDINGS, LEAST = 4, 4e-10
+
 #: How many instants are made at once: 2 GiB for the values of a signal.
 MOST_INSTANTS = 2**28
 
@@ -37,20 +39,12 @@ def grid_of(timed: Sequence[Times], period: str | float | Fraction, how: str) ->
     step = duration(period)
     if step <= 0:
         raise UsageError(f"the sampling period is {period!r}; it must be positive")
-    first = max(times[0] for times in timed)
-    start = exact_time(first)
-    if (max if how == "hold" else min)(times[-1] for times in timed) < first:
+    start = max(exact_time(times[0]) for times in timed)
+    last = (max if how == "hold" else min)(exact_time(times[-1]) for times in timed)
+    if last < start:
         raise TraceError("the signals have no instant in common")
-    last = (max if how == "hold" else min)(_last_instant(times, first, start, step) for times in timed)
-    return _grid(start, step, last + 1, timed[0].dtype)
-
-
-def _last_instant(times: Times, first: Any, start: Fraction, step: Fraction) -> int:
-    """Return the number of the last instant of a grid up to the last sample, or where that is."""
-    indices = _indices(times, first, step)
-    if indices[-1] >= 0:
-        return int(indices[-1])
-    return floor((exact_time(times[-1]) - start) / step)
+    count = floor((last - start + _nearness(last, step, timed[0].dtype)) / step) + 1
+    return _grid(start, step, count, timed[0].dtype)
 
 
 def resampled(
@@ -65,17 +59,10 @@ def resampled(
     """Return the values of a signal at the instants of a grid, and a note on samples that they leave out.
 
     ``hold_for``: raise :class:`TraceError` if the last value is older (seconds). ``step``: the distance of the
-    instants, if they are apart by a period: a time that differs from one by its rounding is that instant.
+    instants, if they are apart by a period: a time that differs from one by the rounding of a double is that instant.
     """
-    if step is not None:
-        times = _on_instants(times, grid, _indices(times, grid[0], step))
-    return _values_at(name, times, values, grid, how, hold_for)
-
-
-def _values_at(
-    name: str, times: Times, values: FloatArray, grid: Times, how: str, hold_for: Fraction | None
-) -> tuple[FloatArray, list[str]]:
-    places = np.searchsorted(times, grid, side="right") - 1
+    until = grid + _rounding(grid, step) if step is not None and grid.dtype.kind == "f" else grid
+    places = np.searchsorted(times, until, side="right") - 1
     if how == "hold" and hold_for is not None:
         _check_ages(name, times[places], grid, hold_for)
     if how == "hold":
@@ -83,7 +70,7 @@ def _values_at(
     # Differences first: timestamps of 10^18 ns do not fit into a double, their differences do.
     found = np.interp(_plain(grid - times[0]), _plain(times - times[0]), values)
     between = times[places] != grid
-    both = np.concatenate((places, places[between] + 1))
+    both = np.concatenate((places, np.minimum(places[between] + 1, len(times) - 1)))
     return found, _skipped_note(name, both, len(times))
 
 
@@ -106,7 +93,7 @@ class Sampler:
         self._step, self._how, self._hold_for = duration(period), how, hold_for
         self._pending: dict[str, tuple[Times, FloatArray]] = {}
         self._names = names
-        self._first: Any = None
+        self._start: Fraction | None = None
         self._count = 0
 
     def take(
@@ -114,18 +101,11 @@ class Sampler:
     ) -> tuple[Times, dict[str, FloatArray]] | None:
         """Return the new instants of a chunk with the values of all signals; None if there are none.
 
-        The first time these are two instants at least, from which the period can be inferred. Raises
-        :class:`TraceError` for timestamps whose rounding only the whole recording shows.
+        The first time these are two instants at least, from which the period can be inferred.
         """
         timed = self._add(chunk)
         if not timed:
             return None
-        for name, (times, _) in self._pending.items():
-            alone, together = (_indices(times, self._first, self._step, alone=each) for each in (True, False))
-            if not np.array_equal(alone, together):
-                raise TraceError(
-                    f"'{name}' has rounded timestamps: resample the whole recording", variable=name
-                )
         last = min(exact_time(times[-1]) for times in timed)
         return self._up_to(last, 1 if self._count else 2)
 
@@ -155,30 +135,28 @@ class Sampler:
         if not all(name in self._pending and len(self._pending[name][0]) for name in self._names):
             return []
         timed = [times for times, _ in self._pending.values()]
-        if self._first is None:
-            self._first = max(times[0] for times in timed)
+        if self._start is None:
+            self._start = max(exact_time(times[0]) for times in timed)
         return timed
 
     def _up_to(
         self, end: Fraction, least: int, *, closed: bool = True
     ) -> tuple[Times, dict[str, FloatArray]] | None:
         """Return the instants up to ``end`` and the values there; None if there are fewer than ``least``."""
-        dtype, start = self._first.dtype, exact_time(self._first)
-        steps = (end - start) / self._step
-        near = min(Fraction(float(rounding(float(end)))) / self._step, Fraction(1, 4))
+        assert self._start is not None
+        dtype = next(iter(self._pending.values()))[0].dtype
+        steps, near = (end - self._start) / self._step, _nearness(end, self._step, dtype) / self._step
         until = max(self._count, floor(steps + near) + 1 if closed else ceil(steps - near))
         count, first = until - self._count, self._count
         if count < least:
             return None
         self._count = until
-        grid = _grid(start + first * self._step, self._step, count, dtype)
+        grid = _grid(self._start + first * self._step, self._step, count, dtype)
         found = {}
         for name, (times, values) in self._pending.items():
             how = "hold" if name in self._stepped else self._how
-            indices = _indices(times, self._first, self._step, alone=True) - first
-            moved = _on_instants(times, grid, indices)
-            found[name], _ = _values_at(name, moved, values, grid, how, self._hold_for)
-            place = int(np.searchsorted(moved, grid[-1], side="right")) - 1
+            found[name], _ = resampled(name, times, values, grid, how, self._hold_for, self._step)
+            place = int(np.searchsorted(times, grid[-1], side="right")) - 1
             self._pending[name] = times[place:], values[place:]
         return grid, found
 
@@ -195,7 +173,7 @@ def _skipped_note(name: str, places: NDArray[np.intp], count: int) -> list[str]:
 
 
 def _check_ages(name: str, times: Times, grid: Times, hold_for: Fraction) -> None:
-    ages = _seconds(grid - times)
+    ages = _plain(grid - times) / (1e9 if grid.dtype.kind in "mM" else 1.0)
     near = float(hold_for) - 1e-6  # times of doubles are no more exact
     for i in np.flatnonzero(ages > near).tolist():
         if exact_time(grid[i]) - exact_time(times[i]) > hold_for:
@@ -213,34 +191,17 @@ def exact_time(time: Any) -> Fraction:
     return Fraction(repr(float(time)))
 
 
-def _indices(times: Times, first: Any, step: Fraction, *, alone: bool = False) -> NDArray[np.int64]:
-    """Return for each time the number of the instant that it is but for its rounding; -1 if it lies between two.
+def _rounding(times: Any, step: Fraction) -> Any:
+    """Return how far, in seconds, a time may lie from an instant of a grid of doubles and still be that instant.
 
-    The instants are ``step`` apart from ``first`` on. ``alone``: whether each time is taken as the rounding of a
-    double. Together they may show that they were rounded to more. Where samples and instants are then the same one by
-    one, they may also depart as slowly as from a period that was inferred from them.
+    Never so far that it could be another instant.
     """
-    seconds, since, length = _seconds(times), _seconds(times - first), float(step)
-    found, near = np.rint(since / length), rounding(seconds)
-    off = np.abs(since - found * length)
-    if alone:
-        is_one = off <= np.minimum(near, length / 4)
-    else:
-        precise = resolution(Timestamps(seconds, times))
-        near = np.maximum(near, precise.unit)
-        is_one = off <= np.minimum(near, length / 4)
-        if len(times) > 1 and (np.diff(found) == 1).all():
-            drift = max(1.001e-6 * length, 2 * precise.spacing)
-            is_one |= (off <= near + drift * np.abs(found)).all()
-    return np.where(is_one, found, -1).astype(np.int64)
+    near = np.maximum(ROUNDINGS * np.spacing(np.abs(times)), LEAST)
+    return np.minimum(near, float(step) / 4)
 
 
-def _on_instants(times: Times, grid: Times, indices: NDArray[np.int64]) -> Times:
-    """Return times, with those moved to the instants of a grid that have their number among the instants."""
-    at = (indices >= 0) & (indices < len(grid))
-    moved: Times = times.copy()
-    moved[at] = grid[indices[at]]
-    return moved
+def _nearness(time: Fraction, step: Fraction, dtype: np.dtype[Any]) -> Fraction:
+    return Fraction(float(_rounding(float(time), step))) if dtype.kind == "f" else Fraction(0)
 
 
 def _grid(start: Fraction, step: Fraction, count: int, dtype: np.dtype[Any]) -> Times:
@@ -270,10 +231,5 @@ def _time_of(instant: Fraction, dtype: np.dtype[Any]) -> Any:
     return float(instant) if dtype.kind == "f" else np.array(int(instant * 10**9)).astype(dtype)[()]
 
 
-def _plain(times: Times) -> FloatArray:
-    counts: FloatArray = (times.astype(np.int64) if times.dtype.kind in "mM" else times).astype(np.float64)
-    return counts
-
-
-def _seconds(times: Times) -> FloatArray:
-    return _plain(times) / (1e9 if times.dtype.kind in "mM" else 1.0)
+def _plain(gaps: Times) -> FloatArray:
+    return (gaps.astype(np.int64) if gaps.dtype.kind == "m" else gaps).astype(np.float64)

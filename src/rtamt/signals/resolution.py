@@ -1,4 +1,4 @@
-"""How far timestamps may lie from the instants they stand for: the precision of their format, and their unit.
+"""The precision of timestamps, and the mean gap of those that were rounded.
 
 Seconds since 1970 in doubles resolve 0.2 µs, floats of 32 bits 61 µs at 1000 s, and whole milliseconds 1 ms.
 """
@@ -15,24 +15,8 @@ if TYPE_CHECKING:
 
     from rtamt.signals.arrays import FloatArray, Timestamps
 
-#: How many units in the last place a time may be off: 3 * 0.1 s lies behind 0.3 s. Less than half a nanosecond is
-#: always rounding, since clocks count nanoseconds.
-_ROUNDINGS, _LEAST = 4, 4e-10
 #: Up to this precision, as a fraction of it, the mean gap of timestamps that were rounded to a unit is the period.
 _ROUNDED = 1e-2
-#: The share of the rarer gaps from which on they show a unit: a single longer one is a clock that slipped.
-_ALTERNATING = 0.1
-
-
-class Resolution(NamedTuple):
-    """The resolution of timestamps, in seconds.
-
-    ``spacing``: the distance between neighbouring numbers of their format. ``unit``: to what they were rounded in
-    addition to a double; 0 if to nothing else.
-    """
-
-    spacing: float
-    unit: float
 
 
 class Period(NamedTuple):
@@ -46,30 +30,6 @@ class Period(NamedTuple):
     def blur(self) -> float:
         """How far the period may be from its length."""
         return max(self.most - self.length, self.length - self.least)
-
-
-def resolution(times: Timestamps) -> Resolution:
-    """Return the resolution of timestamps, which are in order.
-
-    >>> from rtamt.signals.arrays import timestamps
-    >>> resolution(timestamps([0.0, 1000.1])).unit, resolution(timestamps(np.arange(0, 9, 1e-3, "f4"))).unit
-    (0.0, 9.5367431640625e-07)
-    """
-    seconds = times.seconds
-    gaps = np.diff(seconds)
-    spacing = spacing_of(times, differ=True)
-    unit = spacing if spacing > np.spacing(np.abs(seconds[[0, -1]]).max()) else 0.0
-    if len(gaps) and rounded_period(seconds, gaps) is not None:
-        short, long = float(gaps.min()), float(gaps.max())
-        longer = int((gaps > (short + long) / 2).sum())
-        if min(longer, len(gaps) - longer) >= _ALTERNATING * len(gaps):
-            unit = max(unit, long - short)
-    return Resolution(spacing, unit)
-
-
-def rounding(seconds: Any) -> Any:
-    """Return how far times in doubles, or made of doubles, may lie from the instants they stand for."""
-    return np.maximum(_ROUNDINGS * np.spacing(np.abs(seconds)), _LEAST)
 
 
 def spacing_of(times: Timestamps, *, differ: bool) -> float:

@@ -347,9 +347,8 @@ class Trace(WithTimeBases):
         latest last sample), or ``"linear"``, on the line between the two samples around it (up to the
         earliest last sample; signals that were read as Booleans or enumerations, with ``types=`` of :func:`rtamt.read`,
         are held). ``period``: seconds, or text such as ``"10ms"``. Samples in between are
-        left out and listed in :attr:`losses`. A time that rounding puts next to an instant counts as that instant: of
-        a double, such as 3 * 0.1 s, of 32 bits, or to whole units, such as 60 Hz in milliseconds. ``hold_for``: the
-        maximum age of a held value; an older one is an error.
+        left out and listed in :attr:`losses`. A time that the rounding of a double puts just behind an instant, such
+        as 3 * 0.1 s, counts as that instant. ``hold_for``: the maximum age of a held value; an older one is an error.
 
         >>> import rtamt
         >>> trace = rtamt.read({"x": ([0.0, 1.0], [0, 10]), "y": ([0.0, 0.6, 1.0], [1, 2, 3])})
