@@ -322,7 +322,8 @@ struct Period {
         least = std::max(least, (since - near) / static_cast<double>(i));
         most = std::min(most, (since + near) / static_cast<double>(i));
     }
-    if (!(least <= mean && mean <= most)) return std::nullopt;
+    const bool is_near = least <= mean && mean <= most; // false with NaN
+    if (!is_near) return std::nullopt;
     const double millionth = 1e-6 * mean;
     return Period{mean, std::min(least, mean - millionth), std::max(most, mean + millionth)};
 }
