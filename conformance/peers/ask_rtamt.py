@@ -49,7 +49,7 @@ def number(value):
     return f"-{text}" if value < 0 else text
 
 
-def answer(formula, time, mode, signals, end):  # noqa: ARG001 - the question has it, for tools that need it
+def answer(formula, time, mode, signals, **_unused):
     """Ask one of its four classes."""
     text = Writer(TABLE, number).write(formula)
     if time == "discrete" and len(next(iter(signals.values()))) == 1:

@@ -63,7 +63,7 @@ TABLE = {op.name: spelled(op) for op in STL}
 TEXT = Text(TABLE)
 
 
-def answer(formula, time, mode, signals, end, step):  # noqa: ARG001 - the question has it, for tools that need it
+def answer(formula, time, mode, signals, step, **_unused):
     """Evaluate, or update sample by sample; times are seconds here, and steps in question and answer."""
     step = Fraction(step)
     length = {"period": step} if time == "discrete" else {"resolution": step}

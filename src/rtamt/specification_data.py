@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rtamt.errors import TraceError
-from rtamt.signals.arrays import WithTimeBases
+from rtamt.signals.trace_checks import require_own_clocks
 
 if TYPE_CHECKING:
     from rtamt.engine import Query
@@ -42,9 +42,7 @@ def require_times(spec: Specification, query: Query, data: Any) -> None:
     if len(spec.requirements) < 2:
         return
     names = [one.input_names for one in spec.requirements.values()]
-    if isinstance(data, WithTimeBases):
-        for each in names:
-            data.require_own_clock(each)
+    require_own_clocks(data, names)
     if query.domain.sampled and query.domain.period is None:
         from rtamt.signals.assumed_period import require_times_of_each  # monitors do not wait for it
 

@@ -306,7 +306,8 @@ class Trace(WithTimeBases):
 
     def require_own_clock(self, names: Iterable[str]) -> None:
         """Raise :class:`TraceError` if the times of these signals are others than where only they are read."""
-        require_own_clock({name: self.channel(name) for name in names if name != TIME}, self._source)
+        present = [name for name in names if name in self._channels or name in self.aliases]
+        require_own_clock({name: self.channel(name) for name in present if name != TIME}, self._source)
 
     def require_period(self, names: Collection[str]) -> None:
         """Raise :class:`TraceError` where samples can only be taken to be one period apart, and none is given.

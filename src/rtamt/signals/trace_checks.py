@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from rtamt.errors import TraceError
 from rtamt.lazy.modules import np
-from rtamt.lazy.typing import TYPE_CHECKING
+from rtamt.lazy.typing import TYPE_CHECKING, Any
+from rtamt.signals.arrays import WithTimeBases
 from rtamt.signals.listing import extent
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from rtamt.signals.trace import Channel
 
@@ -27,6 +28,16 @@ def require_own_clock(channels: Mapping[str, Channel], source: str) -> None:
         f"this requirement alone",
         variable=next(iter(channels)),
     )
+
+
+def require_own_clocks(data: Any, requirements: Iterable[Collection[str]]) -> None:
+    """Raise the error of :func:`require_own_clock` for any of several requirements, each given by its variables.
+
+    What is read for one of them may have changed the clock of another. ``data``: any, also a chunk of a trace.
+    """
+    if isinstance(data, WithTimeBases):
+        for names in requirements:
+            data.require_own_clock(names)
 
 
 def require_one_time_base(channels: Mapping[str, Channel]) -> None:

@@ -13,6 +13,7 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
+from rtamt.signals.trace_checks import require_own_clocks
 from rtamt.verdicts.chunks import Requirement, StreamResult
 from rtamt.verdicts.decompose import anchor, check_in_chunks
 from rtamt.verdicts.robustness_and_truth import outputs_under
@@ -62,8 +63,11 @@ def check_stream(
             f"'{rule}' samples the whole recording; evaluate it, or sample the chunks and leave out 'hold'"
         )
     stream = _stream_of(domain)(spec, semantics, time_unit, domain)
+    read = [one.input_names for one in spec.requirements.values()]
     for chunk in chunks:
-        stream.take(spec.binding.applied(chunk, partial=domain.own_time_bases))
+        bound = spec.binding.applied(chunk, partial=domain.own_time_bases)
+        require_own_clocks(bound, read)
+        stream.take(bound)
     return stream.finish()
 
 

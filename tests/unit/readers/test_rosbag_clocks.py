@@ -269,6 +269,8 @@ def test_a_formula_was_evaluated_with_the_times_that_topics_it_does_not_read_gav
     both = rtamt.parse(f"require A: {SIMULATED}\nrequire B: {RECORDED}\n")
     with pytest.raises(rtamt.TraceError, match=message):
         both.evaluate(trace.resample("500ms"), **settings)
+    with pytest.raises(rtamt.TraceError, match=message):
+        rtamt.check_stream(both, [trace.resample("500ms")], **settings)
     mine = rtamt.read(bag, columns=["/x.value"])
     mine = mine if settings == {"time": "dense"} else mine.resample("500ms")
     assert spec.evaluate(mine, **settings).satisfied
