@@ -52,6 +52,10 @@ NB_MODULE(_core, m) {
         "The compiled back end: runs serialised programs over samples, in discrete or dense time.";
 
     nb::register_exception_translator(rtamt::python::translate_memory);
+#ifdef NDEBUG
+    // When a process ends, a daemon thread may still hold a monitor, which is no leak.
+    nb::set_leak_warnings(false);
+#endif
 
     const rtamt::python::Exceptions exceptions{
         new_exception(m, "Refused", "An update was refused; the monitor is as it was."),

@@ -196,3 +196,17 @@ def test_the_core_leaves_the_gil_of_a_free_threaded_python_off() -> None:
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
     )
     assert ran.stdout.strip() == str(not sysconfig.get_config_var("Py_GIL_DISABLED"))
+
+
+#: The thread still holds the monitor when the process ends.
+HELD_AT_EXIT = """\
+import threading, rtamt
+monitor = rtamt.parse("x >= 3").monitor()
+monitor.update(0, x=4)
+threading.Thread(target=lambda: threading.Event().wait() or monitor, daemon=True).start()
+"""
+
+
+def test_a_process_that_ends_beside_a_daemon_thread_with_a_monitor_prints_nothing() -> None:
+    ran = subprocess.run([sys.executable, "-c", HELD_AT_EXIT], capture_output=True, text=True, check=True)
+    assert (ran.stdout, ran.stderr) == ("", "")
