@@ -89,17 +89,22 @@ def _rename(spec: Specification, names: Mapping[str, str]) -> Specification:
 
 
 def _resample(spec: Specification, args: Namespace) -> Specification:
-    """Return a specification with the sampling rule of the command line in place of its own."""
+    """Return a specification with the sampling of the command line in place of its own."""
     rule = spec.domain.sampling(spec.sampling)
-    if rule is None:
-        return spec
     if args.resample is not None:
         period = positive_period(args.resample)
-        if period != rule.period or not rule.hold:
+        if rule is not None and (period != rule.period or not rule.hold):
             complain(f"--resample {args.resample} replaces '{rule}' in the specification")
-        domain = spec.domain if args.period is not None else spec._domain_for(period=period)
+        domain = spec.domain
+        # Inferred from the new timestamps, the period would be only as precise as doubles since 1970 are.
+        if args.period is None and (rule is not None or (domain.sampled and spec.period is None)):
+            domain = spec._domain_for(period=period)
+        if rule is None and domain is spec.domain:
+            return spec
         spec = replace(spec, domain=domain, period=domain.period, sampling=None)
         spec._check_bounds()
+        return spec
+    if rule is None:
         return spec
     if args.how not in (None, "hold") and rule.hold:
         complain(f"--how {args.how} replaces 'hold' of '{rule}' in the specification")

@@ -15,6 +15,7 @@ from pyarrow import parquet
 
 from rtamt.cli import runner
 from rtamt.cli.terminal import Progress
+from rtamt.language.units.durations import duration
 from rtamt.verdicts import streaming
 
 GOOD = "time,x\n0,5\n1,4\n2,6\n"
@@ -177,6 +178,21 @@ def test_names_sheets_units_and_resampling(run):
     assert (row["robustness"], row["samples"], row["period"]) == (0, 4, 0.1)
     row = json.loads(run(*args, "--resample", "100ms", "--how", "linear", "--json").out)
     assert row["samples"] == 4
+
+
+@pytest.mark.parametrize("start", [0, 1_700_000_000])
+@pytest.mark.parametrize(
+    ("period", "bound"), [("0.0333333", "6.66666"), ("33333333ns", "6666666600ns"), ("1ms", "1")]
+)
+def test_the_period_of_resampled_signals_is_the_given_one(run, write, start, period, bound):
+    rows = [f"{start + k / 100:.2f},{3 + k % 7}" for k in range(1000)]
+    log = write("log.csv", "\n".join(["time,x", *rows, ""]))
+    (row,) = map(
+        json.loads,
+        run("check", f"always[0:{bound}](x >= 3)", log, "--resample", period, "--json").out.splitlines(),
+    )
+    assert row["period"] == float(duration(period))
+    assert row["robustness"] == 0
 
 
 def test_a_database(run, tmp_path):
