@@ -14,6 +14,7 @@ from rtamt.cli.arguments import is_specification, prepared_specs, specification_
 from rtamt.cli.command import CommandError, json_number, json_text, short, warn, warnings_of
 from rtamt.cli.outcome import nothing_checked
 from rtamt.cli.parser import ERROR, OK, VIOLATED, complain
+from rtamt.cli.reading_options import skipping
 from rtamt.cli.terminal import Progress, say, table, use_color, width_of
 from rtamt.cli.written_formats import VERDICTS, format_of
 from rtamt.errors import UsageError, escaped
@@ -203,8 +204,8 @@ def _with_options(found: VerdictTable) -> VerdictTable:
 def _mended(error: str | None) -> str | None:
     if error is None or not error.endswith(NAN_MEND):
         return error and error.replace(FILE_MENDS, _GAP_MENDS)
-    name = error.split("'")[1]  # it begins with the variable
-    return f"{error} (--skip-nan {name})"
+    name = error.partition("'")[2].partition("' is NaN")[0]  # it begins with the variable
+    return f"{error}{skipping(name)}"
 
 
 def _verdict(row: Row) -> str:

@@ -365,7 +365,14 @@ def how_to_mend(error: Exception, data: Trace | None, before: int = 0) -> str:
     values = data[error.variable].values
     index = -1 if error.index is None else error.index - before
     is_nan = 0 <= index < len(values) and np.isnan(values[index])
-    return f" (--skip-nan {error.variable})" if is_nan else ""
+    return skipping(error.variable) if is_nan else ""
+
+
+def skipping(name: str) -> str:
+    """Return the suffix of an error about a NaN of this variable."""
+    from shlex import quote  # errors need it
+
+    return f" (--skip-nan {quote(name)})"
 
 
 # ---- an instant ----------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 
 import pandas as pd
 import pyarrow as pa
@@ -325,9 +326,11 @@ def test_errors_name_the_address_and_options_of_the_command(
     assert json.loads(capsys.readouterr().out)["error"] == message.format(recording)
 
 
-def test_errors_about_nan_name_the_option_that_leaves_it_out(tmp_path, capsys):
+@pytest.mark.parametrize(("name", "written"), [("x", "x"), ("driver's door", '"driver\'s door"')])
+def test_errors_about_nan_name_the_option_that_leaves_it_out(tmp_path, capsys, name, written):
     file = tmp_path / "nan.parquet"
-    parquet.write_table(pa.table({"time": [0.0, 1.0], "x": [1.0, float("nan")]}), file)
-    main(["check", "always(x >= 0)", str(file), "--engine", "local", "--json"])
+    parquet.write_table(pa.table({"time": [0.0, 1.0], name: [1.0, float("nan")]}), file)
+    main(["check", f"always({written} >= 0)", str(file), "--engine", "local", "--json"])
     error = json.loads(capsys.readouterr().out)["error"]
-    assert error == "'x' is NaN at sample 1, time 1 s: fill the gap or leave the sample out (--skip-nan x)"
+    option = f"--skip-nan {shlex.quote(name)}"
+    assert error == f"'{name}' is NaN at sample 1, time 1 s: fill the gap or leave the sample out ({option})"
