@@ -62,6 +62,8 @@ namespace {
 
 constexpr double no_time = std::numeric_limits<double>::quiet_NaN();
 
+constexpr const char* compiled_for_fleets = "compile it for a fleet, with rtamt compile --fleet.";
+
 // The names of the two values at the start of the trace, by mode.
 constexpr std::array<std::array<const char*, 2>, 4> names_at_start{
     {{nullptr, nullptr}, {nullptr, nullptr}, {"lower", "upper"}, {"violation", "satisfaction"}}};
@@ -73,11 +75,17 @@ void require_outputs(const rtamt_fleet& handle, std::size_t outputs) {
     }
 }
 
-[[nodiscard]] KeySpan keys_of(const rtamt_fleet_batch& batch, std::vector<std::string_view>& held) {
+void require_watermark(double time) {
+    if (std::isfinite(time)) return;
+    throw std::invalid_argument("The watermark is not finite: give a number of seconds.");
+}
+
+[[nodiscard]] KeySpan keys_of(const rtamt_fleet& handle, const rtamt_fleet_batch& batch,
+                              std::vector<std::string_view>& held) {
     if (batch.keys != nullptr && batch.texts != nullptr) {
         throw std::invalid_argument("The batch has keys and texts: give one of them.");
     }
-    return batch.texts != nullptr ? span_of(batch.texts, batch.count, held)
+    return batch.texts != nullptr ? span_of(batch.texts, batch.count, handle.keys(), held)
                                   : span_of(batch.keys, batch.count);
 }
 
@@ -115,6 +123,7 @@ void take_records(rtamt_fleet& handle, const KeySpan& keys, const rtamt_fleet_ba
     const Batch batch{keys, given.times, columns_of(given.columns, handle.inputs())};
     for (const double* column : batch.columns)
         (void)items(column, count, "The values of a column");
+    require_seconds(batch, rejected);
     require_truths(handle.metadata, batch, rejected);
     const std::size_t all = handle.outputs();
     handle.values.resize(count * all);
@@ -197,6 +206,7 @@ void take(rtamt_fleet& handle, const KeySpan& keys, const rtamt_fleet_batch& bat
     put(rejected, count);
     handle.saved = {};
     require_outputs(handle, outputs);
+    require_texts(keys, rejected);
     (void)items(batch.times, count, "The times");
     (void)items(batch.columns, count == 0 ? 0 : handle.inputs(), "The columns");
     (void)items(results, count * outputs, "The places for the results");
@@ -242,7 +252,7 @@ rtamt_status rtamt_fleet_create(const void* program, size_t size, size_t capacit
             })) {
         return *status;
     }
-    return create(program, size, capacity, tolerance, fleet, message, room,
+    return create(program, size, capacity, tolerance, fleet, message, room, compiled_for_fleets,
                   [](Program&& parsed, const auto& names, const Fleet::Settings& settings) {
                       return Fleet(std::move(parsed), names, settings);
                   });
@@ -257,7 +267,7 @@ rtamt_status rtamt_fleet_restore(const void* program, size_t size, const void* s
             })) {
         return *status;
     }
-    return create(program, size, capacity, tolerance, fleet, message, room,
+    return create(program, size, capacity, tolerance, fleet, message, room, compiled_for_fleets,
                   [&](Program&& parsed, const auto& names, const Fleet::Settings& settings) {
                       return Fleet::restore(std::move(parsed), names, settings,
                                             bytes(state, state_size));
@@ -310,9 +320,10 @@ const char* rtamt_fleet_output(const rtamt_fleet* fleet, uint32_t output) {
 rtamt_status rtamt_fleet_take(rtamt_fleet* fleet, const rtamt_fleet_batch* batch,
                               rtamt_fleet_value* results, size_t outputs, size_t* rejected) {
     return error_boundary(fleet, [&](rtamt_fleet& self) {
+        put(rejected, batch == nullptr ? 0 : batch->count);
         if (batch == nullptr) throw std::invalid_argument("The batch is null: pass an address.");
         std::vector<std::string_view> held;
-        take(self, keys_of(*batch, held), *batch, results, outputs, rejected);
+        take(self, keys_of(self, *batch, held), *batch, results, outputs, rejected);
     });
 }
 
@@ -334,7 +345,7 @@ rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* const* keys
     return error_boundary(fleet, [&](rtamt_fleet& self) {
         put(rejected, count);
         std::vector<std::string_view> held;
-        const KeySpan given = span_of(keys, count, held);
+        const KeySpan given = span_of(keys, count, self.keys(), held);
         require_columns(self, columns, count);
         take(self, given, full(times, columns, count), results, outputs, rejected);
     });
@@ -350,6 +361,7 @@ rtamt_status rtamt_fleet_watermark(rtamt_fleet* fleet, double time, rtamt_fleet_
         }
         self.saved = {};
         require_outputs(self, outputs);
+        require_watermark(time);
         (void)items(results, monitors->size() * outputs, "The places for the results");
         const auto look = [&](const Monitors::Report& report) {
             deliver(self, report, results, outputs);
@@ -383,7 +395,8 @@ rtamt_status rtamt_fleet_drop_text(rtamt_fleet* fleet, const char* const* keys, 
     return error_boundary(fleet, [&](rtamt_fleet& self) {
         self.saved = {};
         std::vector<std::string_view> held;
-        std::visit([&](auto& made) { drop(made, span_of(keys, count, held)); }, self.fleet);
+        std::visit([&](auto& made) { drop(made, span_of(keys, count, self.keys(), held)); },
+                   self.fleet);
     });
 }
 

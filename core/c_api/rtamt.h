@@ -223,7 +223,7 @@ typedef struct rtamt_fleet_row {
 typedef struct rtamt_fleet_batch {
     size_t count;
     const int64_t* keys;          /* of each sample; null where keys are texts */
-    const char* const* texts;     /* keys that are texts; else null */
+    const char* const* texts;     /* keys that are texts, in UTF-8; else null */
     const double* times;          /* of each sample, in seconds */
     const double* const* columns; /* of each input, its values; a column may be null: no sample has
                                      a value of the input */
@@ -276,7 +276,7 @@ RTAMT_API rtamt_status rtamt_fleet_update(rtamt_fleet* fleet, const int64_t* key
                                           size_t count, rtamt_fleet_value* results, size_t outputs,
                                           size_t* rejected);
 
-/* The same with texts as keys. The keys of a fleet are all integers or all texts. */
+/* The same with texts as keys, in UTF-8. The keys of a fleet are all integers or all texts. */
 RTAMT_API rtamt_status rtamt_fleet_update_text(rtamt_fleet* fleet, const char* const* keys,
                                                const double* times, const double* const* columns,
                                                size_t count, rtamt_fleet_value* results,
@@ -362,14 +362,14 @@ RTAMT_API const char* rtamt_stream_message(const rtamt_stream* stream);
 
 /* Takes a batch, as rtamt_fleet_update. `late`, which may be null, receives for each sample 1 if it
  * came too late, or a second time, and was left out, else 0. `released`, which may be null, becomes
- * how many samples have left. After RTAMT_UNDEFINED with `rejected` = `count`, a sample that waited
- * has no value: see rtamt_stream_culprit. */
+ * how many samples have left. Where RTAMT_REFUSED or RTAMT_UNDEFINED is for a sample that waited,
+ * `rejected` becomes `count`: see rtamt_stream_culprit. */
 RTAMT_API rtamt_status rtamt_stream_update(rtamt_stream* stream, const int64_t* keys,
                                            const double* times, const double* const* columns,
                                            size_t count, int32_t* late, size_t* released,
                                            size_t* rejected);
 
-/* The same with texts as keys. */
+/* The same with texts as keys, in UTF-8. */
 RTAMT_API rtamt_status rtamt_stream_update_text(rtamt_stream* stream, const char* const* keys,
                                                 const double* times, const double* const* columns,
                                                 size_t count, int32_t* late, size_t* released,
@@ -385,8 +385,9 @@ RTAMT_API rtamt_status rtamt_stream_released(rtamt_stream* stream, size_t index,
                                              rtamt_stream_sample* sample,
                                              rtamt_fleet_value* results, size_t outputs);
 
-/* The sample that waited and because of which the last update or watermark failed. It fails again
- * until the sample is discarded. */
+/* The sample that waited and because of which the last update or watermark failed: itself, or a
+ * value that fills the gap before it. It fails again until the sample is discarded, or its key
+ * dropped. */
 RTAMT_API rtamt_status rtamt_stream_culprit(rtamt_stream* stream, rtamt_stream_sample* sample);
 
 /* Forgets the sample of a key and a time that waits; it is refused if there is none. */

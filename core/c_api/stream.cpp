@@ -1,10 +1,10 @@
 // The C API of streams: fleets whose samples come in any order.
-#include "../fleet/stream.hpp"
-
 #include "fleet_boundary.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -32,6 +32,9 @@ struct rtamt_stream {
 
 namespace {
 
+constexpr const char* compiled_for_streams =
+    "a stream has delayed verdicts in discrete time, so compile it without --verdict and --time.";
+
 // Raises the error for a failure; `batch`: null where there was none.
 [[noreturn]] void fail(rtamt_stream& handle, const Batch* batch, Stream::Failure failure,
                        std::size_t* rejected) {
@@ -56,18 +59,25 @@ namespace {
     throw RejectedBatch(sentence, why);
 }
 
+// What is reported of a call that fails before it looks at its batch.
+void begin(rtamt_stream& handle, std::size_t count, std::size_t* released,
+           std::size_t* rejected) noexcept {
+    put(rejected, count);
+    put(released, std::size_t{0});
+    handle.culprit.reset();
+}
+
 void update(rtamt_stream& handle, const KeySpan& keys, const double* times,
             const double* const* columns, std::int32_t* late, std::size_t* released,
             std::size_t* rejected) {
     const std::size_t count = keys.size();
-    put(rejected, count);
-    put(released, std::size_t{0});
-    handle.culprit.reset();
     Batch batch{
         keys, items(times, count, "The times").data(),
         items(columns, count == 0 ? 0 : handle.stream.fleet().program().inputs, "The columns")};
     for (const double* column : batch.columns)
         (void)items(column, count, "The values of a column");
+    require_texts(keys, rejected);
+    require_seconds(batch, rejected);
     require_truths(handle.metadata, batch, rejected);
     handle.late.assign(count, 0);
     if (auto failure = handle.stream.take(batch, handle.late.data())) {
@@ -96,13 +106,17 @@ extern "C" {
 rtamt_status rtamt_stream_create(const void* program, size_t size, size_t capacity,
                                  double tolerance, double lateness, rtamt_gaps gaps,
                                  rtamt_stream** stream, char* message, size_t room) {
-    return create(program, size, capacity, tolerance, stream, message, room,
+    return create(program, size, capacity, tolerance, stream, message, room, compiled_for_streams,
                   [&](Program&& parsed, const auto& names, Fleet::Settings settings) {
                       if (!(lateness >= 0.0) || !std::isfinite(lateness)) {
                           throw std::invalid_argument(
                               "The lateness must be a number of seconds, 0 or more.");
                       }
-                      if (gaps < RTAMT_GAPS_REJECT || gaps > RTAMT_GAPS_HOLD) {
+                      // As a number, because other values than those of the type may be passed.
+                      std::uint32_t policy = 0;
+                      static_assert(sizeof policy == sizeof gaps);
+                      std::memcpy(&policy, &gaps, sizeof policy);
+                      if (policy > static_cast<std::uint32_t>(RTAMT_GAPS_HOLD)) {
                           throw std::invalid_argument("There is no such policy for gaps.");
                       }
                       settings.restart = gaps == RTAMT_GAPS_RESTART;
@@ -114,7 +128,7 @@ rtamt_status rtamt_stream_create(const void* program, size_t size, size_t capaci
 rtamt_status rtamt_stream_restore(const void* program, size_t size, const void* state,
                                   size_t state_size, size_t capacity, double tolerance,
                                   rtamt_stream** stream, char* message, size_t room) {
-    return create(program, size, capacity, tolerance, stream, message, room,
+    return create(program, size, capacity, tolerance, stream, message, room, compiled_for_streams,
                   [&](Program&& parsed, const auto& names, const Fleet::Settings& settings) {
                       return Stream::restore(std::move(parsed), names, settings,
                                              bytes(state, state_size));
@@ -133,6 +147,7 @@ rtamt_status rtamt_stream_update(rtamt_stream* stream, const int64_t* keys, cons
                                  const double* const* columns, size_t count, int32_t* late,
                                  size_t* released, size_t* rejected) {
     return error_boundary(stream, [&](rtamt_stream& self) {
+        begin(self, count, released, rejected);
         update(self, span_of(keys, count), times, columns, late, released, rejected);
     });
 }
@@ -142,15 +157,16 @@ rtamt_status rtamt_stream_update_text(rtamt_stream* stream, const char* const* k
                                       size_t count, int32_t* late, size_t* released,
                                       size_t* rejected) {
     return error_boundary(stream, [&](rtamt_stream& self) {
+        begin(self, count, released, rejected);
         std::vector<std::string_view> held;
-        update(self, span_of(keys, count, held), times, columns, late, released, rejected);
+        update(self, span_of(keys, count, self.stream.keys(), held), times, columns, late, released,
+               rejected);
     });
 }
 
 rtamt_status rtamt_stream_watermark(rtamt_stream* stream, double time, size_t* released) {
     return error_boundary(stream, [&](rtamt_stream& self) {
-        put(released, std::size_t{0});
-        self.culprit.reset();
+        begin(self, 0, released, nullptr);
         if (std::isnan(time)) throw std::invalid_argument("The watermark is NaN: give a time.");
         if (auto failure = self.stream.advance(time)) {
             fail(self, nullptr, std::move(*failure), nullptr);
@@ -206,7 +222,7 @@ rtamt_status rtamt_stream_discard(rtamt_stream* stream, int64_t key, double time
 rtamt_status rtamt_stream_discard_text(rtamt_stream* stream, const char* key, double time) {
     return error_boundary(stream, [&](rtamt_stream& self) {
         std::vector<std::string_view> held;
-        discard(self, span_of(&key, 1, held), time);
+        discard(self, span_of(&key, 1, self.stream.keys(), held), time);
     });
 }
 
@@ -218,7 +234,7 @@ rtamt_status rtamt_stream_drop(rtamt_stream* stream, const int64_t* keys, size_t
 rtamt_status rtamt_stream_drop_text(rtamt_stream* stream, const char* const* keys, size_t count) {
     return error_boundary(stream, [&](rtamt_stream& self) {
         std::vector<std::string_view> held;
-        drop(self.stream, span_of(keys, count, held));
+        drop(self.stream, span_of(keys, count, self.stream.keys(), held));
     });
 }
 

@@ -208,13 +208,17 @@ std::int64_t BasicExecutor<D>::stride_to(std::int64_t target) const noexcept {
 template <ValueDomain D>
 bool BasicExecutor<D>::update(Outputs outputs) {
     const bool starting = !started_;
+    const std::int64_t origin = origin_;
     if (!open()) return true;
     const std::int64_t target = earliest_last();
     if (target < origin_ || (!fresh_ && target <= frontier_)) return true;
     if (!wiring_.units().can_fail()) return advance(target, outputs);
     if (!one_block()) {
         if (dry_run(target, target)) return advance(target, outputs);
-        started_ = !starting;
+        if (starting) { // nothing has changed
+            started_ = fresh_ = false;
+            origin_ = origin;
+        }
         return false;
     }
     wiring_.units().checkpoint();

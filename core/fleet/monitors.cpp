@@ -51,7 +51,7 @@ Monitors::Monitors(MonitorProgram program, std::size_t capacity)
 // ---- a batch ------------------------------------------------------------------------------------
 
 std::optional<Monitors::Wrong> Monitors::update(const MonitorBatch& batch, const Look& look) {
-    require_fitting({batch.keys, batch.times, {}}, keys_);
+    if (batch.size() != 0) require_fitting({batch.keys, batch.times, {}}, keys_);
     const std::size_t old_size = size();
     Report report;
     std::vector<Twin> twins;

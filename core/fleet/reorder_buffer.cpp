@@ -46,6 +46,7 @@ void ReorderBuffer::begin() {
     gone_.clear();
     ready_.places.clear();
     ready_.own.clear();
+    ready_.fills.clear();
     ready_.times.clear();
     for (auto& column : ready_.columns)
         column.clear();
@@ -208,9 +209,10 @@ template <class Value>
 std::optional<Rejected> ReorderBuffer::leave(std::uint32_t place, std::int64_t at, bool own,
                                              double time, Value&& value) {
     Line& line = lines_[place];
-    const auto add = [&](bool is_own, double when, auto&& of) {
+    const auto add = [&](bool fills, double when, auto&& of) {
         ready_.places.push_back(at);
-        ready_.own.push_back(static_cast<std::uint8_t>(is_own));
+        ready_.own.push_back(static_cast<std::uint8_t>(own && !fills));
+        ready_.fills.push_back(static_cast<std::uint8_t>(fills));
         ready_.times.push_back(when);
         for (std::size_t input = 0; input < inputs(); ++input)
             ready_.columns[input].push_back(of(input));
@@ -229,14 +231,14 @@ std::optional<Rejected> ReorderBuffer::leave(std::uint32_t place, std::int64_t a
             }
             const auto steps = static_cast<std::size_t>(periods);
             for (std::size_t step = 1; step < steps; ++step)
-                add(false, line.left + static_cast<double>(step) * (gap / periods),
+                add(true, line.left + static_cast<double>(step) * (gap / periods),
                     [&](std::size_t input) { return held[input]; });
         }
         for (std::size_t input = 0; input < inputs(); ++input)
             held[input] = value(input);
     }
     line.left = time;
-    add(own, time, value);
+    add(false, time, value);
     return std::nullopt;
 }
 

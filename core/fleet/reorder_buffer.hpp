@@ -44,10 +44,17 @@ class ReorderBuffer {
         std::vector<std::int64_t> places; // in the batch: of the sample, or of one of its key;
                                           // without a batch, of the key
         std::vector<std::uint8_t> own;    // whether it is this sample of the batch
+        std::vector<std::uint8_t> fills;  // whether it fills the gap before the next that does not
         std::vector<double> times;
         std::vector<std::vector<double>> columns;
 
         [[nodiscard]] std::size_t size() const noexcept { return times.size(); }
+        // That of a sample that came: this one, or the one after the gap that this one fills.
+        [[nodiscard]] std::size_t sample_of(std::size_t index) const noexcept {
+            while (fills[index] != 0)
+                ++index;
+            return index;
+        }
     };
 
     // `names` identify the inputs in a state.

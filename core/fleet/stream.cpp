@@ -32,6 +32,13 @@ void add_key(Stream::Released& released, const Keys& keys, std::size_t place) {
     }
 }
 
+// Why a batch was rejected because of a sample of the one key of `one`.
+[[nodiscard]] Stream::Failure failure_of(const Rejected& why, bool waited,
+                                         const Stream::Released& one, double time) {
+    return {why, waited, one.integers.empty() ? 0 : one.integers.front(),
+            one.texts.empty() ? std::string() : one.texts.front(), time};
+}
+
 } // namespace
 
 Stream::Stream(Fleet fleet, std::vector<std::string> names, double lateness, Gaps gaps)
@@ -39,7 +46,14 @@ Stream::Stream(Fleet fleet, std::vector<std::string> names, double lateness, Gap
       buffer_(std::move(names), settings_of(fleet_.settings(), lateness, gaps)) {}
 
 std::optional<Stream::Failure> Stream::take(const Batch& batch, std::uint8_t* late) {
-    if (const auto wrong = buffer_.offer(batch, late)) return Failure{*wrong, false, 0, {}, 0.0};
+    if (const auto wrong = buffer_.offer(batch, late)) {
+        Released one;
+        add_key(one, batch.keys, wrong->index);
+        const double time = batch.times[wrong->index];
+        const double gap_to = wrong->time.value_or(time); // else a sample that waited
+        const bool waited = wrong->reason == Rejected::Reason::gap && gap_to != time;
+        return failure_of(*wrong, waited, one, gap_to);
+    }
     return monitor(&batch.keys);
 }
 
@@ -47,9 +61,7 @@ std::optional<Stream::Failure> Stream::advance(double watermark) {
     if (const auto wrong = buffer_.advance(watermark)) {
         Released one;
         add_key(one, buffer_.keys(), wrong->index);
-        return Failure{*wrong, true, one.integers.empty() ? 0 : one.integers.front(),
-                       one.texts.empty() ? std::string() : one.texts.front(),
-                       wrong->time.value_or(0.0)};
+        return failure_of(*wrong, true, one, wrong->time.value_or(0.0));
     }
     return monitor(nullptr);
 }
@@ -91,7 +103,7 @@ std::optional<Stream::Failure> Stream::monitor(const KeySpan* keys) {
             }
             const Batch batch{keys_of(made, held), made.times.data(), columns};
             if (auto wrong = fleet_.update(batch, places)) {
-                const std::size_t at = wrong->index;
+                const std::size_t at = ready.sample_of(wrong->index);
                 Failure failure{
                     *wrong, ready.own[at] == 0, made.integers.empty() ? 0 : made.integers[at],
                     made.texts.empty() ? std::string() : made.texts[at], made.times[at]};

@@ -25,7 +25,7 @@ class Stream {
     static constexpr std::size_t longest_hold = 10'000; // values that are held in a gap
 
     // Why a batch was rejected. Of a sample that waited, `key` and `time`: which one; and there is
-    // no index.
+    // no index. Of a value that fills a gap, the sample is the one after the gap.
     struct Failure {
         Rejected why;
         bool waited = false;
@@ -68,6 +68,7 @@ class Stream {
 
     [[nodiscard]] Fleet& fleet() noexcept { return fleet_; }
     [[nodiscard]] const Fleet& fleet() const noexcept { return fleet_; }
+    [[nodiscard]] const Keys& keys() const noexcept { return buffer_.keys(); }
     // Whether keys are numbers.
     [[nodiscard]] bool integers() const noexcept { return !buffer_.keys().textual(); }
     [[nodiscard]] std::size_t size() const noexcept { return buffer_.size(); }

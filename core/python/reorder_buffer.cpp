@@ -46,8 +46,8 @@ template <class Value>
     nb::list columns;
     for (const auto& column : ready.columns)
         columns.append(array_of(column));
-    return nb::make_tuple(array_of(ready.places), array_of(ready.own), array_of(ready.times),
-                          columns);
+    return nb::make_tuple(array_of(ready.places), array_of(ready.own), array_of(ready.fills),
+                          array_of(ready.times), columns);
 }
 
 [[nodiscard]] nb::object keys_at(const ReorderBuffer& self, const In<std::int64_t>& places) {
@@ -107,7 +107,8 @@ void add_reorder_buffer(const nb::module_& m) {
                 return rejection_of(self.release(GivenKeys(keys).span()));
             },
             nb::arg("keys"), "Let leave all that waits of some keys.")
-        .def("ready", &ready, "What has left: places, whether of the batch, times, columns.")
+        .def("ready", &ready,
+             "What has left: places, whether of the batch, whether in a gap, times, columns.")
         .def("accept", &ReorderBuffer::accept, "Keep the batch that was offered.")
         .def("withdraw", &ReorderBuffer::withdraw, "Forget the batch that was offered.")
         .def(

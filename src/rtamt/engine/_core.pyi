@@ -216,8 +216,14 @@ class ReorderBuffer:
 
     def ready(
         self,
-    ) -> tuple[NDArray[np.int64], NDArray[np.uint8], NDArray[np.float64], list[NDArray[np.float64]]]:
-        """What was released: places in the batch (or of keys), whether it is that sample, times, columns."""
+    ) -> tuple[
+        NDArray[np.int64],
+        NDArray[np.uint8],
+        NDArray[np.uint8],
+        NDArray[np.float64],
+        list[NDArray[np.float64]],
+    ]:
+        """What was released: places in the batch (or of keys), if it is that sample, or in a gap, times, columns."""
 
     def accept(self) -> None:
         """Keep the batch that was offered."""

@@ -249,7 +249,7 @@ class Reordered(InOrder):
         """Monitor the released samples; ``keys``: of each of these samples."""
         try:
             known = self.records.update(
-                np.ascontiguousarray(keys), ready.times, ready.columns, ready.place, dated=self._dated
+                np.ascontiguousarray(keys), ready.times, ready.columns, ready, dated=self._dated
             )
         except BaseException:
             self._buffer.withdraw()

@@ -98,6 +98,19 @@ TEST_CASE("a refused sample leaves the monitor as it was") {
           std::string("The trace has ended: reset the monitor before the next sample."));
 }
 
+TEST_CASE("first samples without a value leave the monitor as it was") {
+    const Handle monitor = example();
+    const Bytes before = save(monitor);
+    const Samples samples{{5, 0.0, 0}, {5, 0.0, 1}};
+    CHECK(rtamt_push(monitor.get(), samples.data(), samples.size()) == RTAMT_UNDEFINED);
+    CHECK(save(monitor) == before);
+    (void)push(monitor, {{7, 0.0, 0}});
+    const Bytes half = save(monitor);
+    const rtamt_sample undefined{7, 0.0, 1};
+    CHECK(rtamt_push(monitor.get(), &undefined, 1) == RTAMT_UNDEFINED);
+    CHECK(save(monitor) == half);
+}
+
 TEST_CASE("a state is saved restored and cloned anywhere in a trace") {
     for (int cut = 0; cut < 14; ++cut) {
         const Handle monitor = create(programs::everything_dense());

@@ -159,6 +159,9 @@ TEST_CASE("a batch that is rejected changes nothing and names its sample") {
           std::string::npos);
     CHECK(refused({{2, 1, 2}, {later, std::nan(""), 0.0}, ones}) ==
           "1: Key 1 at index 1 of the batch has the time nan s: give a finite number of seconds.");
+    CHECK(refused({{2, 1, 2}, {later, 1.7e12, 0.0}, ones}) ==
+          "1: Key 1 at index 1 of the batch has the time 1700000000000 s, which is no time in "
+          "seconds: divide it, if it is in another unit.");
     auto holes = ones;
     holes.back()[1] = std::nan("");
     CHECK(refused({{2, 1, 2}, {later, 2 * period(), 0.0}, holes}).find("has NaN as '") !=
@@ -188,6 +191,50 @@ TEST_CASE("keys are dropped and expire, and texts are keys of their own") {
     CHECK(rtamt_fleet_update_text(fleet.get(), text, &time, columns.data(), 1, nullptr, 0,
                                   nullptr) == RTAMT_OK);
     CHECK(rtamt_fleet_drop_text(fleet.get(), text, 1) == RTAMT_OK);
+}
+
+TEST_CASE("texts that are not UTF-8, which no state may have, are refused as keys") {
+    const double time = 0.0;
+    const double one = 1.0;
+    const std::vector<const double*> columns(inputs(), &one);
+    const auto status = [&](const char* text) {
+        const FleetHandle fleet = create(9);
+        std::size_t rejected = 9;
+        const rtamt_status found = rtamt_fleet_update_text(
+            fleet.get(), &text, &time, columns.data(), 1, nullptr, 0, &rejected);
+        CHECK(rejected == (found == RTAMT_OK ? 1 : 0));
+        CHECK(rtamt_fleet_size(fleet.get()) == (found == RTAMT_OK ? 1 : 0));
+        return found;
+    };
+    for (const char* text : {"", "a", "\xC3\xA4", "\xE2\x82\xAC", "\xED\x9F\xBF", "\xEE\x80\x80",
+                             "\xF0\x9F\x98\x80", "\xF4\x8F\xBF\xBF"}) {
+        INFO(text);
+        CHECK(status(text) == RTAMT_OK);
+    }
+    for (const char* text :
+         {"\xE4", "a\xFF", "\x80", "\xC0\x80", "\xC1\xBF", "\xC3", "\xC3(", "\xE0\x9F\xBF",
+          "\xED\xA0\x80", "\xED\xBF\xBF", "\xE2\x82", "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80",
+          "\xF5\x80\x80\x80", "\xF8\x88\x80\x80\x80"}) {
+        CHECK(status(text) == RTAMT_REFUSED);
+    }
+}
+
+TEST_CASE("the index of a batch that is wrong as a whole is its number of samples") {
+    const FleetHandle fleet = create(9);
+    const double time = 0.0;
+    const std::int64_t key = 1;
+    const char* const text = "a";
+    const auto rejected = [&](const rtamt_fleet_batch* batch) {
+        std::size_t index = 99;
+        CHECK(rtamt_fleet_take(fleet.get(), batch, nullptr, 0, &index) == RTAMT_REFUSED);
+        return index;
+    };
+    CHECK(rejected(nullptr) == 0);
+    rtamt_fleet_batch batch{7, nullptr, nullptr, &time, nullptr, nullptr, nullptr};
+    CHECK(rejected(&batch) == 7); // no keys
+    batch.keys = &key;
+    batch.texts = &text;
+    CHECK(rejected(&batch) == 7); // keys and texts
 }
 
 TEST_CASE("damaged states and null pointers are refused") {

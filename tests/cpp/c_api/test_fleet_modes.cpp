@@ -115,6 +115,18 @@ TEST_CASE("a fleet of each mode tells what it is") {
            rtamt_fleet_key(nullptr, 0, nullptr, nullptr) == 0));
 }
 
+TEST_CASE("a batch without samples is taken, whatever the keys are") {
+    for (const Case& made : monitor_programs::cases()) {
+        const FleetHandle fleet = create(made);
+        CHECK(take(fleet, {7}, {0.0}, {4.0}).status == RTAMT_OK);
+        const Bytes before = save(fleet);
+        CHECK(rtamt_fleet_update_text(fleet.get(), nullptr, nullptr, nullptr, 0, nullptr, 0,
+                                      nullptr) == RTAMT_OK);
+        CHECK(rtamt_fleet_rows(fleet.get(), nullptr) == 0);
+        CHECK(save(fleet) == before);
+    }
+}
+
 TEST_CASE("verdicts come as rows, with the sample that made them known") {
     const FleetHandle fleet = create({Mode::eager, Domain::discrete});
     CHECK(take(fleet, {7, 8, 7}, {0.0, 5.0, 0.5}, {4.0, 0.0, 4.0}).status == RTAMT_OK);
@@ -253,6 +265,11 @@ TEST_CASE("a watermark is for bounds, and for causation in dense time") {
         const bool marks = made.mode == Mode::interval ||
                            (made.mode == Mode::causation && made.domain == Domain::dense);
         const FleetHandle fleet = create(made);
+        for (const double time : {not_a_number, std::numeric_limits<double>::infinity()}) {
+            CHECK(rtamt_fleet_watermark(fleet.get(), time, nullptr, 0) == RTAMT_REFUSED);
+            CHECK(std::string(rtamt_fleet_message(fleet.get())) ==
+                  "The watermark is not finite: give a number of seconds.");
+        }
         CHECK(take(fleet, {1, 2}, {0.0, 0.5}, {4.0, 9.0}).status == RTAMT_OK);
         std::array<rtamt_fleet_value, 4> values{};
         const std::size_t outputs = rtamt_fleet_outputs(fleet.get());

@@ -232,6 +232,53 @@ TEST_CASE("a sample that waits and has no value fails until it is discarded") {
     CHECK(rtamt_stream_waiting(stream.get()) == 3);
 }
 
+TEST_CASE("a sample that waited after a gap too long to be filled is named, and can be discarded") {
+    const Stream stream = create(period(), RTAMT_GAPS_HOLD);
+    std::vector<Row> rows;
+    send(stream, {{"a", 0, 1}, {"a", 20'000, 1}}, rows);
+    const Bytes before = save(stream);
+    std::size_t rejected = 0;
+    send(stream, {{"b", 0, 1}, {"a", 20'001, 1}}, rows, RTAMT_REFUSED, &rejected);
+    CHECK(rejected == 2);
+    const std::string message = rtamt_stream_message(stream.get());
+    CHECK(message.starts_with("Key 'a', a sample that waited, has a sample at "));
+    CHECK(message.ends_with(" s, and more than 10000 are missing after the one at 0 s: drop the "
+                            "key, so that its trace begins again."));
+    CHECK(save(stream) == before);
+    rtamt_stream_sample culprit{};
+    CHECK(rtamt_stream_culprit(stream.get(), &culprit) == RTAMT_OK);
+    CHECK(std::string(culprit.text) == "a");
+    CHECK(culprit.time == 20'000 * period());
+    CHECK(rtamt_stream_discard_text(stream.get(), "a", culprit.time) == RTAMT_OK);
+    const Stream prompt = create(0.0, RTAMT_GAPS_HOLD);
+    send(prompt, {{"a", 0, 1}}, rows);
+    send(prompt, {{"b", 0, 1}, {"a", 20'000, 1}}, rows, RTAMT_REFUSED, &rejected);
+    CHECK(rejected == 1);
+    CHECK(rtamt_stream_culprit(prompt.get(), &culprit) == RTAMT_REFUSED);
+}
+
+TEST_CASE("no sample that waited is blamed for a call without keys") {
+    const Stream stream = create(2 * period());
+    std::vector<Row> rows;
+    send(stream, {{"a", 0, 1}, {"a", 1, 0}, {"a", 2, 1}}, rows);
+    send(stream, {{"a", 3, 1}}, rows, RTAMT_UNDEFINED);
+    std::size_t released = 9;
+    std::size_t rejected = 9;
+    CHECK(rtamt_stream_update(stream.get(), nullptr, nullptr, nullptr, 3, nullptr, &released,
+                              &rejected) == RTAMT_REFUSED);
+    CHECK(released == 0);
+    CHECK(rejected == 3);
+    CHECK(rtamt_stream_culprit(stream.get(), nullptr) == RTAMT_REFUSED);
+    send(stream, {{"a", 3, 1}}, rows, RTAMT_UNDEFINED);
+    const char* const none[] = {nullptr};
+    released = rejected = 9;
+    CHECK(rtamt_stream_update_text(stream.get(), none, nullptr, nullptr, 1, nullptr, &released,
+                                   &rejected) == RTAMT_REFUSED);
+    CHECK(released == 0);
+    CHECK(rejected == 1);
+    CHECK(rtamt_stream_culprit(stream.get(), nullptr) == RTAMT_REFUSED);
+}
+
 TEST_CASE("wrong calls are refused and change nothing") {
     const Stream stream = create(period(), RTAMT_GAPS_REJECT, 2);
     std::vector<Row> rows;
@@ -252,6 +299,19 @@ TEST_CASE("wrong calls are refused and change nothing") {
     CHECK(
         refused({{"a", 2, 1}, {"a", 4, 1}}).find("'a' at index 0 of the batch has a sample at ") !=
         std::string::npos);
+    CHECK(refused({{"a", 1, 1}, {"\xE4", 1, 1}}) ==
+          "1: The key at index 1 of the batch is not UTF-8: encode it, or use whole numbers.");
+    const char* const keys[] = {"b", "a"};
+    const double times[] = {period(), 1.7e12};
+    const double ones[] = {1.0, 1.0};
+    const double* const columns[] = {ones, ones};
+    CHECK(rtamt_stream_update_text(stream.get(), keys, times, columns, 2, nullptr, nullptr,
+                                   &rejected) == RTAMT_REFUSED);
+    CHECK(rejected == 1);
+    CHECK(rtamt_stream_message(stream.get()) ==
+          std::string("Key 'a' at index 1 of the batch has the time 1700000000000 s, which is no "
+                      "time in seconds: divide it, if it is in another unit."));
+    CHECK(save(stream) == before);
     CHECK(rtamt_stream_watermark(stream.get(), std::nan(""), nullptr) == RTAMT_REFUSED);
     CHECK(rtamt_stream_update_text(stream.get(), nullptr, nullptr, nullptr, 1, nullptr, nullptr,
                                    nullptr) == RTAMT_REFUSED);
@@ -262,6 +322,13 @@ TEST_CASE("wrong calls are refused and change nothing") {
                                   RTAMT_GAPS_HOLD, &made, message,
                                   sizeof message) == RTAMT_REFUSED);
         CHECK(message == std::string("The lateness must be a number of seconds, 0 or more."));
+    }
+    for (const int other : {-1, 3, 7}) {
+        rtamt_gaps gaps{};
+        std::memcpy(&gaps, &other, sizeof gaps);
+        CHECK(rtamt_stream_create(program().data(), program().size(), 9, 0.1, 1.0, gaps, &made,
+                                  message, sizeof message) == RTAMT_REFUSED);
+        CHECK(message == std::string("There is no such policy for gaps."));
     }
     CHECK(rtamt_stream_size(nullptr) == 0);
     CHECK(rtamt_stream_late(nullptr) == 0);

@@ -33,7 +33,9 @@ def test_records_have_an_output_for_each_requirement() -> None:
     assert CFleet(fleet.compile(), 0, state=fleet.snapshot()).keys() == [7, 8]
 
 
-@pytest.mark.parametrize(("made", "moment"), [({}, "sample 0"), *((each, "0 s") for each in EARLY.values())])
+@pytest.mark.parametrize(
+    ("made", "moment"), [({}, "sample 0, time 0 s"), *((each, "0 s") for each in EARLY.values())]
+)
 def test_an_operation_without_a_value_is_named_as_it_is_written(made: dict[str, Any], moment: str) -> None:
     in_c = CFleet(rtamt.Fleet(rtamt.parse("sqrt(speed) <= 3", period="1s"), 9, **made).compile(), 9)
     with pytest.raises(RejectedError) as rejected:

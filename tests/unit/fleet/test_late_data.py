@@ -127,7 +127,8 @@ def test_a_held_value_fills_a_gap_of_whole_periods() -> None:
             [1, 1],
             rtamt.TraceError,
             "key 'a', a sample that waited: sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-            "give the right period, resample the trace, or use dense time (--time dense); or drop the key",
+            "give the right period, resample the trace, or use dense time (time='dense', "
+            "on the command line --time dense); or drop the key",
         ),
         ([1], [0], [1], rtamt.UsageError, "the keys of a fleet are all integers, all texts, or all bytes"),
     ],
@@ -265,6 +266,24 @@ def test_a_sample_that_waits_and_has_no_value_rejects_batches_until_it_is_discar
     update = fleet.update_many(["a", "b"], [3, 3], {"x": [1, 1]})
     assert update.released.keys.tolist() == ["a", "b"]
     assert update.released.values.tolist() == [2.0, -1.0]
+
+
+#: 0/0 where x and y are held.
+CHANGE = rtamt.parse("y / (x - delay[1](x, -1)) >= 3")
+
+
+def test_a_held_value_without_a_result_is_blamed_on_the_sample_after_the_gap() -> None:
+    """The error named the time of the held value, at which no sample waits: it could not be discarded."""
+    fleet = rtamt.Fleet(CHANGE, 3, lateness=2, gaps="hold")
+    fleet.update_many(["a", "a"], [0, 3], {"x": [1, 2], "y": [0, 0]})
+    with pytest.raises(rtamt.WaitedError, match="at sample 1, time 1 s: ") as caught:
+        fleet.update_many(["b", "a"], [0, 5], {"x": [1, 2], "y": [0, 0]})
+    assert (caught.value.key, caught.value.time) == ("a", 3.0)
+    assert fleet.discard("a", 3.0)
+    fleet = rtamt.Fleet(CHANGE, 3, lateness=0, gaps="hold")
+    fleet.update_many(["a"], [0], {"x": [1], "y": [0]})
+    with pytest.raises(rtamt.EvaluationError, match="key 'a' at index 1 of the batch: "):
+        fleet.update_many(["b", "a"], [0, 3], {"x": [1, 2], "y": [0, 0]})
 
 
 def test_a_discarded_sample_may_come_again_with_another_value() -> None:

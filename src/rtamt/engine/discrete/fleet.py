@@ -29,11 +29,12 @@ from rtamt.signals.samples import read_time
 from rtamt.signals.sampling_period import irregular
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from rtamt.engine.discrete.monitor import Monitor
+    from rtamt.engine.discrete.reorder_buffer import Ready
     from rtamt.language.formula import Formula
     from rtamt.signals.arrays import FloatArray
 
@@ -171,14 +172,14 @@ class DiscreteFleet:
         keys: NDArray[Any],
         times: FloatArray,
         columns: Mapping[str, FloatArray],
-        place: Callable[[int], int | None] = int,
+        ready: Ready | None = None,
         *,
         dated: bool = False,
     ) -> list[Known]:
         """Take samples that :meth:`check` accepts; return what became known of each output.
 
-        ``place``: where in the batch of the caller a sample is; None for one that waited. ``dated``: whether the
-        caller's times are dates. Raises for wrong data, and nothing has changed.
+        ``ready``: where they come from, if not from a batch of the caller. ``dated``: whether the caller's times are
+        dates. Raises for wrong data, and nothing has changed.
         """
         n = len(times)
         made = [
@@ -192,14 +193,16 @@ class DiscreteFleet:
         except ValueError as error:
             raise UsageError(sentence(error)) from None
         if rejected is not None:
-            raise self._error(keys, times, rejected, place(rejected[0]), dated=dated)
+            raise self._error(keys, times, rejected, ready, dated=dated)
         return made
 
     def _error(
-        self, keys: NDArray[Any], times: FloatArray, rejected: Any, place: int | None, *, dated: bool
+        self, keys: NDArray[Any], times: FloatArray, rejected: Any, ready: Ready | None, *, dated: bool
     ) -> Exception:
         """Return the error for a batch that the core rejected: that of a monitor, with key and index."""
         index, reason, sample, last, instruction, moment = rejected
+        came = index if ready is None else ready.sample(index)
+        place = index if ready is None else ready.place(came)
         where = place_of(keys[index].item(), place)
         time = float(times[index])
         if reason == "full":
@@ -208,7 +211,9 @@ class DiscreteFleet:
             failure = core().Undefined(instruction, sample)
             culprit = undefined(self._session.culprit(failure), at_sample(sample, moment, dated=dated))
             text = f"{where}: {culprit}"
-            return EvaluationError(text) if place is not None else WaitedError(text, keys[index].item(), time)
+            if place is not None:
+                return EvaluationError(text)
+            return WaitedError(text, keys[index].item(), float(times[came]))
         monitor = self._monitor
         error: Exception
         if reason == "value":

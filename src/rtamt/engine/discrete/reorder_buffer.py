@@ -24,17 +24,24 @@ class Ready(NamedTuple):
     """Samples that have waited long enough, those of each key in the order of their times.
 
     ``places``: of each sample in the batch where it is ``own``, and else of a sample of the same key; without a batch,
-    the place of the key.
+    the place of the key. ``fills``: whether it fills the gap before the next one that does not.
     """
 
     places: NDArray[np.int64]
     own: NDArray[np.bool_]
+    fills: NDArray[np.bool_]
     times: FloatArray
     columns: dict[str, FloatArray]
 
     def place(self, index: int) -> int | None:
         """Return where a sample is in the batch, None if it is not."""
         return int(self.places[index]) if self.own[index] else None
+
+    def sample(self, index: int) -> int:
+        """Return the index of a sample that came: this one, or the one after the gap that this one fills."""
+        while self.fills[index]:
+            index += 1
+        return index
 
 
 class ReorderBuffer:
@@ -117,8 +124,9 @@ class ReorderBuffer:
         return self._core.keys_at(ready.places), ready
 
     def _ready(self) -> Ready:
-        places, own, times, columns = self._core.ready()
-        return Ready(places, own.view(np.bool_), times, dict(zip(self._inputs, columns, strict=True)))
+        places, own, fills, times, columns = self._core.ready()
+        given = dict(zip(self._inputs, columns, strict=True))
+        return Ready(places, own.view(np.bool_), fills.view(np.bool_), times, given)
 
     def accept(self) -> None:
         """Keep the batch that was offered."""
