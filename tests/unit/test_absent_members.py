@@ -58,6 +58,14 @@ def test_a_row_without_any_member_is_a_sample_without_members(
             assert at_seconds(found.signal, len(samples)) == expected, (source, kind)
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("window", ["[1,3]", "(0,3]", "(0,4)"])
+def test_a_mean_behind_the_first_sample_of_a_member_is_its_first_value(window: str, backend: str) -> None:
+    parsed = rtamt.parse(f"{GROUP}float y\nexists v in cars: mean{window}(v.x) < y", backend=backend)
+    data = {"y": [0.0, 0.0, 0.0], "car_1.x": [None, -1.5, 2.0]}
+    assert parsed.evaluate(data).signal.values.tolist() == [-INF, 1.5, 1.5]
+
+
 def test_a_chunk_of_a_file_may_have_rows_without_any_member(tmp_path: Path) -> None:
     for source, data in given([6.0, None, 3.0], tmp_path).items():
         if source != "read NaN":

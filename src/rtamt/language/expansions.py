@@ -136,7 +136,7 @@ def mean(x: Formula, *rest: Any) -> Formula:
     """``sum(x) / sum(1)``, and ``init`` where the window is empty."""
     *init, i = rest
     total, count = (operator("sum")(each, interval=i) for each in (x, Const(1.0)))
-    if (i is None or i.begin == 0) and not init:
+    if (i is None or (i.begin == 0 and not i.begin_open)) and not init:
         return operator("div")(total, count)
     begun = GT(count, Const(0.0))
     mean = operator("div")(total, operator("max")(count, Const(1.0)))

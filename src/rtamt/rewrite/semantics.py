@@ -19,9 +19,9 @@ from types import MappingProxyType
 
 from rtamt.errors import EvaluationError, StlError, UsageError, choices, shown
 from rtamt.language.contents import variables
-from rtamt.language.formula import Apply, Const, Formula, located
+from rtamt.language.formula import Apply, Const, Formula, located, postorder
 from rtamt.language.operators import STL
-from rtamt.language.unwritten import COLUMN
+from rtamt.language.unwritten import COLUMN, PRESENT
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.typing import TypeAlias
 from rtamt.rewrite.desugar import spelled_out
@@ -60,7 +60,7 @@ class Relative:
 
     def __call__(self, predicate: Formula, roles: Roles) -> Formula:
         """Return the formula that replaces a predicate."""
-        read = {roles[name] for name in variables(predicate)}
+        read = {roles[name] for name in _read_by(predicate)}
         if not read <= self.measured | self.fixed:
             return Const(0.0)
         return truth(predicate) if read <= self.fixed else predicate
@@ -150,6 +150,12 @@ def role_of(name: str, roles: Roles) -> str:
     ('input', 'output')
     """
     return roles.get(name) or roles.get(name.partition(".")[0], "output")
+
+
+def _read_by(predicate: Formula) -> set[str]:
+    """Return the variables of a predicate; the presence of members, which quantifiers add to it, is none of them."""
+    present = [node for node in postorder(predicate) if isinstance(node, Apply) and node.op is PRESENT]
+    return {*variables(predicate)}.difference(*map(variables, present))
 
 
 def _apply_to_predicate(predicate: Formula, semantics: PredicateSemantics, roles: Roles) -> Formula:

@@ -322,6 +322,24 @@ def test_semantics_and_roles_hold_for_members():
         assert parsed.monitor(semantics=semantics).update_many(data).values.tolist() == expected
 
 
+@pytest.mark.parametrize(
+    "body", ["y >= 0", "ahead[0](y) >= 0", "sum[0,0](y) >= 0", "held(y, true) >= 0", "delay[1](y, -2) >= 0"]
+)
+@pytest.mark.parametrize("role", ["input", "output"])
+def test_the_presence_of_members_is_no_variable_of_a_predicate(body, role):
+    group = f'{role} group cars = "car_*" {{ float x }}'
+    text = f"input float u output float y {group} exists v in cars: {body}"
+    whole, gone = ({"u": [1, 1], "y": [-2, -2], "car_1.x": x} for x in ([1, 1], [1, None]))
+    for semantics, value in (
+        ("output_robustness", -2), ("output_vacuity", -2), ("input_robustness", -inf), ("input_vacuity", 0),
+    ):  # fmt: skip
+        parsed = rtamt.parse(text, semantics=semantics)
+        assert parsed.evaluate(whole).signal.values.tolist() == [value, value]
+        assert parsed.evaluate(gone).signal.values.tolist() == [value, -inf]
+        assert parsed.monitor().update_many(whole).values.tolist() == [value, value]
+        assert parsed.monitor().update_many(gone).values.tolist() == [value, -inf]
+
+
 def test_conditions_read_whether_a_quantifier_holds_and_not_its_robustness():
     text = "forall v in cars: (if (exists w in cars: forall u in cars: u.x >= 3) then 2 else 1) > v.x - 3"
     parsed = spec(text + " and (count t in cars: (forall s in cars: s.x >= 3)) >= 2")

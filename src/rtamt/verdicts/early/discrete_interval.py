@@ -37,6 +37,11 @@ class DiscreteIntervalMonitor(DiscreteIntervalSamples):
             raise self._start_only()
         backend = self._backend
         stamp = self._stamp(time)
+        if self._early:  # which instant of the trace this is depends on samples that may still come
+            raise UsageError(
+                f"the trace has not started at {stamp}: it does when no earlier sample can come; "
+                f"until then interval() gives the bounds at its start"
+            )
         seconds = stamp.seconds
         sample = backend.place(seconds) if backend.newest >= 0 else round(Fraction(seconds) / self._step)
         if sample is None or sample < 0:

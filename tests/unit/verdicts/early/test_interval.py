@@ -172,6 +172,25 @@ def test_wrong_sample_is_rejected_with_one_sentence(values, message):
     assert (monitor.interval(), monitor.samples) == (before, 1)
 
 
+@pytest.mark.parametrize("backend", ["cpp", "python"])
+@pytest.mark.parametrize("origin", [0, 1000])
+def test_no_bounds_at_an_instant_before_the_start_of_the_trace_is_known(origin: int, backend: str):
+    monitor = rtamt.parse("once[1:1](x >= 5)", period=1, backend=backend).monitor(
+        verdict="interval", ranges={"x": (0, 10)}, lateness=2
+    )
+    monitor.update(origin, x=7)
+    with pytest.raises(rtamt.UsageError) as error:
+        monitor.interval(origin)  # the first sample if no earlier one comes, -inf, else the second one
+    assert str(error.value) == (
+        f"the trace has not started at {origin} s: it does when no earlier sample can come; "
+        f"until then interval() gives the bounds at its start"
+    )
+    assert ends(monitor) == (-inf, -inf)
+    monitor.update(origin - 1, x=8)
+    monitor.watermark(origin)
+    assert ends(monitor, origin) == (3, 3)
+
+
 def test_sample_later_than_the_lateness_is_rejected_with_one_sentence():
     monitor = interval(lateness=2)
     for t in range(4):
