@@ -13,6 +13,7 @@ c_integers    arithmetic with integers as in C
 breach        Breach's files of signal temporal logic
 mtl           formulas of py-metric-temporal-logic
 dialect       operators of this language with the spellings of another
+labels        names of requirements as other tools read them
 written       the text of a specification that is read
 ============  =====================================================
 

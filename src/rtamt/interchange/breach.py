@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import PLAIN, Dialect, InexpressibleError, Word
+from rtamt.interchange.labels import label_of
 from rtamt.interchange.written import Names, ReadRequirement, require_period, specification_text
 from rtamt.language.formula import Apply, Const, Formula, Parameter, Span, Var, fold, postorder
-from rtamt.language.operators import Fixity
+from rtamt.language.operators import STL, Fixity
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy.dataclasses import dataclass, field
@@ -36,7 +37,7 @@ BREACH = Dialect(
     "Breach",
     (
         *(Word(name, name) for name in _FUNCTIONS),
-        *PLAIN,
+        *(word for word in PLAIN if word.name != "ne"),
         Word("not", "not"),
         Word("always", "alw_ alw always always_"),
         Word("eventually", "ev_ ev eventually eventually_"),
@@ -48,7 +49,7 @@ BREACH = Dialect(
         Word("implies", "->"),
     ),
     characters={"=>": "->"},
-    tokens=r"\s+|[A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|[<>=!]=|=>|/(?![/*])|-(?!>)|[][(),<>+*]",
+    tokens=r"\s+|[A-Za-z_]\w*|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])|[<>=]=|=>|/(?![/*])|-(?!>)|[][(),<>+*]",
     bounds=(r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\d+/\d+|[A-Za-z_]\w*", "numbers or parameters"),
 )  # fmt: skip
 
@@ -94,6 +95,12 @@ _NOTE = (
 _END_NOTE = (
     "at the end of the trace Breach extends signals by their last values; here windows end with the trace"
 )
+_EQUAL_NOTE = "Breach takes '==' as true within 1e-13, with a robustness of its own; here it is exact"
+
+
+def _notes(formulas: Iterable[Formula]) -> tuple[str, ...]:
+    equal = any(isinstance(node, Apply) and node.op.equates for node in postorder(*formulas))
+    return (_NOTE, _END_NOTE, *((_EQUAL_NOTE,) if equal else ()))
 
 
 def read_breach(text: str, period: Fraction | None = None) -> Conversion:
@@ -136,7 +143,7 @@ def read_breach(text: str, period: Fraction | None = None) -> Conversion:
         specification_text("Formulas of Breach.", written, names, period),
         tuple(each.name for each in written),
         tuple(rejected),
-        (_NOTE, _END_NOTE),
+        _notes(each.formula for each in written),
     )
 
 
@@ -343,29 +350,49 @@ def write_breach(spec: Specification, _component: str | None = None) -> Conversi
     names: dict[str, None] = {}
     values: dict[str, float] = {}
     converted: list[str] = []
+    formulas: list[Formula] = []
+    everything = postorder(*(each.formula for each in spec.document.requirements))
+    taken = {*_RESERVED, *(node.name for node in everything if isinstance(node, Var | Parameter))}
     for requirement in spec.document.requirements:
         nodes = postorder(requirement.formula)
         signals = [node.name for node in nodes if isinstance(node, Var)]
         try:
             _require_numbers(nodes)
-            text = _UNBOUNDED.sub(r"\1 ", BREACH.write(requirement.formula, parameters=True))
+            text = _UNBOUNDED.sub(
+                r"\1 ", BREACH.write(_without_unequal(requirement.formula), parameters=True)
+            )
             if _mixes_untils(text):
                 raise InexpressibleError("Breach reads 'until' and 'until_' in one chain in another order")
         except InexpressibleError as error:
             rejected.append(Rejection(requirement.name, str(error)))
             continue
         converted.append(requirement.name)
+        formulas.append(requirement.formula)
         if signals:
             text = re.sub(rf"\b({'|'.join(dict.fromkeys(signals))})\b", r"\1[t]", text)
-        label = re.sub(r"\W", "_", requirement.name)
+        label = label_of(requirement.name, taken)
+        taken.add(label)
         lines.append(f"{label} := {text}")
         names |= dict.fromkeys(signals)
         values |= {node.name: node.value for node in nodes if isinstance(node, Parameter)}
     head = [f"signal {', '.join(names)}"] if names else []
     head += [f"param {', '.join(f'{name} = {value!r}' for name, value in values.items())}"] if values else []
     return Conversion(
-        "\n".join([*head, "", *lines]) + "\n", tuple(converted), tuple(rejected), (_NOTE, _END_NOTE)
+        "\n".join([*head, "", *lines]) + "\n", tuple(converted), tuple(rejected), _notes(formulas)
     )
+
+
+def _without_unequal(formula: Formula) -> Formula:
+    """Return a formula with ``not (a == b)`` for ``a != b``, which Breach does not have."""
+
+    def step(node: Formula, args: tuple[Formula, ...]) -> Formula:
+        if not isinstance(node, Apply):
+            return node
+        if node.op is STL["ne"]:
+            return STL["not"](STL["eq"](*args))
+        return node.op(*args, interval=node.interval)
+
+    return fold(formula, step)
 
 
 def _require_numbers(nodes: Iterable[Formula]) -> None:

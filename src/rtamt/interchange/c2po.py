@@ -34,7 +34,7 @@ _NAME = lazy_pattern(r"[A-Za-z_]\w*")
 _ENUMERATION = lazy_pattern(r"(?P<name>[A-Za-z_]\w*)\s*:\s*\{(?P<members>[^{}]*)\}")
 _MEMBER = lazy_pattern(r"\s*(?P<label>[A-Za-z_]\w*)\s*(?::\s*(?P<code>\d+)\s*)?")
 #: An interval without its lower bound, which is 0.
-_UPPER_BOUND = lazy_pattern(r"\b([GFHOURS]\s*)\[\s*(\d+)\s*\]")
+_UPPER_BOUND = lazy_pattern(r"\b([GFHOURST]\s*)\[\s*(\d+)\s*\]")
 #: Limits beyond any file that is written by hand.
 _LONGEST = 2_000_000
 _LARGEST = 20_000
@@ -55,8 +55,12 @@ def _until(a: Formula, b: Formula, interval: Interval | None) -> Formula:
 
 def _since(a: Formula, b: Formula, interval: Interval | None) -> Formula:
     if interval is not None and interval.begin > 0:
-        raise InexpressibleError("'S' with a lower bound above 0 is not covered: write 'O' and 'H'")
+        raise InexpressibleError("'S' or 'T' with a lower bound above 0 is not covered: write 'O' and 'H'")
     return STL["since"](a, b, interval=interval)
+
+
+def _trigger(a: Formula, b: Formula, interval: Interval | None) -> Formula:
+    return STL["not"](_since(STL["not"](a), STL["not"](b), interval))
 
 
 def _previous(initial: Formula, a: Formula, _interval: Interval | None) -> Formula:
@@ -91,6 +95,8 @@ C2PO = Dialect(
     own=(
         (infix("release", "R", 60, "", "a R[0:5] b", bounds=STL["until"].bounds, tense=Tense.FUTURE,
                definition=STL["until"].definition), _release),
+        (infix("trigger", "T", 60, "", "a T[0:5] b", bounds=STL["since"].bounds, tense=Tense.PAST,
+               definition=STL["since"].definition), _trigger),
         (infix("power", "pow", 110, "", "x pow 2", operands=STL["mul"].operands, result=STL["mul"].result,
                definition=STL["pow"].definition), lambda a, b, _i: STL["pow"](a, b)),
         (infix("remainder", "\ue000", 110, "", "x % 2", operands=STL["mul"].operands, result=STL["mul"].result,
@@ -102,6 +108,22 @@ C2PO = Dialect(
     tokens=_TOKENS,
     bounds=(r"\d+", "whole numbers of samples"),
 )  # fmt: skip
+
+#: Other characters that its lexer reads as operators.
+_SYMBOLS = str.maketrans({
+    "¬": "!", "∧": "&&", "∨": "||", "→": "->", "↔": "<->", "≠": "!=", "≥": ">=", "≤": "<=",
+    "•": "*", "⋅": "*", "÷": "/",
+})  # fmt: skip
+_BITWISE = lazy_pattern(r"(?<!&)&(?!&)|(?<!\|)\|(?!\|)|[~^]|<<|>>")
+#: Its keywords that are not covered.
+_UNKNOWN = {
+    "TAU": "the time of a sample",
+    "M": "the mission time",
+    "rate": "a rate of change",
+    **dict.fromkeys(
+        ("foreach", "forsome", "forexactly", "foratleast", "foratmost"), "an aggregation over a set"
+    ),
+}
 
 _STREAM_NOTE = (
     "R2U2 reports a verdict for every instant; a requirement is satisfied if all of them are true, so that each "
@@ -120,7 +142,7 @@ class _File:
     integers: set[str] = field(default_factory=set)
     enumerations: dict[str, Enumeration] = field(default_factory=dict)
     definitions: dict[str, Formula] = field(default_factory=dict)
-    unknown: dict[str, str] = field(default_factory=dict)
+    unknown: dict[str, str] = field(default_factory=lambda: dict(_UNKNOWN))
     requirements: list[ReadRequirement] = field(default_factory=list)
     rejected: list[Rejection] = field(default_factory=list)
 
@@ -287,12 +309,17 @@ def _first_line(error: Exception) -> str:
 
 def _formula(file: _File, text: str, *, condition: bool) -> Formula:
     """Return the formula of an expression, with bounds in samples, as definitions have them."""
+    text = text.strip().translate(_SYMBOLS)
+    for match in _BITWISE.finditer(text):
+        raise SpecificationError(
+            f"'{match[0]}' is a bitwise operator, which is not covered", text, Span(*match.span())
+        )
     for match in _NAME.finditer(text):
         if match[0] in file.unknown:
             raise SpecificationError(
                 f"'{match[0]}' is {file.unknown[match[0]]}, which is not covered", text, Span(*match.span())
             )
-    written = _UPPER_BOUND.sub(r"\1[0,\2]", text.strip())
+    written = _UPPER_BOUND.sub(r"\1[0,\2]", text)
     formula = C2PO.read(
         written,
         condition=condition,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from rtamt.errors import UsageError
 from rtamt.interchange.c2po import C2PO, END_NOTE
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import InexpressibleError
+from rtamt.interchange.labels import label_of
 from rtamt.language.formula import Apply, Formula, Var, postorder
 from rtamt.language.operators import STL, Tense
 from rtamt.language.units.durations import decimal
@@ -18,9 +18,13 @@ from rtamt.language.value_types import Boolean, Enumeration
 from rtamt.lazy.patterns import lazy_pattern
 
 if TYPE_CHECKING:
+    import re
+
     from rtamt.specification import Specification
 
 _NAME = lazy_pattern(r"[A-Za-z_]\w*")
+#: Characters of a label; C2PO allows 50, and some may follow.
+_LONGEST_LABEL = 40
 #: What a variable cannot be called: the words of the lexer.
 _RESERVED = frozenset(
     ("STRUCT ENUM INPUT DEFINE FTSPEC PTSPEC TAU foreach forsome forexactly foratleast foratmost pow sqrt abs rate "
@@ -44,12 +48,12 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
         UsageError: the specification is in dense time.
 
     >>> import rtamt
-    >>> print(write_c2po(rtamt.parse("require R: always(x > 3 -> eventually[0:5](y > 3))", period=1)).text.strip())
+    >>> print(write_c2po(rtamt.parse("require Q: always(x > 3 -> eventually[0:5](y > 3))", period=1)).text.strip())
     INPUT
         x, y: float;
     <BLANKLINE>
     FTSPEC
-        R: x > 3.0 -> F[0,5](y > 3.0);
+        Q: x > 3.0 -> F[0,5](y > 3.0);
     """
     if not spec.domain.sampled:
         raise UsageError("C2PO is about samples: read the specification in discrete time")
@@ -59,11 +63,13 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
     rejected: list[Rejection] = []
     first: list[str] = []
     formulas: list[Formula] = []
+    everything = postorder(*(each.formula for each in spec.document.requirements))
+    taken = {*_RESERVED, *(node.name for node in everything if isinstance(node, Var))}
     for requirement in spec.document.requirements:
         formula = requirement.formula
         everywhere = isinstance(formula, Apply) and formula.op is STL["always"] and formula.interval is None
         inner = formula.args[0] if isinstance(formula, Apply) and everywhere else formula
-        name = re.sub(r"\W", "_", requirement.name)
+        name = label_of(requirement.name[:_LONGEST_LABEL], taken)
         try:
             section = _section(inner)
             _require_names(inner)
@@ -71,6 +77,7 @@ def write_c2po(spec: Specification, _component: str | None = None) -> Conversion
         except InexpressibleError as error:
             rejected.append(Rejection(requirement.name, str(error)))
             continue
+        taken.add(name)
         formulas.append(inner)
         converted.append(requirement.name)
         if not everywhere:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language, Sort, builtin
-from rtamt.language.parsing.grammar import is_number
+from rtamt.language.parsing.diagnostics import NO_CHAIN
+from rtamt.language.parsing.grammar import is_number, is_predicate
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
 from rtamt.language.unwritten import TRUTH
@@ -115,11 +116,20 @@ class Dialect:
         except SpecificationError as error:
             # No dialect has the colon that separates bounds here.
             message = error.message.replace("expected ':' or ','", "expected ','")
+            if message.startswith(NO_CHAIN):
+                message = self._no_chain
             raise SpecificationError(message, text, error.span) from None
         if condition and _is_plain_number(formula):
             raise SpecificationError(f"'{formula}' is a number, and a formula is needed", text, None)
         self._require_formulas(formula, text)
         return fold(formula, self._here)
+
+    @property
+    def _no_chain(self) -> str:
+        both = self._written["and"].spellings[0]
+        return (
+            f"{self.title} has no chains of comparisons: use parentheses, or join two of them with '{both}'"
+        )
 
     def _require_tokens(self, text: str) -> None:
         """Raise for what the lexer here reads and the dialect does not."""
@@ -146,10 +156,12 @@ class Dialect:
                     )
 
     def _require_formulas(self, formula: Formula, text: str) -> None:
-        """Raise for a number where the dialect has a formula, and for an interval without its ends."""
+        """Raise for a number where the dialect has a formula, an interval without its ends, and a chain."""
         for node in postorder(formula):
             if not isinstance(node, Apply) or node.op is TRUTH:
                 continue
+            if _is_chain(node):
+                raise SpecificationError(self._no_chain, text, node.span)
             if node.interval is not None and node.interval.is_open:
                 raise SpecificationError(
                     f"{self.title} has closed intervals only, unlike '{node}'", text, None
@@ -231,6 +243,18 @@ class Dialect:
 def _is_plain_number(formula: Formula) -> bool:
     """Return whether a formula is a number, and no Boolean."""
     return is_number(formula) and not (isinstance(formula, Const | Var) and formula.type is BOOLEAN)
+
+
+def _is_chain(node: Apply) -> bool:
+    """Return whether a formula was written as ``a < b < c``, which shares its middle."""
+    first, second = node.args if node.op.name == "and" else (None, None)
+    return (
+        isinstance(first, Apply)
+        and isinstance(second, Apply)
+        and is_predicate(first.op)
+        and is_predicate(second.op)
+        and first.args[1] is second.args[0]
+    )
 
 
 def _row(word: Word) -> Operator:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rtamt.errors import SpecificationError, UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import Dialect, InexpressibleError, Word
+from rtamt.interchange.labels import label_of
 from rtamt.interchange.written import Names, ReadRequirement, require_new, require_period, specification_text
 from rtamt.language.formula import Apply, Interval, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity
@@ -55,7 +56,7 @@ MTL = Dialect(
     tokens=r"\s+|[A-Za-z_][A-Za-z_\d]*|(?:\d*\.\d+|\d+)(?![\w.])|<->|->|< >|[][(),~¬@\ue001-\ue003&∧|∨→⇔^⊕+-]",
     bounds=(r"[-+]?(?:\d*\.\d+|\d+)|inf|[a-z\d]+", "numbers of seconds or inf"),
     meanings={"until": _until},
-    characters={"@": "\ue001", "< >": "F  ", "[ ]": "G  "},
+    characters={"@": "\ue001", "< >": "\ue003  ", "[ ]": "\ue002  "},
 )
 
 _SIGNED = lazy_pattern(r"([\[,]\s*)\+(?=[\d.])")
@@ -65,6 +66,7 @@ _APART = str.maketrans("XGF", "\ue001\ue002\ue003")
 _TOGETHER = {other: letter for letter, other in _APART.items()}
 _ATOM = lazy_pattern(r"\b[a-z_][A-Za-z_\d]*\b")
 _WORDS = frozenset({"and", "or", "iff", "xor", "inf"})
+_NAME = lazy_pattern(r"[\w.-]+")
 _LABEL = lazy_pattern(r"\s*(?P<name>[\w.-]+)\s*:\s*(?P<formula>.*)")
 _NOTE = "py-metric-temporal-logic holds each value until the next sample: use --time dense for verdicts between samples"
 _END_NOTE = "its signals keep their last values for ever; here windows end with the trace"
@@ -144,6 +146,7 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
     lines: list[str] = []
     rejected: list[Rejection] = []
     converted: list[str] = []
+    names = {requirement.name for requirement in spec.document.requirements}
     for requirement in spec.document.requirements:
         try:
             for node in postorder(requirement.formula):
@@ -158,7 +161,11 @@ def write_mtl(spec: Specification, _component: str | None = None) -> Conversion:
             rejected.append(Rejection(requirement.name, str(error)))
             continue
         converted.append(requirement.name)
-        lines.append(f"{requirement.name}: {text}")
+        label = requirement.name
+        if not _NAME.fullmatch(label):
+            label = label_of(label, names)
+            names.add(label)
+        lines.append(f"{label}: {text}")
     return Conversion(
         "\n".join(lines) + "\n",
         tuple(converted),
@@ -173,9 +180,13 @@ def _group(node: Formula, args: tuple[str, ...]) -> str:
         return str(node)
     if node.op is TRUTH:
         return args[0]
-    interval = node.interval
-    end = "" if interval is None else "inf" if interval.end is None else str(decimal(interval.end))
-    word = node.op.spellings[0] + ("" if interval is None else f"[{decimal(interval.begin)},{end}]")
+    word = node.op.spellings[0]
+    if node.interval is not None:
+        begin = decimal(node.interval.begin)
+        end = "inf" if node.interval.end is None else decimal(node.interval.end)
+        if begin is None or end is None:
+            raise InexpressibleError(f"{MTL.title} has decimal bounds only, unlike '{node}'")
+        word += f"[{begin},{end}]"
     if len(args) == 2:
         return f"({args[0]} {word} {args[1]})"
     return word if not args else f"{word}{args[0]}" if word == "~" else f"{word} {args[0]}"

@@ -10,6 +10,8 @@ import pytest
 from rtamt.cli import main
 
 SPECIFICATION = 'float "größe" [m]\nrequire R-1 "hält Maß": always("größe" >= 1)\n'
+#: FRET has no such names, but such texts.
+TITLED = 'float size [m]\nrequire R-1 "hält Maß": always(size >= 1)\n'
 
 
 @pytest.fixture
@@ -17,6 +19,7 @@ def ascii_output(monkeypatch, tmp_path):
     """Run the command line with a stdout that has ASCII only; return the exit code and what it prints."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "size.stl").write_text(SPECIFICATION, encoding="utf-8")
+    (tmp_path / "titled.stl").write_text(TITLED, encoding="utf-8")
     (tmp_path / "size.csv").write_text("time,größe\n0,1\n1,0\n", encoding="utf-8")
 
     def run(*arguments):
@@ -56,9 +59,9 @@ def test_text_for_people_is_escaped(arguments, code, line, ascii_output):
     [
         (["info", "size.stl", "--latex"], "f6", ""),
         (
-            ["convert", "size.stl", "--to", "fret"],
+            ["convert", "titled.stl", "--to", "fret"],
             "e4",
-            "rtamt: size.stl: note: one tick is one sample of 1 s\n",
+            "rtamt: titled.stl: note: one tick is one sample of 1 s\n",
         ),
     ],
 )

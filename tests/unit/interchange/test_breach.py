@@ -3,7 +3,7 @@
 import pytest
 
 import rtamt
-from rtamt.interchange.breach import read_breach
+from rtamt.interchange.breach import read_breach, write_breach
 
 
 def test_signals_of_breach_have_roles() -> None:
@@ -67,3 +67,34 @@ param limit = 5
         "last": "x > 5",
     }
     assert spec.parameters == {}
+
+
+def test_a_chain_of_comparisons_was_read_as_in_this_language() -> None:
+    (rejected,) = read_breach("P := alw (1 < x[t] < 3)").rejected
+    assert rejected.reason.splitlines()[0] == (
+        "Breach has no chains of comparisons: use parentheses, or join two of them with 'and'"
+    )
+    assert not read_breach("P := 1 < x[t] and x[t] < 3").rejected
+
+
+def test_unequal_numbers_were_written_with_a_symbol_that_breach_does_not_have() -> None:
+    found = write_breach(rtamt.parse("require P: always(x != 3 or y > 1)"))
+    assert found.text == "signal x, y\n\nP := alw (not(x[t] == 3) or y[t] > 1)\n"
+    assert str(rtamt.parse(read_breach(found.text).text).formula) == "always(not(x == 3) or y > 1)"
+    (rejected,) = read_breach("P := x[t] != 3").rejected
+    assert rejected.reason.splitlines()[0] == "Breach has no '!'"
+
+
+def test_equality_of_breach_has_a_note() -> None:
+    note = "Breach takes '==' as true within 1e-13, with a robustness of its own; here it is exact"
+    assert read_breach("P := x[t] == 3").notes[2:] == (note,)
+    assert write_breach(rtamt.parse("require P: x == 3")).notes[2:] == (note,)
+    assert len(read_breach("P := x[t] > 3").notes) == 2
+
+
+def test_formulas_of_breach_had_names_that_it_does_not_read() -> None:
+    text = 'require "P 1": x > 1\nrequire P_1: x > 2\nrequire "1st": x > 3\nrequire alw: x > 4\nrequire "x ": x > 5'
+    found = write_breach(rtamt.parse(text))
+    names = ["P_1", "P_1_2", "R_1st", "alw_2", "x_"]
+    assert [line.partition(" :=")[0] for line in found.text.splitlines()[2:]] == names
+    assert read_breach(found.text).converted == tuple(names)

@@ -6,6 +6,7 @@ import pytest
 
 import rtamt
 from rtamt.interchange.c2po import read_c2po
+from rtamt.interchange.c2po_writing import write_c2po
 
 _DECLARED = """\
 ENUM Mode: {Idle, Busy: 4};
@@ -141,3 +142,47 @@ def test_ints_of_c2po_were_numbers_with_a_fraction(i: int) -> None:
 )
 def test_operands_of_other_types_in_c2po_are_rejected(formula: str, message: str) -> None:
     assert reason(formula) == message
+
+
+@pytest.mark.parametrize(
+    ("formula", "here"),
+    [
+        ("a ∧ ¬b → c", "(a and not b -> c)"),
+        ("a ↔ b ∨ c", "(a <-> b or c)"),
+        ("x ≥ y ∧ x ≤ 3.0 ∧ x ≠ 2.0", "(x >= y and x <= 3 and x != 2)"),
+        ("x • 2.0 > y ÷ 2.0", "(x * 2 > y / 2)"),
+        ("a T[3] b", "(not(not a since[0:3] not b))"),
+    ],
+)
+def test_operators_of_c2po_were_rejected_as_unknown(formula: str, here: str) -> None:
+    assert read(formula) == here
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        (
+            "1.0 < x < 3.0",
+            "C2PO has no chains of comparisons: use parentheses, or join two of them with '&&'",
+        ),
+        ("a == x < 3.0", "C2PO has no chains of comparisons: use parentheses, or join two of them with '&&'"),
+        ("TAU > 3", "'TAU' is the time of a sample, which is not covered"),
+        ("G[0,M] a", "'M' is the mission time, which is not covered"),
+        ("foreach(q: s)(q)", "'foreach' is an aggregation over a set, which is not covered"),
+        ("i & 2 == j", "'&' is a bitwise operator, which is not covered"),
+        ("i << 2 > j", "'<<' is a bitwise operator, which is not covered"),
+        ("a T[1,3] b", "'S' or 'T' with a lower bound above 0 is not covered: write 'O' and 'H'"),
+    ],
+)
+def test_what_c2po_has_is_rejected_in_a_sentence_about_it(formula: str, message: str) -> None:
+    assert reason(formula) == message
+
+
+def test_specifications_of_c2po_had_labels_that_it_does_not_read() -> None:
+    text = 'bool a\nrequire "P 1": a\nrequire P_1: not a\nrequire "1st": a\nrequire R: a\nrequire %s: a' % (
+        "q" * 60
+    )
+    found = write_c2po(rtamt.parse(text, period=1))
+    labels = ("P_1", "P_1_2", "R_1st", "R_2", "q" * 40)
+    assert [line.strip().partition(":")[0] for line in found.text.splitlines()[4:]] == list(labels)
+    assert read_c2po(found.text).converted == labels

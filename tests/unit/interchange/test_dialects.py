@@ -59,8 +59,8 @@ def test_a_formula_of_c2po(formula: str, expected: str) -> None:
     ("formula", "reason"),
     [
         ("values[3] > 1", "'values' is of the type int[10], which is not covered"),
-        ("rate(x) > 1", "'rate' is not a function"),
-        ("a S[1,3] b", "'S' with a lower bound above 0 is not covered"),
+        ("rate(x) > 1", "'rate' is a rate of change, which is not covered"),
+        ("a S[1,3] b", "'S' or 'T' with a lower bound above 0 is not covered"),
         ("a &&", "expected an operand after '&&'"),
     ],
 )
@@ -91,11 +91,11 @@ def test_until_of_c2po_does_not_need_its_first_operand_before_the_interval() -> 
 
 
 def test_a_specification_as_c2po_and_back() -> None:
-    text = "bool a\nbool b\nfloat x\nrequire R: always(a -> always[0:3] b or x >= 2)\nrequire S: once[0:4](x < 1) and a"
+    text = "bool a\nbool b\nfloat x\nrequire P: always(a -> always[0:3] b or x >= 2)\nrequire Q: once[0:4](x < 1) and a"
     written = write_c2po(rtamt.parse(text, period=1))
     assert written.text == (
-        "INPUT\n    a, b: bool;\n    x: float;\n\nFTSPEC\n    R: a -> G[0,3] b || x >= 2.0;\n\n"
-        "PTSPEC\n    S: O[0,4](x < 1.0) && a;\n"
+        "INPUT\n    a, b: bool;\n    x: float;\n\nFTSPEC\n    P: a -> G[0,3] b || x >= 2.0;\n\n"
+        "PTSPEC\n    Q: O[0,4](x < 1.0) && a;\n"
     )
     again = rtamt.parse(read_c2po(written.text).text)
     assert [str(each.formula) for each in again.requirements.values()] == [
@@ -135,8 +135,8 @@ def test_a_requirement_with_a_name_that_c2po_does_not_read_is_left_out_alone() -
     ],
 )
 def test_numbers_of_c2po_have_no_exponents(number: str, written: str) -> None:
-    found = write_c2po(rtamt.parse(f"require R: always(x1e5 > {number})", period=1))
-    assert f"R: x1e5 > {written};" in found.text
+    found = write_c2po(rtamt.parse(f"require N: always(x1e5 > {number})", period=1))
+    assert f"N: x1e5 > {written};" in found.text
     again = rtamt.parse(read_c2po(found.text).text)
     assert again.formula == rtamt.parse(f"float x1e5 always(x1e5 > {number})").formula
 

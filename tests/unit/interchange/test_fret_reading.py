@@ -104,6 +104,10 @@ def test_durations_of_several_units_need_a_period() -> None:
         ('"a text of one\'s own"', "a text in quotes is not FRETish: it has no formula"),
         ("whenever a and when b the pump shall always satisfy x > 3", "'whenever' cannot be joined"),
         ("the pump shall always satisfy " + "(" * 200 + "x > 3", "expressions may nest 100 deep"),
+        (
+            "the pump shall always satisfy " + "a & " * 30_000 + "a",
+            "a sentence may have 500 operators: split the requirement",
+        ),
     ],
 )
 def test_what_is_no_sentence_is_left_out_with_the_reason_and_its_place(sentence: str, message: str) -> None:
@@ -177,3 +181,29 @@ def test_only_line_ends_end_a_sentence(character: str) -> None:
         f"R1: the pump shall{character}always satisfy x > 3\rR2: the pump shall always satisfy x > 4"
     )
     assert (found.converted, found.rejected) == (("R1", "R2"), ())
+
+
+def test_what_fret_defines_by_an_expression_was_a_signal_without_a_note() -> None:
+    variables = [
+        {"variable_name": "cruise", "idType": "Mode", "dataType": "boolean", "modeRequirement": "state = 4"},
+        {"variable_name": "total", "idType": "Internal", "dataType": "double", "assignment": "x + y"},
+        {"variable_name": "k", "idType": "Internal", "dataType": "double", "assignment": "2.5"},
+        {"variable_name": "other", "idType": "Internal", "dataType": "double", "assignment": "x"},
+    ]
+    requirement = {"reqid": "P", "fulltext": "in cruise mode the car shall always satisfy total > k"}
+    found = read_fret(json.dumps({"requirements": [requirement], "variables": variables}))
+    assert found.notes == (
+        "'cruise' is read from the trace; FRET defines it as 'state = 4'",
+        "'total' is read from the trace; FRET defines it as 'x + y'",
+    )
+
+
+def test_a_negative_number_of_samples_is_rejected() -> None:
+    assert "'persisted' takes a whole number of samples first" in reason(
+        "the pump shall always satisfy persisted(-3, a)"
+    )
+
+
+def test_a_sentence_with_as_many_operators_as_it_may_have_is_read() -> None:
+    found = read_fret("P: the pump shall always satisfy " + "a & " * 500 + "a")
+    assert found.converted == ("P",)

@@ -94,3 +94,37 @@ def test_dense_time_and_odd_components_are_rejected() -> None:
         write_fret(rtamt.parse("always(x > 1)", time="dense"))
     with pytest.raises(UsageError, match="'my pump' cannot be a component of FRETish"):
         write_fret(rtamt.parse("always(x > 1)"), "my pump")
+
+
+@pytest.mark.parametrize(
+    ("formula", "written"),
+    [
+        ("pow(-3, 2) > x", "-3 ^ 2 > x"),
+        ("-pow(3, 2) > x", "-(3 ^ 2) > x"),
+        ("-pow(x, 2) > y", "-x ^ 2 > y"),
+        ("x - -3 > -y", "x - -3 > -y"),
+    ],
+)
+def test_the_sign_of_a_number_binds_tighter_than_a_power(formula: str, written: str) -> None:
+    assert sentence(f"always({formula})") == f"The pump shall always satisfy {written}"
+    again = rtamt.parse(read_fret(f"P: the pump shall always satisfy {written}").text).formula
+    assert again == rtamt.parse(f"always({formula})").formula
+
+
+@pytest.mark.parametrize("name", ["tick", "Seconds", "next", "previous", "mod", "hour"])
+def test_keywords_of_fret_were_written_as_variables_and_components(name: str) -> None:
+    spec = rtamt.parse(f"bool {name}\nrequire P: always {name}")
+    assert write_fret(spec).rejected == (
+        ("P", f"'{name}' cannot be a variable of FRETish, where it is a keyword"),
+    )
+    with pytest.raises(UsageError, match=f"'{name}' cannot be a component of FRETish, where it is a keyword"):
+        write_fret(spec, name)
+
+
+@pytest.mark.parametrize("text", ["x > 1 and " * 4000 + "x > 1", "x + " * 4000 + "x > 1"])
+def test_thousands_of_operators_in_a_row_were_an_internal_error(text: str) -> None:
+    (rejected,) = write_fret(rtamt.parse(f"require P: always({text})")).rejected
+    assert (
+        rejected.reason == "more than 300 operators are in a row or inside one another: split the requirement"
+    )
+    assert sentence("always(" + "x > 1 and " * 290 + "a)").count("&") == 290

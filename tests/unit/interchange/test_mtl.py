@@ -3,7 +3,7 @@
 import pytest
 
 import rtamt
-from rtamt.interchange.mtl import read_mtl
+from rtamt.interchange.mtl import read_mtl, write_mtl
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,22 @@ def test_windows_and_weak_until_of_py_metric_temporal_logic_have_notes(formula: 
 def test_only_line_ends_end_a_formula(character: str) -> None:
     found = read_mtl(f"R1: a &{character}b\rR2: b")
     assert (found.converted, found.rejected) == (("R1", "R2"), ())
+
+
+@pytest.mark.parametrize(
+    ("formula", "here"), [("X[ ]a", "next always a"), ("G< >[1,2] a", "always eventually[1:2] a")]
+)
+def test_boxes_after_letters_were_read_as_one_name(formula: str, here: str) -> None:
+    found = rtamt.parse(read_mtl(formula).text).formula
+    assert found == rtamt.parse(f"bool a\n{here}").formula
+
+
+def test_a_bound_without_a_decimal_was_written_as_none() -> None:
+    found = write_mtl(rtamt.parse("bool a\nrequire P: eventually[0:1/3] a\nrequire Q: eventually[0:1/4] a"))
+    assert found.text == "Q: F[0,0.25] a\n"
+    assert found.rejected == (("P", "py-metric-temporal-logic has decimal bounds only, unlike 'F[0:1/3] a'"),)
+
+
+def test_names_with_spaces_were_written_and_not_read() -> None:
+    found = write_mtl(rtamt.parse('bool a\nrequire "P 1": a\nrequire P_1: not a\nrequire P-2.a: next a'))
+    assert read_mtl(found.text).converted == ("P_1_2", "P_1", "P-2.a")

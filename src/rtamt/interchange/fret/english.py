@@ -6,6 +6,7 @@ one of them, with its own formulas in their places, is that sentence.
 
 from __future__ import annotations
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -16,6 +17,7 @@ from rtamt.interchange.dialect import InexpressibleError
 from rtamt.interchange.fret.expressions import INFIX, KEYWORDS
 from rtamt.interchange.fret.formalize import TIMINGS, formalize, inside
 from rtamt.interchange.fret.lower import FUNCTIONS, is_function
+from rtamt.interchange.fret.sentence import TIME_UNITS
 from rtamt.language.formula import Apply, Const, Formula, Interval, Var, fold, size
 from rtamt.language.operators import STL, Sort
 from rtamt.language.units.durations import decimal
@@ -31,7 +33,13 @@ if TYPE_CHECKING:
 _RESPONSE, _MODE, _CONDITION, _STOP = (Var(f"?{name}") for name in ("response", "mode", "condition", "stop"))
 #: The duration of placeholders in samples, which no bound of a formula of one has by chance.
 _SAMPLES = 1_000_003
-_NAME = lazy_pattern(r"[A-Za-z][\w.%]*")
+#: How deep formulas may nest, in which operators in a row nest, too.
+_MOST_DEEP = 300
+_NAME = lazy_pattern(r"[A-Za-z][\w.%]*", re.ASCII)
+#: What FRET's lexer reads as a word of its own, more than sentences here have.
+_RESERVED = frozenset(
+    "false first last next occurrence of previous probability same timepoint true what with".split()
+).union(KEYWORDS, INFIX, *((unit, f"{unit}s") for unit in TIME_UNITS))
 _SYMBOLS = {name: (strength, symbol) for symbol, (strength, name) in reversed(INFIX.items())}
 _CALLS = {operator: function for function, operator in reversed(FUNCTIONS.items())}
 _WORDS = {"in": "While", "notin": "Except while", "before": "Before", "after": "After"}
@@ -72,6 +80,10 @@ def sentence_of(formula: Formula, component: str, step: Fraction) -> Written:
     >>> sentence_of(formula, "pump", Fraction(1)).sentence
     'When c >= 1 the pump shall within 3 ticks satisfy r >= 1'
     """
+    if fold(formula, _depth) > _MOST_DEEP:
+        raise InexpressibleError(
+            f"more than {_MOST_DEEP} operators are in a row or inside one another: split the requirement"
+        )
     reason: InexpressibleError | None = None
     for shape in _shapes():
         found = _Match(step)
@@ -81,6 +93,10 @@ def sentence_of(formula: Formula, component: str, step: Fraction) -> Written:
             except InexpressibleError as error:
                 reason = reason or error
     raise reason or InexpressibleError("no timing of FRETish has this meaning")
+
+
+def _depth(_node: Formula, args: tuple[int, ...]) -> int:
+    return 1 + max(args, default=0)
 
 
 @lru_cache(maxsize=1)
@@ -222,7 +238,10 @@ def expression_of(formula: Formula, step: Fraction, strength: int = 0) -> str:
     if name == "not":
         return _bracket(f"!{below(args[0], 8)}", 4, strength)
     if name == "neg":
-        return _bracket(f"-{below(args[0], 9)}", 8, strength)
+        text = below(args[0], 9)
+        if text[0].isdigit() and not isinstance(args[0], Const):
+            text = f"({text})"  # the sign would belong to the number
+        return _bracket(f"-{text}", 8, strength)
     if formula.op is TRUTH:
         return expression_of(args[0], step, strength)
     name = name.removeprefix("holds_")
@@ -303,8 +322,14 @@ def _number(value: float) -> str:
 
 
 def _quote_name(name: str) -> str:
-    if not _NAME.fullmatch(name) or name.lower() in KEYWORDS or name.lower() in INFIX:
-        raise InexpressibleError(
-            f"'{name}' cannot be a variable of FRETish: use letters, digits and underscores"
-        )
+    reason = why_no_name(name)
+    if reason:
+        raise InexpressibleError(f"'{name}' cannot be a variable of FRETish{reason}")
     return name
+
+
+def why_no_name(name: str) -> str:
+    """Return why FRET does not read a name, to follow what it names; empty if it does."""
+    if not _NAME.fullmatch(name):
+        return ": use letters, digits and underscores"
+    return ", where it is a keyword" if name.lower() in _RESERVED else ""

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rtamt.errors import UsageError
 from rtamt.interchange.conversion import Conversion, Rejection
 from rtamt.interchange.dialect import InexpressibleError
-from rtamt.interchange.fret.english import sentence_of
+from rtamt.interchange.fret.english import sentence_of, why_no_name
 from rtamt.language.formula import Const, Var, postorder
 from rtamt.language.units.durations import decimal
 from rtamt.language.value_types import BOOLEAN, Enumeration
@@ -49,10 +48,9 @@ def write_fret(spec: Specification, component: str | None = None) -> Conversion:
     if not spec.domain.sampled:
         raise UsageError("FRETish is about samples: read the specification in discrete time")
     component = component or spec.document.name or "system"
-    if not re.fullmatch(r"[A-Za-z][\w.%]*", component):
-        raise UsageError(
-            f"'{component}' cannot be a component of FRETish: use letters, digits and underscores"
-        )
+    reason = why_no_name(component)
+    if reason:
+        raise UsageError(f"'{component}' cannot be a component of FRETish{reason}")
     step = Fraction(1) if spec.period is None else Fraction(spec.period)
     requirements: list[dict[str, str]] = []
     rejected: list[Rejection] = []

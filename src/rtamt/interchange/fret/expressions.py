@@ -24,6 +24,8 @@ _TOKEN = lazy_pattern(
 )
 #: How deep parentheses may nest.
 _DEPTH = 100
+#: How many infix operators a sentence may have: those in a row nest, too.
+_OPERATORS = 500
 
 #: Each infix operator: how tightly it binds, and its name in the operator table.
 INFIX: dict[str, tuple[int, str]] = {
@@ -89,6 +91,7 @@ class ExpressionParser:
         self.tokens = tokens_of(text)
         self.index = 0
         self._depth = 0
+        self._operators = 0
 
     @property
     def token(self) -> Token:
@@ -124,6 +127,9 @@ class ExpressionParser:
         left = self._operand(tightness)
         while (infix := INFIX.get(self.token.text.lower())) is not None and infix[0] >= tightness:
             strength, name = infix
+            self._operators += 1
+            if self._operators > _OPERATORS:
+                raise self.error(f"a sentence may have {_OPERATORS} operators: split the requirement")
             operator = self.next()
             right = self.expression(strength + 1)
             left = Expression("operation", name, (left, right), Span(left.span.start, right.span.end))
@@ -146,6 +152,11 @@ class ExpressionParser:
                 raise self.error(f"{token} negates a formula, not a number")
             return self._prefix("not", _NOT)
         if token.text == "-":
+            digits = self.tokens[self.index + 1]
+            if digits.kind == "number" and digits.span.start == token.span.end:
+                # The sign belongs to the number: -3 ^ 2 is 9.
+                self.index += 2
+                return Expression("number", f"-{digits.text}", (), Span(start, digits.span.end))
             return self._prefix("neg", _MINUS)
         if token.text == "(":
             self.next()

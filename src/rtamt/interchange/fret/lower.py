@@ -205,7 +205,7 @@ class Lowering:
             if first.kind == "truth":
                 return STL["prev" if first.text == "true" else "s_prev"](p)
             return either(STL["s_prev"](p), both(STL["prev"](STL["false"]()), self.formula(first)))
-        if first.kind != "number" or not float(first.text).is_integer():
+        if first.kind != "number" or float(first.text) < 0 or not float(first.text).is_integer():
             raise self._error(f"'{call.text}' takes a whole number of samples first", first.span)
         n, zero = int(float(first.text)) * self._step, 0 * self._step
         in_scope = p if self._scope is None else both(p, self._scope)

@@ -14,7 +14,7 @@ from rtamt.interchange.fret.formalize import formalize, inside
 from rtamt.interchange.fret.lower import Lowering, Types
 from rtamt.interchange.fret.sentence import Duration, Sentence, parse_sentence
 from rtamt.interchange.written import Names, ReadRequirement, specification_text
-from rtamt.language.formula import Apply, postorder
+from rtamt.language.formula import Apply, Var, postorder
 from rtamt.language.parsing.lexer import LINE_END
 from rtamt.language.units.durations import decimal
 from rtamt.lazy.dataclasses import dataclass
@@ -51,13 +51,14 @@ class FretRequirement:
 
 @dataclass(frozen=True, slots=True)
 class FretVariable:
-    """A variable as FRET stores it; ``value``: of one that represents a number."""
+    """A variable as FRET stores it; ``value``: of one that represents a number, ``definition``: of any other one."""
 
     name: str
     role: str = ""
     boolean: bool = False
     number: bool = False
     value: float | None = None
+    definition: str = ""
 
 
 def read_fret(text: str, period: Fraction | None = None) -> Conversion:
@@ -101,6 +102,12 @@ def read_fret(text: str, period: Fraction | None = None) -> Conversion:
     notes = [UNITS_NOTE] if any(sentence.duration for _, sentence in sentences.values()) else []
     if any(isinstance(node, Apply) and node.op.equates for node in postorder(*formulas.values())):
         notes.append(EXACT_NOTE)
+    used = {node.name for node in postorder(*formulas.values()) if isinstance(node, Var)}
+    notes += [
+        f"'{each.name}' is read from the trace; FRET defines it as '{each.definition}'"
+        for each in variables
+        if each.definition and each.name in used
+    ]
     written = [
         ReadRequirement(name, formulas[name], requirement.sentence, requirement.rationale)
         for name, (requirement, _) in sentences.items()
@@ -166,7 +173,9 @@ def _variables(stored: Any) -> Iterator[FretVariable]:
             boolean = kind in _BOOLEAN or role == "mode"
             number = not boolean and (kind in _NUMBERS or value is not None)
             name = _text(each, "variable_name")
-            yield FretVariable(name, _ROLES.get(role, ""), boolean, number, None if boolean else value)
+            value = None if boolean else value
+            defined = _text(each, "modeRequirement") or _text(each, "assignment") if value is None else ""
+            yield FretVariable(name, _ROLES.get(role, ""), boolean, number, value, defined)
 
 
 def _text(stored: Mapping[str, Any], key: str) -> str:

@@ -9,7 +9,7 @@ from rtamt.language.parsing.lexer import NAME, NO_ARROW, is_word, quoted
 from rtamt.lazy.typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rtamt.language.operators import Language
     from rtamt.language.parsing.lexer import Token
@@ -38,6 +38,8 @@ _MEANT = {
             "×·⋅": "*",
             "÷": "/",
             "−–—": "-",
+            "^": "pow(x, 2) for a power",
+            "~": "not",
             "“”„'‘’`": 'names in double quotes, such as "engine speed"',
             "{}": "intervals in brackets, such as always[0:5], and formulas in parentheses",
         }.items()
@@ -46,16 +48,36 @@ _MEANT = {
 }
 
 
+#: Replacements for operators of other notations that are two tokens here: before an operand, and between two.
+_MEANT_BEFORE = {"[]": "always", "<>": "eventually"}
+_MEANT_BETWEEN = {"**": "pow(x, 2) for a power", "<>": "!=", "=<": "<=", "==>": "->"}
+
+
 def no_operand(tokens: Tokens, at: int) -> Complaint:
     """Return the error for a missing operand."""
     token = tokens[at]
     bad = _bad_character(token)
     if bad is not None:
         return bad
+    foreign = _foreign(tokens, at, _MEANT_BEFORE) or _foreign(tokens, at - 1, _MEANT_BETWEEN)
+    if foreign is not None:
+        return foreign
+    hint = "; write abs(x) for an absolute value" if token.text == "|" else ""
     if at == 0:
-        message = "the text is empty" if token.kind == "end" else f"expected a formula, got {token}"
+        message = "the text is empty" if token.kind == "end" else f"expected a formula, got {token}{hint}"
         return message, token.span
-    return f"expected an operand after {tokens[at - 1]}, got {token}", token.span
+    return f"expected an operand after {tokens[at - 1]}, got {token}{hint}", token.span
+
+
+def _foreign(tokens: Tokens, at: int, meant: Mapping[str, str]) -> Complaint | None:
+    """Return the error for an operator of another notation that is read as two tokens."""
+    if at < 0 or at + 1 >= len(tokens) or tokens[at].end != tokens[at + 1].start:
+        return None
+    first, second = tokens[at : at + 2]
+    if first.text + second.text not in meant:
+        return None
+    text = first.text + second.text
+    return f"'{text}' is no operator; write {meant[text]}", Span(first.start, second.end)
 
 
 def no_operator(language: Language, tokens: Tokens, at: int, expected: str = "the end") -> Complaint:
@@ -203,8 +225,12 @@ def _misspelled(language: Language, before: Token, token: Token) -> tuple[str, T
     return "", token
 
 
+#: How the message for comparisons in a row begins.
+NO_CHAIN = "only comparisons in one direction chain"
+
+
 def no_chain(text: str, whole: Span, middle: Span, symbol: Span) -> str:
     """Return the message for comparisons in a row that have no common direction."""
     first, between = text[whole.start : middle.end], text[middle.start : middle.end]
     second = f"{between} {text[symbol.start : symbol.end]} {text[symbol.end : whole.end].strip()}"
-    return f"only comparisons in one direction chain; write {first} and {second}, or use parentheses"
+    return f"{NO_CHAIN}; write {first} and {second}, or use parentheses"
