@@ -18,6 +18,7 @@ from rtamt.signals.time_columns import column_name, unit_called
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
+    from typing import TextIO
 
     from rtamt.signals.arrays import FloatArray
 
@@ -28,6 +29,8 @@ _ENCLOSED = lazy_pattern(r'"(?:[^"]|"")*"|\[[^\]]*\]|\([^)]*\)')
 
 BLOCK = 65_536  # lines at a time: enough to keep numpy busy, little enough to keep memory flat
 _CELLS = 2**22  # at a time, where lines are long
+#: Characters of a line: the end of a log that was cut off may be any number of zeros.
+LONGEST_LINE = 2**26
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,19 @@ class Column:
     position: int
     skip_nan: bool = False
     lenient: bool = False
+
+
+def lines_of(file: TextIO, name: str, before: int = 0) -> Iterator[str]:
+    """Yield the lines of a file; raise :class:`TraceError` at one without an end. ``before``: lines read before."""
+    number = before
+    while line := file.readline(LONGEST_LINE):
+        number += 1
+        if len(line) == LONGEST_LINE:
+            raise TraceError(
+                f"{name}, line {number}: the line has {LONGEST_LINE:,} characters or more; the file is damaged, or no "
+                f"CSV: export it again"
+            )
+        yield line
 
 
 # ---- the header ----------------------------------------------------------------------------------
@@ -80,7 +96,7 @@ def read_header(lines: Iterator[str], file: str, before: int = 0) -> tuple[Heade
     try:
         cells = next(reader)
     except csv.Error as error:
-        raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {error}") from None
+        raise TraceError(f"{file}, line {count - 1 + reader.line_num}: {_reason(error)}") from None
     header = Header(file, tuple(map(column_name, cells)), delimiter, count - 1 + reader.line_num)
     if not all(is_value(cell) for cell in header.names if cell):
         return header, lines
@@ -208,7 +224,15 @@ def rows(lines: Iterator[str], header: Header, before: int) -> Iterator[tuple[in
                 empty.clear()
             yield line, row
     except csv.Error as error:
-        raise header.error(before + reader.line_num, str(error)) from None
+        raise header.error(before + reader.line_num, _reason(error)) from None
+
+
+def _reason(error: csv.Error) -> str:
+    """Return what is wrong with a row, by the error of its reader."""
+    if str(error).startswith("field larger"):
+        most = f"{csv.field_size_limit():,}"
+        return f"a cell has more than {most} characters: close the quote that it begins with, or leave its column out"
+    return str(error)
 
 
 def _check_quotes(lines: Sequence[str], header: Header, last: int) -> None:

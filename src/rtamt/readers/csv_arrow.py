@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rtamt.lazy.modules import np
 from rtamt.lazy.tuples import NamedTuple
+from rtamt.readers.csv import LONGEST_LINE
 from rtamt.readers.csv_cells import LARGEST
 
 if TYPE_CHECKING:
@@ -72,6 +73,8 @@ def _blocks(arrow: Any, path: str, header: Header, columns: Sequence[Column]) ->
                 return
             kept = filled - size
             rest = buffer[size:filled]
+            if kept >= LONGEST_LINE:  # which is an error line by line
+                return
             if kept == len(buffer):
                 buffer = bytearray(2 * kept)
             buffer[:kept] = rest

@@ -17,6 +17,7 @@ from rtamt.readers.csv import (
     blocks,
     is_boolean,
     is_number,
+    lines_of,
     plain,
     read_header,
     rows,
@@ -46,7 +47,8 @@ _BEGINNING = 1 << 20
 
 def open_csv(path: str) -> Source:
     """Open a CSV file; columns whose first lines hold no number at all are text."""
-    with open(path, encoding="utf-8-sig", newline="", errors="replace") as lines:
+    with open(path, encoding="utf-8-sig", newline="", errors="replace") as file:
+        lines = lines_of(file, path)
         header, rest = read_header(lines, path)
         sample = [row for _, row in islice(rows(rest, header, header.line), _SAMPLE)]
     if any("\ufffd" in name for name in header.names):
@@ -102,7 +104,8 @@ def _chunks(path: str, header: Header, wanted: Sequence[Field]) -> Iterator[list
         line, end = line + block.lines, block.end
     with open(path, "rb") as file:
         file.seek(end)
-        with TextIOWrapper(file, "utf-8" if end else "utf-8-sig", newline="") as lines:
+        with TextIOWrapper(file, "utf-8" if end else "utf-8-sig", newline="") as text:
+            lines = lines_of(text, path, line if end else 0)
             rest = lines if end else read_header(lines, path)[1]
             yield from _blocks(rest, header, wanted, columns, line)
 

@@ -14,7 +14,7 @@ from rtamt.errors import TraceError, choices
 from rtamt.lazy.dataclasses import replace
 from rtamt.readers.dates import is_date
 from rtamt.readers.rows import table_of_rows
-from rtamt.readers.source import Source, library
+from rtamt.readers.source import Source, library, printable
 from rtamt.signals.time_columns import column_name, is_stamps, may_be_stamps, split_unit
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Bytes of a workbook's parts, unpacked: a few MB of a zip file can expand to any number of GB.
 MOST_BYTES = 2**30
+#: How much smaller than its content a large part can be: what repeats itself that often is no table.
+MOST_RATIO, LARGE_PART = 500, 2**26
 #: Rows that Excel can hold.
 MOST_ROWS = 2**20
 #: The limit on cells up to the last one of each row: a lone cell far to the right implies thousands of empty ones.
@@ -35,6 +37,8 @@ _SAVED = 0.01
 
 #: Bytes of a sheet that are examined at a time.
 _BLOCK = 2**20
+#: A row with its number, which is optional.
+_ROW = re.compile(rb'<row(?: [^>]*)? r="(?P<number>[0-9]{1,9})"')
 #: A cell with a formula and no value; the value of one that gives a text may be empty.
 _NO_VALUE = re.compile(
     rb'<c r="(?P<cell>[A-Z0-9]+)"(?![^>]*t="str")[^>]*>\s*<f\b(?:[^>]*/>|[^>]*>[^<]*</f>)\s*'
@@ -53,6 +57,8 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
         found = {page.title: page for page in book.worksheets}
         for page in book.worksheets:
             page.reset_dimensions()  # what the file claims them to be, not what they are
+        for page in [found[sheet]] if sheet in found else book.worksheets:
+            _check_rows(path, page)
         name = _choose(path, found, sheet)
         _check_formulas(path, found[name])
         rows = _filled_rows(found[name], path)
@@ -82,13 +88,42 @@ def open_excel(path: str, sheet: str | None = None) -> Source:
 
 def _check_size(path: str, file: Any) -> None:
     with ZipFile(file) as archive:
-        size = sum(part.file_size for part in archive.infolist())
+        parts = archive.infolist()
+    for part in parts:
+        if part.file_size > max(LARGE_PART, MOST_RATIO * part.compress_size):
+            raise TraceError(
+                f"{path} has a part '{printable(part.filename)}' that unpacks to {part.file_size / 2**20:,.1f} MiB "
+                f"from {part.compress_size / 2**20:,.1f} MiB: save its sheets as CSV"
+            )
+    size = sum(part.file_size for part in parts)
     if size > MOST_BYTES:
         raise TraceError(
             f"{path} unpacks to {size / 2**20:,.1f} MiB, more than the {MOST_BYTES // 2**20:,} MiB that are read of "
             f"a workbook: save its sheets as CSV, or split it"
         )
     file.seek(0)
+
+
+def _check_rows(path: str, page: Any) -> None:
+    """Raise :class:`TraceError` at a row that openpyxl would keep in memory, whatever its length, or leave out."""
+    last, size = 0, 0
+    for text in _pieces(page):
+        for match in _ROW.finditer(text):
+            number = int(match["number"])
+            if number <= last:
+                raise TraceError(
+                    f"row {number} in the sheet '{page.title}' of {path} comes after row {last}: open the workbook in "
+                    f"a spreadsheet and save it"
+                )
+            last = number
+        if b"</sheetData>" in text:
+            return
+        size = 0 if b"</row>" in text else size + len(text)
+        if size > LARGE_PART:
+            raise TraceError(
+                f"a row after row {last} in the sheet '{page.title}' of {path} has more than {LARGE_PART // 2**20} "
+                f"MiB: delete what is far from the table, or save the sheet as CSV"
+            )
 
 
 def _check_formulas(path: str, page: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import stat
 from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -51,6 +52,9 @@ class Format:
         choice = {"sheet": sheet} if self.sheets else {"recover": recover} if self.recovers else {}
         guard = partial(self.guard, path)
         with guard():
+            # Libraries have words of their own for links to nothing, folders and files that do not exist.
+            if stat.S_ISDIR(os.stat(path).st_mode) and self is not BAG:
+                raise IsADirectoryError
             source = opener(path, **choice)
         return guarded(source, guard)
 

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Messages that are read at a time where a bag is read in chunks.
 _MESSAGES = 4096
+#: Bytes within which the first line of a bag of ROS 1 ends.
+_FIRST_LINE = 64
 #: Messages among which the first stamp that is not 0 shows the clock of a topic, and one soon after 0 that it starts
 #: at 0, so that stamps were not left at 0.
 _FIRST_STAMPS = 100
@@ -139,8 +141,10 @@ def _existing(path: str) -> Path:
                 f"'{path}' is a folder without {METADATA}, so that it is no bag of ROS 2; name a file"
             )
     else:
-        with open(path, "rb"):
-            pass
+        with open(path, "rb") as file:
+            # Its library reads the first line, however long that is.
+            if path.lower().endswith(".bag") and b"\n" not in file.read(_FIRST_LINE):
+                raise ValueError("the file does not begin with a line such as #ROSBAG V2.0")
     return Path(path)
 
 

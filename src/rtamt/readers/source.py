@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -163,7 +164,13 @@ def opening(path: str, what: str, remedy: str = "copy or export it again") -> It
 
 
 def missing_file(path: str) -> TraceError:
-    """Return the error for a file that does not exist, with the nearest name in its folder."""
+    """Return the error for what is no file: nothing, with the nearest name in its folder, or something else."""
+    if os.path.isdir(path):
+        return TraceError(f"'{path}' is a directory, expected a file")
+    if os.path.exists(path):
+        return TraceError(f"'{path}' is a pipe or a device, expected a file")
+    if os.path.islink(path):
+        return TraceError(f"'{path}' is a link to '{os.readlink(path)}', which does not exist")
     return TraceError(f"there is no file '{path}'{nearest_file(path)}")
 
 

@@ -22,6 +22,10 @@ _TIMESTAMP = "timestamp"
 
 #: Bytes of the header of a message: its size and its type.
 _HEADER = 3
+#: Bytes of a message at most.
+_LONGEST = _HEADER + 2**16 - 1
+#: Bytes of the end of a file that are examined at a time.
+_BLOCK = 2**20
 #: How many times the size of a file is read of it at most.
 _AGAIN = 16
 #: Fields of all topics together, each element of an array one: a hundred times what an autopilot logs.
@@ -78,23 +82,41 @@ def _make_reader(core: Any, path: str) -> Any:
 class _Watched:
     """A file that notes whether it ends in the middle of a message, and that is not read for ever.
 
-    Where it finds damage, pyulog goes back and reads on one byte later: for ever if that is near the end.
+    Where it finds damage, pyulog goes back and reads on one byte later: for ever if that is near the end. Of zeros at
+    the end, which a logger without power leaves by the MB, it reads those that may belong to a message.
     """
 
     def __init__(self, file: BinaryIO) -> None:
         self.cut = False
         self._file = file
-        self._left = _AGAIN * fstat(file.fileno()).st_size + 2**20
+        size = fstat(file.fileno()).st_size
+        self._end = min(size, _end_without_zeros(file, size) + _LONGEST)
+        self._left = _AGAIN * self._end + 2**20
         self.seek, self.tell, self.close = file.seek, file.tell, file.close
 
     def read(self, size: int) -> bytes:
-        data = self._file.read(size)
+        data = self._file.read(min(size, max(0, self._end - self._file.tell())))
         # At the end of an intact file, pyulog reads three bytes of a further header and finds none.
         self.cut |= len(data) < size and (len(data) > 0 or size != _HEADER)
         self._left -= size
         if self._left < 0:
             raise TraceError(f"'{self._file.name}' cannot be read as PX4 ULog: too much of it is damaged")
         return data
+
+
+def _end_without_zeros(file: BinaryIO, size: int) -> int:
+    """Return where the zeros at the end of a file begin; the file is at its beginning afterwards."""
+    end = size
+    while end > 0:
+        begin = max(0, end - _BLOCK)
+        file.seek(begin)
+        kept = len(file.read(end - begin).rstrip(b"\0"))
+        if kept:
+            end = begin + kept
+            break
+        end = begin
+    file.seek(0)
+    return end
 
 
 def _table(topic: Any) -> Table:

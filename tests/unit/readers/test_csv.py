@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import rtamt
 from rtamt.errors import TraceError
 from rtamt.readers import csv as csv_module
+from rtamt.readers import csv_arrow
 from tests.unit.cli import invoke
 from tests.unit.readers.csv_files import as_lists, read
 
@@ -213,7 +214,10 @@ def test_messages(write, monkeypatch, content, names, message, block):
 def test_message_for_a_field_too_long_for_a_csv_file(write):
     with pytest.raises(TraceError) as error:
         read(write('time,x\n0,"' + "1" * 200_000 + '"\n'), ["x"])
-    assert str(error.value) == "log.csv, line 2: field larger than field limit (131072)"
+    assert str(error.value) == (
+        "log.csv, line 2: a cell has more than 131,072 characters: close the quote that it begins with, or leave its "
+        "column out"
+    )
 
 
 @pytest.mark.parametrize("character", ["\u2028", "\u2029", "\x85", "\x1c", "\x1f", "\u3000"])
@@ -380,3 +384,20 @@ def test_a_header_in_utf_16_is_not_reported_as_a_missing_column(tmp_path, capsys
     assert (answer.code, "is not UTF-8 text" in answer.err) == (2, True)
     path.write_text("time,x\ufffd\n0,1\n", encoding="utf-8")
     assert rtamt.parse("x > 0").evaluate(rtamt.read(path, names={"x": "x\ufffd"})).robustness == 1
+
+
+@pytest.mark.parametrize(
+    ("before", "line"), [("", 1), ("time,x\n0,1\n", 3), ("time,x\n" + "0,1\n" * 20_000, 20_002)]
+)
+def test_a_line_without_an_end_was_read_into_memory(write, monkeypatch, before, line):
+    monkeypatch.setattr(csv_module, "LONGEST_LINE", 2**20)
+    monkeypatch.setattr(csv_arrow, "LONGEST_LINE", 2**20)
+    path = write(before)
+    with open(path, "ab") as file:
+        file.truncate(file.tell() + 2**22)  # zeros, as after a crash
+    with pytest.raises(TraceError) as error:
+        read(path, ["x"])
+    assert str(error.value) == (
+        f"log.csv, line {line}: the line has 1,048,576 characters or more; the file is damaged, or no CSV: export it "
+        f"again"
+    )

@@ -399,7 +399,7 @@ def test_a_column_without_numbers_is_said_to_be_left_out():
         rtamt.parse("always(y > 0)").evaluate(trace)
     assert str(error.value) == (
         "'y' of a dict was left out, because its values are not all numbers in the range of doubles; "
-        "columns=['y'] names the first that is none"
+        "columns=['y'] names the first that is none, and types=spec.types reads members of enumerations by their names"
     )
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.parse("always(left > 0)").evaluate(trace)

@@ -5,6 +5,7 @@ import os
 import pytest
 
 import rtamt
+from rtamt.errors import TraceError
 
 KNOWN = ".csv, .tsv, .txt, .parquet, .pq, .arrow, .feather, .ipc, .xlsx, .xlsm, .ulg, .mf4, .mdf, .bag, .db3, .mcap"
 
@@ -53,3 +54,20 @@ def test_a_pipe_is_rejected_before_anything_waits_for_its_writer(tmp_path, monke
     assert str(error.value) == (
         "'log.csv' is a pipe, expected a file; 'rtamt monitor SPEC < PIPE' reads it as a stream"
     )
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet", "arrow", "xlsx", "ulg", "mf4", "mcap", "bag"])
+def test_a_link_to_nothing_and_a_folder_were_damaged_files(tmp_path, suffix):
+    path = tmp_path / f"log.{suffix}"
+    path.symlink_to("nowhere")
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(path)
+    assert str(caught.value) == f"'{path}' is a link to 'nowhere', which does not exist"
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(TraceError) as caught:
+        rtamt.read(path)
+    expected = f"'{path}' is a directory, expected a file"
+    if suffix == "bag":
+        expected = f"'{path}' is a folder without metadata.yaml, so that it is no bag of ROS 2; name a file"
+    assert str(caught.value) == expected

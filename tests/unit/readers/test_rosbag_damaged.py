@@ -121,3 +121,15 @@ def test_messages_that_the_metadata_counts_and_the_bag_lacks_are_noted(tmp_path)
     trace = rtamt.read(folder)
     assert trace["/speed.data"].values.tolist() == [5, 4]
     assert trace.losses == ("2 of the 4 messages on /speed that the bag counts are not in it",)
+
+
+def test_a_bag_without_a_line_at_its_beginning_was_read_to_its_end(tmp_path):
+    path = tmp_path / "log.bag"
+    with open(path, "wb") as file:
+        file.truncate(2**40)
+    with pytest.raises(TraceError) as error:
+        rtamt.read(path)
+    assert str(error.value) == (
+        f"'{path}' cannot be read as ROS bag: the file does not begin with a line such as #ROSBAG V2.0; the file is "
+        f"damaged, incomplete or of another kind: copy or export it again"
+    )

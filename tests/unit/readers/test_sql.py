@@ -143,3 +143,17 @@ def test_postgresql_says_what_is_wrong(log):
     with pytest.raises(rtamt.TraceError) as error:
         rtamt.read(log, query="select z from log")
     assert str(error.value) == f"cannot read from '{log}': column \"z\" does not exist"
+
+
+def test_a_folder_and_a_link_were_files_that_do_not_exist(tmp_path):
+    (tmp_path / "a.db").mkdir()
+    (tmp_path / "b.db").symlink_to("nowhere")
+    os.mkfifo(tmp_path / "c.db")
+    for name, message in [
+        ("a.db", "is a directory, expected a file"),
+        ("b.db", "is a link to 'nowhere', which does not exist"),
+        ("c.db", "is a pipe or a device, expected a file"),
+    ]:
+        with pytest.raises(rtamt.TraceError) as error:
+            rtamt.read(f"sqlite:///{tmp_path}/{name}", query="select 1")
+        assert str(error.value) == f"'{tmp_path}/{name}' {message}"

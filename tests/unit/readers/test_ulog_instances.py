@@ -98,3 +98,13 @@ def test_a_renamed_instance_leaves_the_group(tmp_path):
     topics = [("battery", i, "float x", [(1_000_000, VOLTS[i]), (2_000_000, VOLTS[i])]) for i in (0, 1)]
     trace = rtamt.read(ulog(tmp_path / "flight.ulg", topics)).rename({"v": "battery.x"})
     assert rtamt.parse(EVERY).evaluate(trace).robustness == 16 - 14
+
+
+def test_zeros_at_the_end_of_a_flight_log_took_seconds_per_megabyte(tmp_path):
+    samples = [(1_000_000 * k, 0.0) for k in range(1, 4)]  # whose last bytes are zeros, too
+    path = ulog(tmp_path / "flight.ulg", [("t", 0, "float x", samples)])
+    with open(path, "r+b") as file:
+        file.truncate(2**27)
+    trace = rtamt.read(path)
+    assert trace["t.x"].values.tolist() == [0.0, 0.0, 0.0]
+    assert trace.losses[0].startswith("the file is damaged, read up to 3 s, as far as possible")
