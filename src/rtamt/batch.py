@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rtamt.errors import StlError, TraceError, UsageError, no_specification, placed, shown
 from rtamt.results import Result, requirements_of
 from rtamt.signals.arrays import is_number
+from rtamt.signals.data_errors import refuse_one_recording
 from rtamt.specification_data import over_data, require_times, sample
 from rtamt.verdicts.offline import findings_of
 
@@ -64,6 +65,9 @@ def evaluate_batch(
         raise UsageError(f"workers is {shown(workers)}; give a number of threads, 1 or more")
     if not isinstance(traces, Iterable):
         raise UsageError(f"traces is {shown(traces)}; give a list of recordings")
+    refuse_one_recording(
+        traces, "traces", "; spec.evaluate_batch(data) takes a mapping to arrays of shape (traces, samples)"
+    )
     if not hasattr(spec, "evaluate"):
         raise no_specification(spec)
     count = int(workers or os.cpu_count() or 1)

@@ -319,10 +319,10 @@ class Result(_Slots):
         """Plot the signals, the robustness over time and the explanation; needs ``pip install 'rtamt[plot]'``.
 
         Signals that a predicate compares share a panel. Below them are the robustness of the formula and of at
-        most ``rows - 1`` sub-formulas: named ones, those that the explanation mentions, and those
-        next to the top. Intervals in which a formula does not hold are shaded (Boolean semantics), the sufficient
-        cause is yellow, and a diamond marks the critical point; infinities are drawn at the edge. ``at``: the
-        instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
+        most ``rows - 1`` sub-formulas: violated requirements, other named ones, those that the explanation
+        mentions, and those next to the top. Intervals in which a formula does not hold are shaded (Boolean
+        semantics), the sufficient cause is yellow, and a diamond marks the critical point; infinities are drawn at
+        the edge. ``at``: the instant to explain, as in :meth:`explain`. ``start`` and ``end``: the visible time range;
         ``zoom="violation"``: the range around the first violation. ``bounds``: also draw the bounds of the
         robustness at the start, as known after each sample, a band that narrows to it, and the sample that decided
         the verdict. ``figure``: the matplotlib figure to draw into, by default a new one of pyplot.
@@ -338,7 +338,7 @@ class Result(_Slots):
         >>> [axis.get_title(loc="left") for axis in figure.axes]
         ['', 'always(x >= 3)', 'x >= 3']
         """
-        from rtamt.plot.figure import draw, new_figure
+        from rtamt.plot.figure import draw, figure_for
         from rtamt.plot.scene import scene
 
         self._require_one_start("plot")
@@ -350,7 +350,7 @@ class Result(_Slots):
             )
         seen = scene(self, at, bounds=bounds)
         window = seen.window(start, end, zoom)
-        canvas = new_figure() if figure is None else figure
+        canvas: Figure = figure_for(figure)
         draw(seen, rows, canvas, window)
         return canvas
 
@@ -365,12 +365,12 @@ class Result(_Slots):
         >>> [text.get_text() for text in result.plot_tree(figure=Figure()).axes[0].texts][2:4]
         ['φ and ψ', '✗ −1']
         """
-        from rtamt.plot.figure import new_figure
+        from rtamt.plot.figure import figure_for
         from rtamt.plot.scene import scene
         from rtamt.plot.tree import draw_tree
 
         self._require_exact("draw the tree of")
-        canvas = new_figure() if figure is None else figure
+        canvas: Figure = figure_for(figure)
         draw_tree(scene(self, at), canvas)
         return canvas
 
@@ -400,6 +400,15 @@ class Result(_Slots):
         if not is_number(formula):
             formula = self.specification._apply_semantics(formula, self.semantics)
         return self.specification._signals_of((formula,), self.trace)[0]
+
+    #: A result is no sequence of its signals.
+    __iter__ = __contains__ = None
+
+    def __bool__(self) -> bool:
+        """Raise :class:`UsageError`: by default every object is true, also the result of a violation."""
+        raise UsageError(
+            "a result is neither true nor false; read result.satisfied, result.robustness or result.interval"
+        )
 
     def _require_exact(self, what: str) -> None:
         """Raise :class:`UsageError` if the samples give only bounds, or requirements start at different times."""

@@ -79,6 +79,8 @@ def parse(
     >>> [spec.evaluate(never_asked, semantics=s).robustness for s in ("standard", "output_robustness")]
     [1.0, inf]
     """
+    if text.__class__ is not str or text.endswith(".stl"):
+        _refuse_path(text)
     check_language(language)
     check_backend(backend)
     check_constants({} if constants is None else constants)
@@ -100,6 +102,16 @@ def parse(
     )
     spec._check_bounds()
     return spec
+
+
+def _refuse_path(text: object) -> None:
+    """Raise :class:`UsageError` for the path of a file, which a formula of one name or a quotient may look like."""
+    if isinstance(text, os.PathLike):
+        raise UsageError(f"a formula is text, got the path {shown(os.fspath(text))}; rtamt.load reads a file")
+    if isinstance(text, str) and not any(mark.isspace() or mark in '()<>=;"' for mark in text):
+        raise UsageError(
+            f"'{text}' is the name of a file; write rtamt.load({text!r}) (if a formula is meant, put it in parentheses)"
+        )
 
 
 def domain_of(

@@ -258,7 +258,11 @@ class SpecificationText:
     @property
     def horizon(self) -> float:
         """Seconds after t at which ρ at t is known online; inf if never. The paper's Definition 3."""
-        depth = horizon(self._grounded(self.domain), self.period or Fraction(1))
+        return self._horizon_in(self.domain, self.period)
+
+    def _horizon_in(self, domain: TimeDomain, period: Fraction | None) -> float:
+        """Return the horizon in a time domain, such as that of a recording, by default with a period of 1 s."""
+        depth = horizon(self._grounded(domain), period or Fraction(1))
         return float("inf") if depth is None else float(depth)
 
     def pastified(self, period: Duration | None = None) -> Formula:

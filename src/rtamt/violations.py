@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import UsageError, shown
 from rtamt.language.formula import Apply
 from rtamt.language.operators import STL
 from rtamt.signals.episodes import WindowTracker
@@ -59,4 +60,6 @@ def first_violation(result: Result) -> Any:
     >>> rtamt.first_violation(rtamt.parse("always(x >= 3)").evaluate({"time": [0, 1, 2], "x": [5, 1, 0]}))
     1.0
     """
+    if not hasattr(type(result), "_first_violation"):
+        raise UsageError(f"expected a result, got {shown(result)}; write spec.evaluate(data)")
     return result._first_violation

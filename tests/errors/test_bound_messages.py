@@ -38,6 +38,25 @@ def test_the_period_may_also_come_with_the_data() -> None:
 
 
 @pytest.mark.parametrize(
+    "use",
+    [
+        lambda spec: spec.monitor(),
+        lambda spec: spec.monitor(verdict="eager"),
+        lambda spec: spec.evaluate({"x": [1, 2]}),
+        lambda spec: rtamt.Fleet(spec, 1),
+    ],
+)
+def test_a_period_that_nobody_gave_is_named_as_the_default(use) -> None:
+    with pytest.raises(rtamt.BoundError) as info:
+        use(rtamt.parse("always[0:500ms](x >= 3)"))
+    assert str(info.value) == (
+        "The operator bound must be a multiple of the sampling period: 500 ms is not a whole number of periods of 1 s; "
+        "change the bound or the period (the period is the default; period=, or on the command line --period, sets it)"
+        "\n  line 1, column 7:\n    always[0:500ms](x >= 3)\n          ^^^^^^^^^"
+    )
+
+
+@pytest.mark.parametrize(
     ("text", "settings", "sentence", "marks"),
     [
         (

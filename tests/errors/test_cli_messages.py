@@ -122,7 +122,8 @@ def run(capsys, monkeypatch, tmp_path):
         (
             ["check", "x", "good.csv", "--period", "2"],
             "good.csv: sample 1 at 1 s is 1 s after the one before, expected 2 s (within 10%): "
-            "give the right period, resample the trace, or use dense time (--time dense)",
+            "give the right period, resample the trace, or use dense time (time='dense', "
+            "on the command line --time dense)",
         ),
         (
             ["monitor", "always(x)", "--verdict", "delayed"],
@@ -223,7 +224,8 @@ def test_messages_about_the_first_sample(run, stdin, message, backend):
         (
             '{"time": 2, "x": 1}',
             "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-            "give the right period, resample the trace, or use dense time (--time dense)",
+            "give the right period, resample the trace, or use dense time (time='dense', "
+            "on the command line --time dense)",
         ),
         ('{"time": Infinity, "x": 1}', "the time column 'time' is inf at sample 1, expected a finite number"),
     ],

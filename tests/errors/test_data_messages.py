@@ -51,7 +51,7 @@ OFFLINE = [
     (
         {"time": [0, 1, 2, 3.5], "x": [1, 2, 3, 4], "y": [1, 2, 3, 4]},
         "sample 3 at 3.5 s is 1.5 s after the one before, expected 1 s (within 10%): "
-        "give the right period, resample the trace, or use dense time (--time dense)",
+        "give the right period, resample the trace, or use dense time (time='dense', on the command line --time dense)",
     ),
     ([1, 2], "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got list"),
 ]
@@ -85,7 +85,7 @@ ONLINE = [
     (
         (2.0, {"x": 1, "y": 1}),
         "sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-        "give the right period, resample the trace, or use dense time (--time dense)",
+        "give the right period, resample the trace, or use dense time (time='dense', on the command line --time dense)",
     ),
 ]
 
@@ -127,7 +127,7 @@ def test_wrong_chunk_leaves_the_monitor_as_it_was(backend: str) -> None:
     )
     assert check_message(rtamt.TraceError, monitor.update_many, {"time": [2, 4], "x": [9, 9]}) == (
         "sample 3 at 4 s is 2 s after the one before, expected 1 s (within 10%): "
-        "give the right period, resample the trace, or use dense time (--time dense)"
+        "give the right period, resample the trace, or use dense time (time='dense', on the command line --time dense)"
     )
     assert check_message(rtamt.TraceError, monitor.update_many, None) == (
         "expected a mapping from variable to values, such as {'time': [...], 'x': [...]}, got NoneType"
@@ -200,8 +200,9 @@ def test_the_callers_time_stamps_are_never_changed() -> None:
 
 
 def test_the_path_of_a_specification_given_as_its_text() -> None:
-    assert check_message(rtamt.TraceError, rtamt.robustness, "speed.stl", {"x": [1]}) == (
-        "the data has no 'speed.stl'; rtamt.load('speed.stl') reads a file"
+    assert check_message(rtamt.UsageError, rtamt.robustness, "speed.stl", {"x": [1]}) == (
+        "'speed.stl' is the name of a file; write rtamt.load('speed.stl') (if a formula is meant, put it in "
+        "parentheses)"
     )
 
 

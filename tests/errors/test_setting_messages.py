@@ -1,5 +1,7 @@
 """A setting of the wrong kind is answered by a sentence, never by a TypeError or AttributeError from inside."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,62 @@ SAID = {
         "'3' is not watched; the monitor watches 'x'",
     ),
     "sub-formula": (lambda: rtamt.parse("x").evaluate({"x": [1]})[None], "a formula is text, got NoneType"),
+    "text of a new specification": (
+        lambda: rtamt.Specification("always(x >= 3)"),
+        "a specification is made by rtamt.parse(text) or rtamt.load(path), got 'always(x >= 3)'",
+    ),
+    "data of a new trace": (
+        lambda: rtamt.Trace({"x": [1, 2]}),
+        "a trace is made by rtamt.read(data), got {'x': [1, 2]}",
+    ),
+    "values of a new trace": (
+        lambda: rtamt.Trace([1, 2]),
+        "a trace is made by rtamt.read(data), got [1, 2]",
+    ),
+    "name of a file": (
+        lambda: rtamt.parse("limits.stl"),
+        "'limits.stl' is the name of a file; write rtamt.load('limits.stl') (if a formula is meant, put it in "
+        "parentheses)",
+    ),
+    "path of a file": (
+        lambda: rtamt.parse("specs/limits.stl"),
+        "'specs/limits.stl' is the name of a file; write rtamt.load('specs/limits.stl') (if a formula is meant, put it "
+        "in parentheses)",
+    ),
+    "path for a text": (
+        lambda: rtamt.parse(Path("limits.stl")),
+        "a formula is text, got the path 'limits.stl'; rtamt.load reads a file",
+    ),
+    "axes for a figure": (
+        lambda: rtamt.parse("x").evaluate({"x": [1]}).plot(figure="axes"),
+        "figure is 'axes', expected a figure of matplotlib, such as plt.figure() or axes.figure",
+    ),
+    "axes for a figure, tree": (
+        lambda: rtamt.parse("x").evaluate({"x": [1]}).plot_tree(figure="axes"),
+        "figure is 'axes', expected a figure of matplotlib, such as plt.figure() or axes.figure",
+    ),
+    "truth of a result": (
+        lambda: bool(rtamt.parse("x").evaluate({"x": [1]})),
+        "a result is neither true nor false; read result.satisfied, result.robustness or result.interval",
+    ),
+    "specification for a result": (
+        lambda: rtamt.first_violation(rtamt.parse("x")),
+        "expected a result, got <specification x>; write spec.evaluate(data)",
+    ),
+    "one recording for several, batch": (
+        lambda: rtamt.evaluate_batch(rtamt.parse("x"), {"x": [1]}),
+        "traces is a dict; give a list of recordings; spec.evaluate_batch(data) takes a mapping to arrays of shape "
+        "(traces, samples)",
+    ),
+    "file for several recordings": (
+        lambda: rtamt.evaluate_batch(rtamt.parse("x"), "log.csv"),
+        "traces is a str; give a list of recordings; spec.evaluate_batch(data) takes a mapping to arrays of shape "
+        "(traces, samples)",
+    ),
+    "one recording for several, chunks": (
+        lambda: rtamt.check_stream(rtamt.parse("x"), rtamt.read({"x": [1]})),
+        "chunks is a Trace; give a list of recordings, or an iterator; spec.evaluate(data) takes one recording",
+    ),
     "path": (lambda: rtamt.load(None), "the path of a specification is None, expected text or a Path"),
     "text for a specification, batch": (
         lambda: rtamt.evaluate_batch("x >= 3", [{"x": [1]}]),
@@ -139,3 +197,14 @@ def test_an_operator_that_makes_nan_of_infinities_has_robustness_and_no_verdict(
     assert str(info.value).startswith(
         "there is no verdict, for which true counts as +inf and false as -inf: the operator 'avg' gave NaN: "
     )
+
+
+def test_a_formula_of_one_name_that_ends_like_a_file_is_read_in_parentheses():
+    assert rtamt.parse("(message.stl)").input_names == ("message.stl",)
+    assert rtamt.parse("x >= 3 or message.stl").input_names == ("x", "message.stl")
+
+
+@pytest.mark.parametrize("take_apart", [list, lambda result: "x" in result])
+def test_a_result_is_no_sequence_of_its_signals(take_apart):
+    with pytest.raises(TypeError):
+        take_apart(rtamt.parse("x >= 3").evaluate({"x": [1]}))

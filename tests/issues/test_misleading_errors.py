@@ -18,7 +18,8 @@ def test_a_bound_that_no_machine_can_keep(backend: str) -> None:
     spec = rtamt.parse("once[0:1e30] x", backend=backend)
     message = (
         "1000000000000000000000000000000 s is 1e+30 periods of 1 s, more than can be counted; "
-        "shorten the bound, leave it open with inf, or choose a longer period\n"
+        "shorten the bound, leave it open with inf, or choose a longer period (the period is the default; "
+        "period=, or on the command line --period, sets it)\n"
         "  line 1, column 5:\n"
         "    once[0:1e30] x\n"
         "        ^^^^^^^^"

@@ -44,6 +44,9 @@ _SPECIFICATION_SUFFIXES = (".stl",)
 #: Titles under which the help lists options.
 SPECIFICATION, READING, OUTPUT = "the specification", "reading recordings", "output"
 METRICS = "metrics (pip install 'rtamt[metrics]')"
+#: What SPEC is for most commands.
+_SPECIFICATION = "a specification file (.stl), a pack ('rtamt packs' lists them), or a formula in quotes"
+
 _LIKE_A_PATH = lazy_pattern(r"[\w.~:\\/-]*[\\/][\w.~:\\/-]*")
 
 
@@ -71,14 +74,11 @@ SPECIFICATION_DEFAULTS: Mapping[str, Any] = MappingProxyType(
 )
 
 
-def add_specification_options(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
-    """Add SPEC and the options for reading it; ``nargs``: "?" where it may be left out."""
-    parser.add_argument(
-        "spec",
-        metavar="SPEC",
-        nargs=nargs,
-        help="a specification file (.stl), a pack ('rtamt packs' lists them), or a formula in quotes",
-    )
+def add_specification_options(
+    parser: argparse.ArgumentParser, nargs: str | None = None, what: str = _SPECIFICATION
+) -> None:
+    """Add SPEC and the options for reading it; ``nargs``: "?" where it may be left out; ``what`` it may be."""
+    parser.add_argument("spec", metavar="SPEC", nargs=nargs, help=what)
     group = options(parser, SPECIFICATION)
     group.add_argument(
         "--period", metavar="DURATION", help="the sampling period: seconds, or with a unit, such as 100ms"

@@ -47,7 +47,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EPILOG.format(
         formats="; ".join(f"{name} ({each.about})" for name, each in FORMATS.items())
     )
-    add_specification_options(parser)
+    add_specification_options(
+        parser,
+        what="with --from: a file of that format; with --to: a specification file, a pack or a formula",
+    )
     parser.add_argument("--from", dest="source", metavar="FORMAT", help="the format of the file that is read")
     parser.add_argument(
         "--to", dest="target", metavar="FORMAT", help="the format of the file that is written"

@@ -77,8 +77,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.description = _DESCRIPTION
     parser.epilog = _EPILOG.format(warnings=", ".join(f"{rule.code} ({rule.about})" for rule in ALL))
-    add_specification_options(parser)
-    parser.add_argument("more", metavar="SPEC", nargs="*", help="more specifications")
+    add_specification_options(parser, what="a specification file (.stl)")
+    parser.add_argument("more", metavar="SPEC", nargs="*", help="more files")
     add_time_option(parser)
     parser.add_argument("--online", action="store_true", help="reject formulas that a monitor cannot run")
     parser.add_argument(

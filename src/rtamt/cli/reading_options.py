@@ -23,6 +23,7 @@ from rtamt.readers.dates import EXAMPLE, date_in
 from rtamt.readers.formats import is_bag
 from rtamt.readers.read import choice, opened
 from rtamt.readers.selection import has_one_clock, select, with_clock_of
+from rtamt.signals.coding import NO_TYPES
 from rtamt.signals.datetimes import nanoseconds_of
 from rtamt.signals.epoch import is_epoch
 
@@ -191,12 +192,21 @@ def names_of(texts: Sequence[str]) -> dict[str, str]:
     return names
 
 
-def recording(args: argparse.Namespace, source: str) -> Trace:
-    """Return all that is in a recording, read and resampled as the options select."""
+def recording(args: argparse.Namespace, source: str, spec: Specification | None = None) -> Trace:
+    """Return all that is in a recording, read and resampled as the options select.
+
+    ``spec``: one over members of groups, which declares the types of signals.
+    """
     require_time_base(args, (), ())
     with opened(source, args.sheet, args.query, args.recover) as found:
+        types = NO_TYPES
+        if spec is not None:
+            from rtamt.readers.member_columns import members_in
+
+            types = spec.over(members_in(found, spec)).types
+        names = names_of(args.name)
         wanted = choice(
-            args.time_column, None, names_of(args.name), None, args.skip_nan, args.hold_for, args.time_unit
+            args.time_column, None, names, None, args.skip_nan, args.hold_for, args.time_unit, types
         )
         trace = trace_of(found, wanted)
     return trace if args.resample is None else trace.resample(args.resample, how_of(args))

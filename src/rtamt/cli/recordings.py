@@ -31,7 +31,7 @@ def recordings_of(
         if name in found:
             raise CommandError(f"'{name}' is given twice; leave it out once")
         if spec.groups:
-            found[name] = recording(args, trace)
+            found[name] = recording(args, trace, spec)
         else:
             data = spec.binding.applied(read_for([spec], trace, reading))
             found[name] = on_time_base(data, spec, trace, reading)

@@ -139,7 +139,7 @@ class Chart {
   marksOfValues(min, max) {
     const [low, high] = this.values || (this.card.fitted ? [min, max] : this.finite);
     const codes = Object.keys(this.names()).map(Number).filter((code) => code >= low && code <= high).sort((a, b) => a - b);
-    const found = codes.length ? apart(codes, (high - low) / NAMES) : ticks(low, high, niceStep(high - low, 3));
+    const found = codes.length ? apart(codes, (high - low) / NAMES) : valueTicks(low, high);
     if (!this.values && !this.card.fitted) this.infinite.forEach((there, end) => { if (there) found[end ? "push" : "unshift"](this.edges[end]); });
     return found;
   }

@@ -5,16 +5,22 @@ const number = (value) => {
   return String(Number(value.toPrecision(6))).replace("-", "−");
 };
 
-// 1, 2 or 5 times a power of ten, so that about `count` of them fit.
-const niceStep = (span, count) => {
+// 1, 2 or 5 (or another of `factors`) times a power of ten, so that about `count` of them fit.
+const niceStep = (span, count, factors = [1, 2, 5]) => {
   const raw = span / count, power = 10 ** Math.floor(Math.log10(raw));
-  return power * ([1, 2, 5].find((factor) => factor * power >= raw * (1 - 1e-9)) || 10);
+  return power * (factors.find((factor) => factor * power >= raw * (1 - 1e-9)) || 10);
 };
 
 const ticks = (low, high, step) => {
   const found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; i++) found.push(Number((i * step).toPrecision(12)));
   return found;
+};
+
+// About three ticks of values, but at least two: a single one would show no scale.
+const valueTicks = (low, high) => {
+  const few = ticks(low, high, niceStep(high - low, 3));
+  return few.length > 1 ? few : ticks(low, high, niceStep(high - low, 4, [1, 2, 2.5, 5]));
 };
 
 const SECONDS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600, 43200, 86400];

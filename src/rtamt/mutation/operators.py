@@ -150,16 +150,19 @@ def _constants(value: Const, under: Apply) -> Iterator[Const]:
                 yield Const(float(other), value.span, value.type.member(other), value.type)
     elif value.type is None and abs(value.value) != float("inf"):
         for sign in (1, -1):
-            changed = value.value + sign * _distance(value.value, under)
+            written = Fraction(
+                repr(value.value)
+            )  # as in the text: 1.2 and a tenth are 1.32, not 1.3199999999999998
+            changed = float(written + sign * _distance(written, under))
             if changed != value.value:
                 yield Const(changed, value.span)
 
 
-def _distance(value: float, under: Apply) -> float:
+def _distance(value: Fraction, under: Apply) -> Fraction:
     """Return the change of a constant; a count in whole numbers."""
     if any(isinstance(arg, Apply) and arg.op is STL["count"] for arg in under.args):
-        return 1.0
-    return abs(float(Fraction(value) * STEP)) or float(STEP)
+        return Fraction(1)
+    return abs(value * STEP) or STEP
 
 
 # ---- bounds --------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from rtamt.errors import EvaluationError, SpecificationError, StlError, UsageError
+from rtamt.errors import BoundError, EvaluationError, SpecificationError, StlError, UsageError
 from rtamt.language.contents import variables
 from rtamt.language.formula import Apply, postorder
 from rtamt.language.operators import STL
@@ -118,7 +118,7 @@ def evaluate_request(request: Request, sources: Sources) -> dict[str, Any]:
     answer: dict[str, Any] = {"error": None}
     try:
         spec = parse_request(request, sources)
-        answer |= _facts(spec, request)
+        answer |= _facts(spec, request, sources)
         if answer["missing"] and request.recording is None:
             return answer
         result = sources.results.keep(request, result_of(request, spec, sources))
@@ -164,9 +164,19 @@ def _private_paths(sources: Sources) -> list[tuple[str, str]]:
     return found if sources.folder is None else [*found, (sources.folder, ".")]
 
 
-def _facts(spec: Specification, request: Request) -> dict[str, Any]:
+def horizon_over(spec: Specification, trace: DomainTrace) -> float:
+    """Return the horizon on a recording, whose period bounds must fit where nothing else gives one."""
+    return spec._horizon_in(trace.domain, trace.domain.step if trace.domain.sampled else None)
+
+
+def _facts(spec: Specification, request: Request, sources: Sources) -> dict[str, Any]:
     """Return the facts that need no data: variables, horizon, warnings."""
-    horizon = spec.horizon
+    try:
+        horizon = spec.horizon
+    except BoundError:  # the bounds do not fit the default period
+        if request.recording is None:
+            raise
+        horizon = horizon_over(spec, result_of(request, spec, sources).trace)
     return {
         "variables": list(spec.input_names),
         "missing": [name for name in spec.input_names if name not in request.signals],

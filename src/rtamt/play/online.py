@@ -9,7 +9,15 @@ from rtamt.errors import StlError, UsageError
 from rtamt.lazy.dataclasses import dataclass
 from rtamt.lazy.modules import np
 from rtamt.play.downsampling import kept_in, number, numbers, parts
-from rtamt.play.evaluation import error_as_data, inner, name_of, parse_request, result_of, select_requirement
+from rtamt.play.evaluation import (
+    error_as_data,
+    horizon_over,
+    inner,
+    name_of,
+    parse_request,
+    result_of,
+    select_requirement,
+)
 from rtamt.plot.band import band
 from rtamt.plot.x_axis import XAxis
 
@@ -101,7 +109,7 @@ def known_at(request: Request, sources: Sources) -> dict[str, Any]:
 
 def _pending(replay: Replay, x_axis: XAxis, now: float) -> list[list[Any]] | None:
     result, watched = replay.result, replay.watched
-    horizon = watched.horizon
+    horizon = horizon_over(watched, result.trace)
     if not isfinite(horizon):
         return None
     monitor = _monitor(watched, result, verdict="interval", at="every")

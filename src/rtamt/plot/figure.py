@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from rtamt.errors import UsageError, shown
 from rtamt.language.contents import variables
 from rtamt.lazy.modules import np
 from rtamt.plot import style
@@ -31,6 +32,17 @@ def new_figure() -> Any:
     figure = pyplot.figure()
     if "inline" in pyplot.get_backend():
         pyplot.close(figure)
+    return figure
+
+
+def figure_for(figure: Any) -> Any:
+    """Return the figure to draw into: the given one, or a new one; raise :class:`UsageError` if it is none."""
+    if figure is None:
+        return new_figure()
+    if not hasattr(figure, "set_size_inches"):
+        raise UsageError(
+            f"figure is {shown(figure)}, expected a figure of matplotlib, such as plt.figure() or axes.figure"
+        )
     return figure
 
 

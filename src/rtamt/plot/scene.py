@@ -130,9 +130,14 @@ class Scene:
         return self.at if number == 0 or violation is None else self.x_axis.position(violation)
 
     def chosen(self, count: int) -> tuple[int, ...]:
-        """Return the numbers of the ``count`` most important nodes, in the order of the formula."""
+        """Return the numbers of the ``count`` most important nodes, in the order of the formula.
+
+        Of many requirements, violated ones are more important.
+        """
         wanted = [0]
-        wanted += [i for i, node in enumerate(self.nodes) if node.name]
+        named = [i for i, node in enumerate(self.nodes) if node.name]
+        wanted += [i for i in self.nodes[0].children if i in named and self.nodes[i].fails_at(self.at)]
+        wanted += named
         wanted += [] if self.critical is None else [self.critical[0]]
         wanted += [i for i, node in enumerate(self.nodes) if node.because]
         wanted += range(len(self.nodes))

@@ -14,7 +14,7 @@ from rtamt.lazy.modules import np
 from rtamt.plot import style
 from rtamt.plot.axes import Edges
 from rtamt.plot.canvas import COLUMNS, ROW, Canvas, panel_heights
-from rtamt.plot.figure import new_figure
+from rtamt.plot.figure import figure_for
 from rtamt.plot.lines import Line, ranges
 from rtamt.plot.panels import groups
 from rtamt.plot.scene import Panel, sub_formulas
@@ -90,7 +90,7 @@ def draw_uncertain(
     x_axis = XAxis.of(trace)
     window = visible(x_axis, start, end)
     place = 0 if at is None else trace.position(at)
-    canvas: Figure = new_figure() if figure is None else figure
+    canvas: Figure = figure_for(figure)
     (position,) = x_axis.positions(trace.times_at(np.array([place]))).tolist()
     _Drawing(result, x_axis, canvas, window).draw(rows, position)
     return canvas

@@ -5,10 +5,10 @@ from __future__ import annotations
 from contextlib import contextmanager
 from os import PathLike, fspath
 
-from rtamt.errors import TraceError, choices, shown
+from rtamt.errors import TraceError, UsageError, choices, shown, with_article
 from rtamt.language.units.moments import time_text
 from rtamt.lazy.typing import TYPE_CHECKING, Any
-from rtamt.signals.arrays import TIME
+from rtamt.signals.arrays import TIME, WithTimeBases
 from rtamt.signals.time_columns import is_labelled
 
 if TYPE_CHECKING:
@@ -104,8 +104,7 @@ def missing_field(member: str, field: str, index: int | None = None) -> TraceErr
 
 def missing_variable(name: str, keys: Collection[str]) -> TraceError:
     """Return the error for a variable that the formula reads and the data lacks."""
-    hint = f"; rtamt.load('{name}') reads a file" if name.endswith(".stl") else choices(name, keys, "signals")
-    return TraceError(f"the data has no '{name}'{hint}", variable=name)
+    return TraceError(f"the data has no '{name}'{choices(name, keys, 'signals')}", variable=name)
 
 
 def possible_times(column: str) -> TraceError:
@@ -139,6 +138,16 @@ def not_a_mapping(data: Any, to: str) -> TraceError:
     if getattr(getattr(data, "dtype", None), "names", None):
         return TraceError("expected data, got a structured NumPy array; write rtamt.read(array)")
     return TraceError(f"expected a mapping from variable to {to}, got {type(data).__name__}")
+
+
+def refuse_one_recording(data: Any, name: str, instead: str) -> None:
+    """Raise :class:`UsageError` for one recording in place of several: it would be taken apart by its columns.
+
+    ``name``: of the argument; ``instead``: what else can be given, as the end of a sentence.
+    """
+    columns = hasattr(data, "keys") or hasattr(data, "columns")
+    if columns or isinstance(data, str | PathLike | WithTimeBases):
+        raise UsageError(f"{name} is {with_article(type(data).__name__)}; give a list of recordings{instead}")
 
 
 def refuse_unknown(keys: Sequence[str], names: Sequence[str], declared: Collection[str]) -> None:

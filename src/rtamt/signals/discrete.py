@@ -47,6 +47,15 @@ if TYPE_CHECKING:
     from rtamt.signals.time_domain_interface import Bounds, Mask
 
 
+def with_origin_of_period(error: BoundError, origin: str) -> BoundError:
+    """Return the error for a bound that does not fit a period that nobody gave, with where the period is from."""
+    return BoundError(
+        f"{error.message} (the period {origin}; period=, or on the command line --period, sets it)",
+        error.text,
+        error.span,
+    )
+
+
 @dataclass(frozen=True, init=False)
 class Discrete(TimeDomain):
     """Discrete time: all variables have a sample at the same instants, one sampling period apart.
@@ -115,7 +124,10 @@ class Discrete(TimeDomain):
     def check(self, formula: Formula, text: str | None = None) -> Formula:
         """See :class:`TimeDomain`."""
         if self.period is not None:
-            check_bounds(formula, self.period, text, self.unit)
+            try:
+                check_bounds(formula, self.period, text, self.unit)
+            except BoundError as error:
+                raise (with_origin_of_period(error, "is the default") if self.assumed else error) from None
         return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
@@ -203,12 +215,7 @@ class DiscreteTrace(DomainTrace):
         except BoundError as error:
             if not self.inferred:
                 raise
-            raise BoundError(
-                f"{error.message} (the period was taken from the timestamps; period=, or on the command line --period, "
-                "sets it)",
-                text,
-                error.span,
-            ) from None
+            raise with_origin_of_period(error, "was taken from the timestamps") from None
 
     def select(self, names: Iterable[str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""

@@ -264,7 +264,7 @@ def irregular(
     return TraceError(
         f"sample {index} at {time_text(time, dated=dated)} is {gap:g} s after the one before, expected "
         f"{format_duration(period)} (within {tolerance:.0%}): give the right period, resample the trace, or use "
-        f"dense time (--time dense)",
+        f"dense time (time='dense', on the command line --time dense)",
         variable=TIME,
         index=index,
         time=time,

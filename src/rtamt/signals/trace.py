@@ -108,6 +108,8 @@ class Trace(WithTimeBases):
         origin: np.datetime64 | None = None,
         possible_times: str | None = None,
     ) -> None:
+        if not hasattr(channels, "values") or not all(isinstance(one, Channel) for one in channels.values()):
+            raise UsageError(f"a trace is made by rtamt.read(data), got {shown(channels)}")
         self._channels = dict(channels)
         self._source = source
         self._notes = tuple(notes)
@@ -175,7 +177,8 @@ class Trace(WithTimeBases):
             if any(name in note.removeprefix(LEFT_OUT).split(", ") for note in self._notes):
                 raise TraceError(
                     f"'{name}' of {self._source} was left out, because its values are not all numbers in the range "
-                    f"of doubles; columns=['{name}'] names the first that is none",
+                    f"of doubles; columns=['{name}'] names the first that is none, and types=spec.types reads members "
+                    f"of enumerations by their names",
                     variable=name,
                 )
             raise TraceError(

@@ -13,6 +13,7 @@ from rtamt.language.operators import STL
 from rtamt.language.units.durations import check_unit
 from rtamt.rewrite.horizon import horizon
 from rtamt.rewrite.semantics import semantics_of
+from rtamt.signals.data_errors import refuse_one_recording
 from rtamt.signals.trace_checks import require_own_clocks
 from rtamt.verdicts.chunks import Requirement, StreamResult
 from rtamt.verdicts.decompose import anchor, check_in_chunks
@@ -56,6 +57,7 @@ def check_stream(
         raise no_specification(spec)
     if not isinstance(chunks, Iterable):
         raise UsageError(f"chunks is {shown(chunks)}; give a list of recordings, or an iterator")
+    refuse_one_recording(chunks, "chunks", ", or an iterator; spec.evaluate(data) takes one recording")
     domain = spec._domain_for(time, period, tolerance)
     rule = domain.sampling(spec.sampling)
     if rule is not None and rule.hold:

@@ -69,7 +69,8 @@ def test_bounds_that_need_another_period(run):
     answer = run("info", "once[0:100ms](x >= 3)")
     assert answer.out.splitlines()[-1] == (
         "online     no: The operator bound must be a multiple of the sampling period: 100 ms is not "
-        "a whole number of periods of 1 s; change the bound or the period"
+        "a whole number of periods of 1 s; change the bound or the period (the period is the default; "
+        "period=, or on the command line --period, sets it)"
     )
     answer = run("info", "once[0:100ms](x >= 3)", "--period", "50ms")
     assert "period     50 ms\n" in answer.out

@@ -116,7 +116,7 @@ def test_a_sample_that_is_left_out_leaves_a_gap_which_the_tolerance_may_allow(ru
     assert lines(answer.out) == [(0.0, 2.0)]
     assert answer.err.splitlines()[1] == (
         "rtamt: stdin, line 3: sample 1 at 2 s is 2 s after the one before, expected 1 s (within 10%): "
-        "give the right period, resample the trace, or use dense time (--time dense)"
+        "give the right period, resample the trace, or use dense time (time='dense', on the command line --time dense)"
     )
     answer = run("monitor", "x >= 3", "--keep-going", "--tolerance", "inf", stdin=stdin)
     assert lines(answer.out) == [(0.0, 2.0), (2.0, 1.0)]
@@ -231,7 +231,8 @@ def test_a_csv_with_time_ms_is_not_satisfied_by_a_monitor_that_check_calls_viola
     assert (answer.code, answer.err) == (
         2,
         "rtamt: stdin, line 3: sample 1 at 0.5 s is 0.5 s after the one before, expected 1 s (within 10%): "
-        "give the right period, resample the trace, or use dense time (--time dense)\n",
+        "give the right period, resample the trace, or use dense time (time='dense', "
+        "on the command line --time dense)\n",
     )
 
 

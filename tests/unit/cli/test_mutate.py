@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 SPEC = "input float x\nrequire HIGH: always(x >= 3)\n"
 OUT = """\
 4 of 7 mutants killed by 2 recordings: score 57%
@@ -46,6 +48,28 @@ def test_groups_on_the_command_line(run, write):
     answer = run("mutate", "cars.stl", "a.csv", "--all")
     assert answer.err == ""
     assert "forall c in cars: c.x > 3 → exists c in cars: c.x > 3" in answer.out
+
+
+@pytest.mark.parametrize(
+    ("text", "trace"),
+    [
+        (
+            'enum M { A, B } M m; group cars = "car_*"; require R: always(m == A); '
+            "require S: always(forall c in cars: c.x > 3)",
+            "time,car_1.x,m\n0,4,A\n1,4,A\n",
+        ),
+        (
+            'enum M { A, B } group cars = "car_*" { M mode  float x }\nalways(forall c in cars: c.mode == A)',
+            "time,car_1.mode,car_1.x\n0,A,1\n1,A,1\n",
+        ),
+    ],
+)
+def test_members_of_enumerations_beside_members_of_groups_are_read_by_their_names(run, write, text, trace):
+    write("cars.stl", text)
+    write("a.csv", trace)
+    answer = run("mutate", "cars.stl", "a.csv", "--all")
+    assert answer.err == ""
+    assert "== A → " in answer.out
 
 
 def test_what_is_wrong_is_said(run, write):

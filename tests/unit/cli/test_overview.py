@@ -38,6 +38,13 @@ def test_help_of_every_command_has_examples_and_fits_a_terminal(capsys, monkeypa
     assert max(map(len, prose.splitlines())) <= 80
 
 
+def test_help_offers_formulas_only_where_they_are_read(run, capsys):
+    assert "a formula in quotes" in help_of(capsys, "describe")
+    assert "a formula in quotes" not in help_of(capsys, "lint")
+    assert run("lint", "always(x >= 3)")[0] == 2
+    assert "with --from: a file of that format;" in " ".join(help_of(capsys, "convert").split())
+
+
 def test_help_says_how_infinities_look_in_json(capsys):
     for command in ("check", "monitor"):
         assert 'Infinities are the strings "inf" and "-inf", because JSON has none' in " ".join(

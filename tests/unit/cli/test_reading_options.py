@@ -196,7 +196,7 @@ def test_an_instant_of_timestamps_since_1970_may_be_given_as_the_date_that_is_pr
         (
             "2026-03-29 01:59:58,1\n2026-03-29 01:59:59,1\n2026-03-29 02:00:00,1\n2026-03-29 02:00:03,1\n",
             "sample 3 at 2026-03-29T02:00:03 is 3 s after the one before, expected 1 s (within 10%): give the right "
-            "period, resample the trace, or use dense time (--time dense)",
+            "period, resample the trace, or use dense time (time='dense', on the command line --time dense)",
         ),
         (
             "2026-10-25 02:59:58.5,1\n2026-10-25 02:59:59.5,1\n2026-10-25 02:00:00,5\n",

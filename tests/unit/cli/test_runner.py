@@ -235,7 +235,7 @@ def test_large_files_are_read_in_chunks_with_the_same_outcome(run, write, monkey
             "time,x\n2026-05-01T10:00:00,5\n2026-05-01T10:00:01,5\n2026-05-01T10:00:05,5\n",
             ("--period", "1s"),
             "sample 2 at 2026-05-01T10:00:05 is 4 s after the one before, expected 1 s (within 10%): give the right "
-            "period, resample the trace, or use dense time (--time dense)",
+            "period, resample the trace, or use dense time (time='dense', on the command line --time dense)",
         ),
         (
             "time,x\n2026-05-01T10:00:00,5\n2026-05-01T10:00:01,5\n2026-05-01T10:00:00.5,5\n",

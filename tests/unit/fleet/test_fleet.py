@@ -33,7 +33,8 @@ def filled(spec: rtamt.Specification = SPEC, **settings: Any) -> rtamt.Fleet:
             [3],
             {"x": [1]},
             "key 'a' at index 0 of the batch: sample 1 at 3 s is 3 s after the one before, expected 1 s "
-            "(within 10%): give the right period, resample the trace, or use dense time (--time dense)",
+            "(within 10%): give the right period, resample the trace, or use dense time (time='dense', "
+            "on the command line --time dense)",
         ),
         (
             ["c", "a"],

@@ -2,6 +2,7 @@
 
 import re
 import time
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -96,6 +97,12 @@ def test_the_violated_card_is_open_and_the_others_are_drawn_when_they_are_opened
     assert page.run("document.querySelectorAll('canvas').length") > 8
     assert page.errors == []
     assert set(page.requests) == {small.as_uri()}
+
+
+@pytest.mark.parametrize(("low", "high", "ticks"), [(-49.7, 42.1, [-25, 0, 25]), (-1, 2, [-1, 0, 1, 2])])
+def test_an_axis_of_values_has_two_ticks_or_more(page, low, high, ticks):
+    script = files("rtamt.html_report").joinpath("times.js").read_text(encoding="utf-8")
+    assert page.run(f"(() => {{ {script}\nreturn valueTicks({low}, {high}); }})()") == ticks
 
 
 def test_charts_zoom_together_and_double_click_shows_all(page, small):

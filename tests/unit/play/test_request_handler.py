@@ -205,6 +205,18 @@ def test_a_recording_is_evaluated_whole_and_drawn_reduced(handler, tmp_path):
     assert "'y'" in missing["error"]["message"]
 
 
+@pytest.mark.parametrize("kind", ["evaluate", "replay"])
+def test_the_period_of_a_recording_is_that_of_the_horizon(handler, tmp_path, kind):
+    path = tmp_path / "1.csv"
+    path.write_text("time,x\n" + "".join(f"{i / 10},{i}\n" for i in range(20)))
+    message = {**MESSAGE, "text": "always(rate(x) < 20 -> eventually[0:500ms](x >= 3))", "period": ""}
+    message |= {"signals": {}, "recording": 12}
+    answer = handler.answer(kind, message, {"number": 12, "path": str(path), "name": "a.csv"})
+    assert answer["error"] is None
+    if kind == "evaluate":
+        assert answer["verdict"] == "satisfied"
+
+
 def test_an_unreadable_recording_is_a_sentence_without_its_folder(handler, tmp_path):
     path = tmp_path / "9.csv"
     path.write_text("")

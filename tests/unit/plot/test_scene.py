@@ -97,6 +97,12 @@ def test_a_long_chain_is_one_node_and_a_huge_formula_is_cut():
     assert len(seen.chosen(6)) == 6
 
 
+def test_of_more_requirements_than_have_room_the_violated_ones_are_chosen():
+    text = "; ".join(f"require R{i}: always(x >= {i})" for i in range(9))
+    seen = scene(rtamt.parse(text).evaluate({"x": [7.5, 6.5]}))
+    assert [seen.nodes[i].name for i in seen.chosen(6)] == [None, "R0", "R1", "R2", "R7", "R8"]
+
+
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=400), st.integers(1, 20))
 @settings(max_examples=50)
 def test_decimation_keeps_every_peak_and_both_ends(values, columns):
