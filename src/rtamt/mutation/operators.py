@@ -150,9 +150,8 @@ def _constants(value: Const, under: Apply) -> Iterator[Const]:
                 yield Const(float(other), value.span, value.type.member(other), value.type)
     elif value.type is None and abs(value.value) != float("inf"):
         for sign in (1, -1):
-            written = Fraction(
-                repr(value.value)
-            )  # as in the text: 1.2 and a tenth are 1.32, not 1.3199999999999998
+            # As in the text: 1.2 and a tenth are 1.32, not 1.3199999999999998.
+            written = Fraction(repr(value.value))
             changed = float(written + sign * _distance(written, under))
             if changed != value.value:
                 yield Const(changed, value.span)

@@ -16,7 +16,7 @@ from rtamt.readers.formats import BAG, MCAP, METADATA
 from rtamt.readers.mcap import refuse_encodings, salvage
 from rtamt.readers.message_definitions import require_one_definition
 from rtamt.readers.message_fields import NEAREST, SCAN, has_arrays, header_time, shape_of, union
-from rtamt.readers.source import Field, Source, Table, printable, reason
+from rtamt.readers.source import Field, Source, Table, damaged, printable, reason
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -144,7 +144,7 @@ def _existing(path: str) -> Path:
         with open(path, "rb") as file:
             # Its library reads the first line, however long that is.
             if path.lower().endswith(".bag") and b"\n" not in file.read(_FIRST_LINE):
-                raise ValueError("the file does not begin with a line such as #ROSBAG V2.0")
+                raise damaged(path, BAG.name, "the file does not begin with a line such as #ROSBAG V2.0")
     return Path(path)
 
 

@@ -157,10 +157,14 @@ def opening(path: str, what: str, remedy: str = "copy or export it again") -> It
             raise TraceError(f"cannot read '{path}': {error.strerror or error}") from None
         if isinstance(error, _BUGS) and is_our_error(error):
             raise
-        raise TraceError(
-            f"'{path}' cannot be read as {what}: {reason(error)}; "
-            f"the file is damaged, incomplete or of another kind: {remedy}"
-        ) from error
+        raise damaged(path, what, reason(error), remedy) from error
+
+
+def damaged(path: str, what: str, why: str, remedy: str = "copy or export it again") -> TraceError:
+    """Return the error for a file that is no valid one of its format, ``what``."""
+    return TraceError(
+        f"'{path}' cannot be read as {what}: {why}; the file is damaged, incomplete or of another kind: {remedy}"
+    )
 
 
 def missing_file(path: str) -> TraceError:
