@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rtamt.language.formula import Apply, Formula, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language
-from rtamt.language.parsing.grammar import is_predicate
+from rtamt.language.parsing.grammar import is_chain
 from rtamt.language.printing.printer import excerpt
 from rtamt.lazy.dataclasses import replace
 
@@ -49,7 +49,7 @@ def _left_to_right() -> Language:
 def _may_differ(*formulas: Formula) -> bool:
     """Return whether a right-associative operator has an operand with the same operator, or comparisons chain."""
     return any(
-        (_to_the_right(node) and any(map(_to_the_right, node.args))) or _is_chain(node)
+        (_to_the_right(node) and any(map(_to_the_right, node.args))) or is_chain(node)
         for node in postorder(*formulas)
         if isinstance(node, Apply)
     )
@@ -59,25 +59,11 @@ def _to_the_right(node: Formula) -> bool:
     return isinstance(node, Apply) and node.op.fixity is Fixity.RIGHT
 
 
-def _is_chain(node: Apply) -> bool:
-    """Return whether a conjunction was written as a chain of comparisons, which share what is between them."""
-    if node.op is not STL["and"]:
-        return False
-    left, right = node.args
-    while isinstance(left, Apply) and left.op is STL["and"]:
-        left = left.args[1]
-    if not (isinstance(left, Apply) and isinstance(right, Apply)):
-        return False
-    if not (is_predicate(left.op) and is_predicate(right.op)) or left.span is None or right.span is None:
-        return False
-    return left.args[1] is right.args[0] and left.span.start < right.span.start < left.span.end
-
-
 def _as_theirs(node: Formula, args: tuple[Formula, ...]) -> Formula:
     """Return a formula of the language that is read from left to right, as RTAMT reads it, in the operators here."""
     if not isinstance(node, Apply):
         return node
-    if _is_chain(node):
+    if is_chain(node):
         left, last = args
         assert isinstance(last, Apply)
         return Apply(last.op, (left, last.args[1]), None, node.span)

@@ -13,7 +13,7 @@ from rtamt.errors import SpecificationError, StlError
 from rtamt.language.formula import Apply, Const, Formula, Interval, Span, Var, fold, postorder
 from rtamt.language.operators import STL, Fixity, Language, Sort, builtin
 from rtamt.language.parsing.diagnostics import NO_CHAIN
-from rtamt.language.parsing.grammar import is_number, is_predicate
+from rtamt.language.parsing.grammar import is_chain, is_number
 from rtamt.language.parsing.parser import parse_formula
 from rtamt.language.printing.printer import to_text
 from rtamt.language.unwritten import TRUTH
@@ -160,7 +160,7 @@ class Dialect:
         for node in postorder(formula):
             if not isinstance(node, Apply) or node.op is TRUTH:
                 continue
-            if _is_chain(node):
+            if is_chain(node):
                 raise SpecificationError(self._no_chain, text, node.span)
             if node.interval is not None and node.interval.is_open:
                 raise SpecificationError(
@@ -243,18 +243,6 @@ class Dialect:
 def _is_plain_number(formula: Formula) -> bool:
     """Return whether a formula is a number, and no Boolean."""
     return is_number(formula) and not (isinstance(formula, Const | Var) and formula.type is BOOLEAN)
-
-
-def _is_chain(node: Apply) -> bool:
-    """Return whether a formula was written as ``a < b < c``, which shares its middle."""
-    first, second = node.args if node.op.name == "and" else (None, None)
-    return (
-        isinstance(first, Apply)
-        and isinstance(second, Apply)
-        and is_predicate(first.op)
-        and is_predicate(second.op)
-        and first.args[1] is second.args[0]
-    )
 
 
 def _row(word: Word) -> Operator:

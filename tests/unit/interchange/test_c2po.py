@@ -186,3 +186,8 @@ def test_specifications_of_c2po_had_labels_that_it_does_not_read() -> None:
     labels = ("P_1", "P_1_2", "R_1st", "R_2", "q" * 40)
     assert [line.strip().partition(":")[0] for line in found.text.splitlines()[4:]] == list(labels)
     assert read_c2po(found.text).converted == labels
+
+
+def test_a_definition_that_is_compared_twice_is_no_chain() -> None:
+    text = "INPUT x: float; DEFINE m := x + 1.0; FTSPEC Q: 0.0 < m && m < 3.0;"
+    assert str(rtamt.parse(read_c2po(text).text).formula) == "always(0 < x + 1 and x + 1 < 3)"

@@ -52,6 +52,25 @@ def chains(first: Operator, second: Operator) -> bool:
     return spellings <= {"<", "<="} or spellings <= {">", ">="}
 
 
+def is_chain(node: Apply) -> bool:
+    """Return whether a conjunction was written as a chain of comparisons, which share what is between them.
+
+    >>> from rtamt.language.parsing.parser import parse_formula
+    >>> is_chain(parse_formula("1 < x < 3")), is_chain(parse_formula("1 < x and x < 3"))
+    (True, False)
+    """
+    if node.op.name != "and":
+        return False
+    left, right = node.args
+    while isinstance(left, Apply) and left.op is node.op:
+        left = left.args[1]
+    if not (isinstance(left, Apply) and isinstance(right, Apply)):
+        return False
+    if not (is_predicate(left.op) and is_predicate(right.op)) or left.span is None or right.span is None:
+        return False
+    return left.args[1] is right.args[0] and left.span.start < right.span.start < left.span.end
+
+
 def is_number(formula: Formula) -> bool:
     """Return whether a formula is a number by itself: a variable, a constant or arithmetic."""
     return not isinstance(formula, Apply) or formula.op.result is Sort.NUMBER
