@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property, wraps
 
 from rtamt.engine import engine_of
-from rtamt.errors import BoundError, EvaluationError, UsageError, shown
+from rtamt.errors import EvaluationError, UsageError, shown
 from rtamt.language.parsing.imports import library_of
 from rtamt.language.parsing.specfile import parse_document
 from rtamt.language.units.durations import check_unit
@@ -330,19 +330,8 @@ class Specification(OnlineSpecification):
         if query.domain.step is None:  # else checked without a recording; many recordings have the same step
             key = (query.formula, recording.step.as_integer_ratio())  # hashing fractions is slow
             if key not in self._checked:
-                self._check_period(query.formula, recording)
+                recording.check(query.formula, self.text, given=False)
                 self._checked.add(key)
-
-    def _check_period(self, formula: Formula, recording: DomainTrace) -> None:
-        """Raise :class:`BoundError` if a bound does not fit the period of the recording, which nobody gave."""
-        try:
-            recording.check(formula, self.text)
-        except BoundError as error:
-            if getattr(recording, "inferred", True):
-                raise
-            from rtamt.signals.discrete import with_origin_of_period
-
-            raise with_origin_of_period(error, "is the default") from None
 
     @cached_property
     def _checked(self) -> set[tuple[Formula, tuple[int, int]]]:

@@ -159,7 +159,7 @@ class DenseTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return sum(len(ticks) for ticks, _ in self.columns.values())
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None, *, given: bool = True) -> Formula:  # noqa: ARG002 - it always is
         """See :class:`DomainTrace`."""
         return self.domain.check(formula, text)
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from rtamt.signals.time_domain_interface import Bounds, Mask
 
 
-def with_origin_of_period(error: BoundError, origin: str) -> BoundError:
+def _with_origin_of_period(error: BoundError, origin: str) -> BoundError:
     """Return the error for a bound that does not fit a period that nobody gave, with where the period is from."""
     return BoundError(
         f"{error.message} (the period {origin}; period=, or on the command line --period, sets it)",
@@ -127,7 +127,7 @@ class Discrete(TimeDomain):
             try:
                 check_bounds(formula, self.period, text, self.unit)
             except BoundError as error:
-                raise (with_origin_of_period(error, "is the default") if self.assumed else error) from None
+                raise (_with_origin_of_period(error, "is the default") if self.assumed else error) from None
         return self.ground(formula)[0]
 
     def check_inputs(self, names: Collection[str]) -> None:
@@ -208,14 +208,14 @@ class DiscreteTrace(DomainTrace):
         """See :class:`DomainTrace`."""
         return len(self)
 
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
+    def check(self, formula: Formula, text: str | None = None, *, given: bool = True) -> Formula:
         """See :class:`DomainTrace`."""
         try:
             return self.domain.check(formula, text)
         except BoundError as error:
-            if not self.inferred:
-                raise
-            raise with_origin_of_period(error, "was taken from the timestamps") from None
+            if self.inferred:
+                raise _with_origin_of_period(error, "was taken from the timestamps") from None
+            raise (error if given else _with_origin_of_period(error, "is the default")) from None
 
     def select(self, names: Iterable[str]) -> DiscreteTrace:
         """See :class:`DomainTrace`."""

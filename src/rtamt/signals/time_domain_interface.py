@@ -189,8 +189,11 @@ class DomainTrace(ABC):
         """The number of samples that one pass over the recording takes."""
 
     @abstractmethod
-    def check(self, formula: Formula, text: str | None = None) -> Formula:
-        """Return the formula with closed bounds; raise :class:`BoundError` or :class:`SpecificationError`."""
+    def check(self, formula: Formula, text: str | None = None, *, given: bool = True) -> Formula:
+        """Return the formula with closed bounds; raise :class:`BoundError` or :class:`SpecificationError`.
+
+        ``given``: whether the caller or the specification gave the step; if not, errors name where it is from.
+        """
 
     @abstractmethod
     def select(self, names: Iterable[str]) -> Self:
